@@ -1,0 +1,93 @@
+"""What the screen, the command line and tests may ask of the executor; posted to its queue, never waited for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.executor.job import Job, Proof
+
+
+@dataclass(frozen=True, slots=True)
+class LoadJob:
+    """Make this the program that Cycle Start runs. ``proof`` must be of this very job, else start is refused."""
+
+    job: Job
+    proof: Proof | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GiveProof:
+    """The proof of the loaded job, when proving took longer than loading."""
+
+    proof: Proof
+
+
+@dataclass(frozen=True, slots=True)
+class CycleStart:
+    """Start, or go on after hold, single block, M00, M01. The station's two-hand relay means the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class FeedHold:
+    """Come to rest on the path within commit + v/a."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reset:
+    """Stop, give the program up, back to its first line; also acknowledges an alarm."""
+
+
+@dataclass(frozen=True, slots=True)
+class EnableDrives:
+    """After E-stop or power-up: switch the drives on."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetSwitch:
+    """``single_block``, ``optional_stop``, ``cycle_repeat``: lit words that act at once."""
+
+    name: str
+    on: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FeedOverride:
+    """Fraction 0…1.5 of the programmed feed."""
+
+    fraction: float
+
+
+@dataclass(frozen=True, slots=True)
+class Jog:
+    """Move one axis while the lease lasts; mm/s or degrees/s, signed. Renewed before it ends, or it ends."""
+
+    axis: str
+    velocity: float
+    lease: float
+
+
+@dataclass(frozen=True, slots=True)
+class JogStop:
+    """Give the jog lease back at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleLimit:
+    """F10: maximum spindle speed until restart, rpm; None: the machine's own."""
+
+    rpm: float | None
+
+
+Command = (
+    LoadJob
+    | GiveProof
+    | CycleStart
+    | FeedHold
+    | Reset
+    | EnableDrives
+    | SetSwitch
+    | FeedOverride
+    | Jog
+    | JogStop
+    | SpindleLimit
+)

@@ -1,0 +1,93 @@
+"""The one picture of the machine that every display is drawn from; immutable, published once a tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from core.interpreter.modal import Modal
+
+
+class State(StrEnum):
+    """States of the executor; the words are what the operator reads."""
+
+    ESTOP = "E-STOP"
+    DISABLED = "DRIVES OFF"
+    IDLE = "READY"
+    RUN = "RUNNING"
+    HOLDING = "STOPPING"
+    HOLD = "FEED HOLD"
+    BLOCK_END = "SINGLE BLOCK"
+    PROGRAM_STOP = "PROGRAM STOP"
+    WAIT = "WAITING"
+    JOG = "JOG"
+    HOME = "HOMING"
+    FAULT = "ALARM"
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """Text, cause, what to do, and the line that was running (0: none)."""
+
+    number: int
+    code: str
+    text: str
+    cause: str
+    remedy: str
+    line: int = 0
+    time: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """Machine and program at one instant. Lengths mm, X a radius, machine frame unless said otherwise."""
+
+    t: float = 0.0
+    state: State = State.DISABLED
+    waiting_for: str = ""  # in words, when state is WAIT: AT SPEED, COLLET, TB2-5, DWELL
+    program: str = ""
+    line: int = 0  # source line being executed, 0 none
+    block: int = 0  # elementary block being executed, 0 none
+    block_text: str = ""
+    next_text: str = ""
+    demand: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    actual: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    following_error: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    homed: tuple[bool, bool, bool] = (False, False, False)
+    block_end: tuple[float, float, float] = (0.0, 0.0, 0.0)  # for distance to go
+    offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
+    modal: Modal = field(default_factory=Modal)
+    velocity: float = 0.0  # along the path, mm/s, actual
+    feed: float = 0.0  # programmed: mm/s or mm/rev by modal
+    rapid: bool = False
+    rpm_command: float = 0.0
+    rpm_actual: float = 0.0
+    feed_override: float = 1.0
+    spindle_override: float = 1.0
+    spindle_auto: bool = True
+    single_block: bool = False
+    optional_stop: bool = False
+    block_delete: bool = False
+    cycle_repeat: bool = False
+    outputs: frozenset[str] = frozenset()  # names that are on
+    inputs: frozenset[str] = frozenset()
+    comment: str = ""
+    message: str = ""  # of M00/M01 while the stop lasts
+    alarms: tuple[Alarm, ...] = ()
+    cycle_elapsed: float = 0.0  # of this cycle, stops not counted
+    last_cycle: float = 0.0
+    parts: int = 0  # completed since the executor was started
+    underruns: int = 0
+    max_following_error: float = 0.0
+    proof_wanted: bool = False  # a job is loaded that no proof covers
+    start_refused: str = ""  # why the last Cycle Start did nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something worth remembering: goes to the log by a queue."""
+
+    t: float
+    kind: str  # state, alarm, start, end, part, stop, refused, override, switch
+    text: str
+    line: int = 0

@@ -1,0 +1,77 @@
+"""Elementary blocks: the one list that the runner executes, the prover checks and the screen draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.interpreter.actions import Action
+from core.interpreter.modal import Modal
+
+
+class Kind(StrEnum):
+    """What an elementary block is; the words are part of the public JSON."""
+
+    RAPID = "rapid"
+    FEED = "feed"
+    ARC = "arc"
+    THREAD = "thread"
+    ROTATE = "rotate"
+    DWELL = "dwell"
+    PLANE_LINE = "plane-line"
+    PLANE_ARC = "plane-arc"
+    ACTION = "action"
+
+
+MOVES = frozenset(
+    {Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD, Kind.ROTATE, Kind.PLANE_LINE, Kind.PLANE_ARC}
+)
+
+
+@dataclass(slots=True, eq=False)
+class Block:
+    """One elementary block, never changed once made. Lengths in mm, X a radius, C in degrees.
+
+    ``x z c`` is the end point in the program's frame with secondary offset and nose compensation in it,
+    ``x0 z0 c0`` where the block starts, in that same frame; machine coordinates are ``offset_x offset_z``
+    further. ``feed`` is mm/s, or mm/rev when ``per_rev``; a rapid's feed is the rapid rate in mm/s.
+    ``rpm`` is the commanded spindle speed at the block's end, negative under M04, 0 with the spindle stopped.
+    ``modal`` is the state after the block: the checkpoint from which a restart can go on.
+    """
+
+    n: int  # count from 1, in the order of execution
+    line: int  # source line, from 1
+    kind: Kind
+    text: str  # as the screen shows it
+    x0: float
+    z0: float
+    c0: float
+    x: float
+    z: float
+    c: float
+    offset_x: float
+    offset_z: float
+    modal: Modal
+    feed: float = 0.0
+    per_rev: bool = False
+    rpm: float = 0.0
+    css: float | None = None  # surface speed in force, mm/s
+    cx: float = 0.0  # arc centre, program frame
+    cz: float = 0.0
+    clockwise: bool = False  # seen from above: X+ down, Z+ right
+    action: Action | None = None
+
+    @property
+    def mx(self) -> float:
+        """Machine X of the end, mm, radius."""
+        return self.x + self.offset_x
+
+    @property
+    def mz(self) -> float:
+        """Machine Z of the end, mm."""
+        return self.z + self.offset_z
+
+    @property
+    def moves(self) -> bool:
+        """Whether the slides or the C axis move in this block."""
+        return self.action is None

@@ -1,0 +1,59 @@
+"""What the interpreter must be told besides the program: offsets, limits, switches, inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class ToolOffset:
+    """Machine position at which the tip stands on part zero; mm, X a radius."""
+
+    x: float = 0.0
+    z: float = 0.0
+    nose_radius: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SecondaryOffset:
+    """D offset as stored; mm, X a radius, R the nose radius."""
+
+    x: float = 0.0
+    z: float = 0.0
+    r: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ControlLimits:
+    """What words may ask for; from the machine file."""
+
+    max_feed: float = 300 * 25.4 / 60  # mm/s
+    max_rpm: float = 3500.0
+    resolution: float = 0.00005 * 25.4  # mm, radius
+    unclamp_while_turning: bool = True
+    start_with_collet_open: bool = False
+    m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
+
+
+def _no_inputs(_terminal: str) -> bool:
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """One set of circumstances for one pass through a program.
+
+    ``start`` is the machine position (x, z, c) before the first block; ``metric`` and ``last_rapid`` what
+    the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a PLC input like ``"10"``.
+    """
+
+    tools: Mapping[int, ToolOffset] = field(default_factory=dict)
+    secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
+    limits: ControlLimits = field(default_factory=ControlLimits)
+    block_delete: bool = False
+    strict: bool = False
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    metric: bool = False
+    last_rapid: float = 100 * 25.4 / 60  # mm/s
+    inputs: Callable[[str], bool] = _no_inputs

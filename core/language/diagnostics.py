@@ -1,0 +1,40 @@
+"""What the control has to say about a program: one sentence, one place, one thing to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Severity(StrEnum):
+    """How much a diagnostic weighs: an error refuses the run, a warning is shown, a note informs."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One finding. Lines and columns count from 1; column 0 speaks of the whole line, line 0 of the file."""
+
+    line: int
+    column: int
+    severity: Severity
+    code: str
+    message: str
+    hint: str = ""
+
+    def shown(self, name: str) -> str:
+        """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
+        place = f"{name}:{self.line}:{self.column}" if self.line else name
+        hint = f" — {self.hint}" if self.hint else ""
+        return f"{place}: {self.severity}: {self.message} [{self.code}]{hint}"
+
+
+class ProgramError(Exception):
+    """A line cannot mean anything the control would execute; carries the diagnostic that says why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic

@@ -1,0 +1,99 @@
+"""The machine as its file describes it: frozen, in mm, seconds, degrees; X a radius."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis. Lengths mm and mm/s; for C degrees and degrees/s."""
+
+    name: str
+    travel: tuple[float, float] | None  # from home; None: endless (C)
+    vmax: float
+    amax: float
+    count: float  # encoder and command step
+    following_window: float
+    following_time: float
+    in_position: float
+    absolute: bool  # knows its position at power-up: no homing needed
+    home_order: int = 0
+    home_speed: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleModel:
+    """The main spindle, rpm and rpm/s."""
+
+    rpm_min: float
+    rpm_max: float
+    accel: float
+    decel: float
+    at_speed: float  # fraction of the command
+    at_speed_time: float
+    timeout: float
+    stop_below: float
+    encoder_ppr: int
+
+
+@dataclass(frozen=True, slots=True)
+class OutputModel:
+    """One output: ``safe`` is what E-stop makes of it, None keeps."""
+
+    name: str
+    safe: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class InputModel:
+    """One input: the names by which a program or interlock asks for it."""
+
+    name: str
+    terminal: str
+    active_low: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Times of the control itself, seconds."""
+
+    commit: float
+    lookahead: float
+    low_water: float
+    lease: float
+    setpoint: float  # interval in which a corner may change a velocity by amax * interval
+    collet_open: float
+    collet_close: float
+
+
+@dataclass(frozen=True, slots=True)
+class Interlocks:
+    """Omniturn section 10 and the two-hand start."""
+
+    spindle_with_collet_open: bool
+    unclamp_while_turning: bool
+    two_hand_start: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """The whole machine. ``axes`` in the order X, Z, C."""
+
+    name: str
+    backend: str
+    axes: tuple[Axis, Axis, Axis]
+    c_enabled: bool
+    c_feedback: bool
+    spindle: SpindleModel
+    timing: Timing
+    interlocks: Interlocks
+    max_feed: float  # mm/s, what an F word may ask for
+    manual_rapid: float  # mm/s
+    resolution: float  # mm of radius
+    outputs: Mapping[str, OutputModel]
+    inputs: Mapping[str, InputModel]
+    m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
+    sim: Mapping[str, object] = field(default_factory=dict)
+    source: str = ""  # the file it came from

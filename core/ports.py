@@ -1,0 +1,161 @@
+"""What a driver must offer.
+
+Times are seconds of one monotonic clock; lengths are mm (X a radius), C is degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class DriverError(Exception):
+    """A driver cannot do what it was asked; the sentence says what, where and what to do."""
+
+
+class Stop(StrEnum):
+    """How to come to rest: at once and unpowered, braked then unpowered, or braked and held."""
+
+    OFF = "off"
+    RAMP_OFF = "ramp-off"
+    RAMP_HOLD = "ramp-hold"
+
+
+class Segments(NamedTuple):
+    """Motion of all axes together in pieces of constant acceleration.
+
+    ``t`` (n,) start times, ``dt`` (n,) lengths, ``p v a`` (n, axes) position, velocity and acceleration at
+    the start of each piece. At rest after the last piece.
+    """
+
+    t: FloatArray
+    dt: FloatArray
+    p: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+
+class AxisSample(NamedTuple):
+    """What the axes do at one instant; tuples in the sink's order of axes."""
+
+    t: float
+    demand: tuple[float, ...]
+    actual: tuple[float, ...]
+    following_error: tuple[float, ...]
+    enabled: bool
+    homed: tuple[bool, ...]
+    moving: bool
+    fault: str
+
+
+class AxisSink(Protocol):
+    """Where setpoints go. A queue is always a complete trajectory that ends at rest."""
+
+    axes: tuple[str, ...]
+    commit: float  # nothing before now() + commit can be changed any more
+
+    def now(self) -> float: ...
+
+    def horizon(self) -> float:
+        """End of what is queued; not before now() when something is queued."""
+        ...
+
+    def splice(self, segments: Segments) -> None:
+        """Replace everything from ``segments.t[0]`` on.
+
+        Raises DriverError unless it starts at or after now() + commit, continues position and velocity of
+        what stays, and ends at rest.
+        """
+        ...
+
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Queued position and velocity at ``t``; what a splice at ``t`` has to continue."""
+        ...
+
+    def sample(self) -> AxisSample: ...
+
+    def enable(self, on: bool) -> None: ...
+
+    def stop(self, how: Stop) -> None: ...
+
+    def home(self, axis: str) -> None: ...
+
+    def clear_fault(self) -> None: ...
+
+
+class Spindle(Protocol):
+    """The main spindle; rpm is signed, positive as M03 turns."""
+
+    def run(self, rpm: float) -> None: ...
+
+    def coast(self) -> None: ...
+
+    def speed(self) -> float:
+        """Measured rpm, signed."""
+        ...
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, revolutions counted since power-up) from the encoder, or None without one."""
+        ...
+
+    def fault(self) -> str: ...
+
+
+class DigitalIO(Protocol):
+    """Inputs and outputs by the names of the machine file."""
+
+    def inputs(self) -> Mapping[str, bool]: ...
+
+    def outputs(self) -> Mapping[str, bool]: ...
+
+    def write(self, name: str, on: bool) -> None: ...
+
+    def safe(self) -> None:
+        """Every output to its safe state."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class StationState:
+    """The operator station at one instant. ``start`` is the two-hand relay's output, never the buttons."""
+
+    estop: bool = False
+    start: bool = False
+    hold: bool = False
+    spindle_auto: bool = True
+    spindle_pot: float = 1.0  # 0…1
+    feed_pot: float = 1.0  # 0…1.5 where the machine has one
+    age: float = 0.0  # seconds since the station last spoke
+
+
+class Station(Protocol):
+    """Buttons, pots and switches of the operator station."""
+
+    def snapshot(self) -> StationState: ...
+
+
+class Clock(Protocol):
+    """Monotonic time, and the only way to wait for it."""
+
+    def now(self) -> float: ...
+
+    def sleep_until(self, t: float) -> None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class MachinePorts:
+    """Everything the executor drives, put together in one place of the app."""
+
+    clock: Clock
+    axes: AxisSink
+    spindle: Spindle
+    io: DigitalIO
+    station: Station
+    warnings: Sequence[str] = ()
