@@ -1,4 +1,4 @@
-"""What the screen, the command line and tests may ask of the executor; posted to its queue, never waited for."""
+"""What may be asked of the executor: posted to its queue by screen, command line or test, never awaited."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from core.executor.job import Job, Proof
 
 @dataclass(frozen=True, slots=True)
 class LoadJob:
-    """Make this the program that Cycle Start runs. ``proof`` must be of this very job, else start is refused."""
+    """Make this the program that Cycle Start runs; without a proof of this very job start is refused."""
 
     job: Job
     proof: Proof | None = None
