@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 
 from core.interpreter.setup import Setup
@@ -27,3 +28,21 @@ class Proof:
     blocks: int = 0
     cycle_time: float = 0.0
     tools: tuple[int, ...] = ()  # offsets the program asks for
+
+
+def make_job(source: Source, setup: Setup) -> Job:
+    """The job of this program under these circumstances.
+
+    The digest covers all that the elementary blocks depend on except live inputs and where the slides stand.
+    """
+    circumstances = (
+        sorted(setup.tools.items()),
+        sorted(setup.secondary.items()),
+        sorted(setup.limits.m_outputs.items()),
+        (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
+        (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
+        (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
+    )
+    text = hashlib.sha256(source.text.encode("utf-8", "surrogatepass"))
+    text.update(repr(circumstances).encode())
+    return Job(source, setup, text.hexdigest(), frozenset(setup.tools))

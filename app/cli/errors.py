@@ -1,0 +1,9 @@
+"""Exit statuses, and the one exception that ends a command with a sentence."""
+
+from __future__ import annotations
+
+EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
+
+
+class CommandError(Exception):
+    """The command cannot go on: usage, unreadable file, bad machine file. Ends with status 2."""

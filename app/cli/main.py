@@ -1,0 +1,101 @@
+"""The ``turndesk`` command: finds the subcommand, imports only what it needs, turns errors into one line."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
+
+# Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
+COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine")
+
+NO_DISPLAY = """\
+turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:
+  turndesk prove FILE…             proves programs: errors, limits, cycle time
+  turndesk expand FILE             the elementary blocks that the control would execute
+  turndesk trace FILE --out CSV    the setpoints that the drives would get
+  turndesk run FILE --headless     runs it on the simulated lathe
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser that says what is wrong in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(EXIT_USAGE, f"turndesk: {message}; see '{self.prog} --help'\n")
+
+
+def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
+    """The parser with these subcommands."""
+    parser = _Parser(
+        prog="turndesk",
+        description="The operator desk for OmniTurn-style CNC lathes. Without a command: the operator screen.",
+    )
+    parser.add_argument("--version", action="store_true", help="print the version")
+    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)")
+    parser.add_argument("--program", metavar="FILE", help="program that the screen loads at the start")
+    subparsers = parser.add_subparsers(
+        title="commands", metavar="COMMAND", dest="command", parser_class=_Parser
+    )
+    for name in commands:
+        importlib.import_module(f"app.cli.{name}").add_parser(subparsers)
+    return parser
+
+
+def _commands_for(argv: Sequence[str]) -> Sequence[str]:
+    """Only the command that is asked for is imported; help and mistakes see all of them."""
+    return (argv[0],) if argv and argv[0] in COMMANDS else COMMANDS
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
+    argv = sys.argv[1:] if argv is None else argv
+    args = build_parser(_commands_for(argv)).parse_args(argv)
+    try:
+        return _dispatch(args)
+    except CommandError as error:
+        sys.stderr.write(f"turndesk: {error}\n")
+        return EXIT_USAGE
+    except KeyboardInterrupt:
+        sys.stderr.write("turndesk: interrupted\n")
+        return 130
+    except BrokenPipeError:
+        # The reader of our output has gone, as `| head` does; closing quietly is what it expects.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_OK
+
+
+def _dispatch(args: argparse.Namespace) -> int:
+    if args.version:
+        from importlib.metadata import version
+
+        sys.stdout.write(f"turndesk {version('turndesk')}\n")
+        return EXIT_OK
+    if args.command:
+        status: int = importlib.import_module(f"app.cli.{args.command}").run(args)
+        return status
+    return _screen(args)
+
+
+def _has_display() -> bool:
+    if sys.platform != "linux":
+        return True
+    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"))
+
+
+def _screen(args: argparse.Namespace) -> int:
+    if not _has_display():
+        sys.stderr.write(NO_DISPLAY)
+        return EXIT_USAGE
+    from app.screen.main import run_screen
+
+    return run_screen(machine=args.machine, program=args.program)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,57 @@
+"""The one place where rooms and drivers are put together: machine file, setup, ports, executor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.errors import CommandError
+from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+
+if TYPE_CHECKING:
+    from core.machine.model import Machine
+
+
+def read_machine(path: str | None) -> Machine:
+    """The machine that a file describes, or the shipped lathe; raises CommandError naming every mistake."""
+    from core.machine.load import MachineFileError, load_machine
+
+    try:
+        return load_machine(Path(path) if path else None)
+    except MachineFileError as error:
+        raise CommandError(str(error)) from error
+
+
+def control_limits(machine: Machine) -> ControlLimits:
+    """What the interpreter must know of a machine."""
+    return ControlLimits(
+        max_feed=machine.max_feed,
+        max_rpm=machine.spindle.rpm_max,
+        resolution=machine.resolution,
+        unclamp_while_turning=machine.interlocks.unclamp_while_turning,
+        start_with_collet_open=machine.interlocks.spindle_with_collet_open,
+        m_outputs=machine.m_codes,
+    )
+
+
+def setup_for(
+    machine: Machine,
+    *,
+    tools: Mapping[int, ToolOffset],
+    secondary: Mapping[int, SecondaryOffset],
+    inputs: Mapping[str, bool] | None = None,
+    block_delete: bool = False,
+    strict: bool = False,
+) -> Setup:
+    """Circumstances of one pass, from the machine's home; inputs that nobody names are open."""
+    states = dict(inputs or {})
+    return Setup(
+        tools=tools,
+        secondary=secondary,
+        limits=control_limits(machine),
+        block_delete=block_delete,
+        strict=strict,
+        last_rapid=machine.manual_rapid,
+        inputs=lambda terminal: states.get(terminal, False),
+    )

@@ -1,0 +1,59 @@
+"""What proving found: figures in mm and seconds, X a radius; the command line turns them into inches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.language.diagnostics import Diagnostic, Severity
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Seconds, together the cycle time. ``wait`` is for spindle, collet and the start of each motion."""
+
+    cutting: float = 0.0
+    rapid: float = 0.0
+    dwell: float = 0.0
+    wait: float = 0.0
+
+    @property
+    def cycle(self) -> float:
+        """The whole cycle; waits of M00 and M01 are the operator's and not in it."""
+        return self.cutting + self.rapid + self.dwell + self.wait
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What the program reaches: program frame, rpm unsigned, feed in mm/s along the path."""
+
+    x: Range = (0.0, 0.0)
+    z: Range = (0.0, 0.0)
+    c: Range = (0.0, 0.0)
+    rpm: Range = (0.0, 0.0)
+    feed: Range = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """One program, proved. Figures cover what could be interpreted when there are errors."""
+
+    name: str
+    metric: bool
+    blocks: int
+    elementary: int
+    diagnostics: tuple[Diagnostic, ...]
+    times: Times
+    cutting_length: float
+    rapid_length: float
+    tools: tuple[int, ...]
+    missing_tools: tuple[int, ...]
+    reach: Reach
+    final: tuple[float, float, float]  # program frame
+    machine_final: tuple[float, float, float]
+
+    @property
+    def errors(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics that refuse the run."""
+        return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)

@@ -1,0 +1,40 @@
+"""The box around an arc, against figures worked out by hand."""
+
+import math
+
+import pytest
+
+from core.geometry.extent import arc_extent, arc_sweep
+
+
+def test_convex_corner_of_a_shaft_is_a_clockwise_quarter() -> None:
+    start, sweep = arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=True)
+    assert start == pytest.approx(0.0)
+    assert sweep == pytest.approx(math.pi / 2)
+
+
+def test_the_other_way_round_is_three_quarters_backwards() -> None:
+    _, sweep = arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=False)
+    assert sweep == pytest.approx(-3 * math.pi / 2)
+
+
+def test_start_and_end_in_one_point_is_a_full_circle() -> None:
+    assert arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=True)[1] == pytest.approx(2 * math.pi)
+    assert arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=False)[1] == pytest.approx(-2 * math.pi)
+
+
+def test_a_quarter_reaches_no_further_than_its_ends() -> None:
+    assert arc_extent(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=True) == pytest.approx(
+        (0.1, 0.25, -0.15, 0.0)
+    )
+
+
+def test_a_barrel_bulges_past_both_ends() -> None:
+    # R .635 over a chord of .3 from (.2, -.2) to (.2, -.5): centre r .2 - sqrt(.635² - .15²), crown at +.635.
+    cx = 0.2 - math.sqrt(0.635**2 - 0.15**2)
+    box = arc_extent(0.2, -0.2, 0.2, -0.5, cx, -0.35, clockwise=True)
+    assert box == pytest.approx((0.2, cx + 0.635, -0.5, -0.2))
+
+
+def test_a_full_circle_reaches_its_four_quadrants() -> None:
+    assert arc_extent(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=False) == pytest.approx((0.0, 2.0, -1.0, 1.0))

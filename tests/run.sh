@@ -1,0 +1,20 @@
+#!/bin/sh
+# Runs everything that must hold: format, lint, types, import contracts, tests. Does all the set-up it needs.
+# Usage: sh tests/run.sh [arguments for pytest]
+set -eu
+. "$(dirname -- "$0")/../resources/setup/environment.sh"
+
+# shellcheck disable=SC2086
+system_packages ca-certificates $QT_LIBRARIES
+find_python
+python_environment "[dev]"
+
+cd "$ROOT"
+PATH="$PYTHON_ENV/bin:$PATH"
+export QT_QPA_PLATFORM=offscreen
+ruff format --check --quiet .
+ruff check --quiet .
+mypy
+lint-imports
+coverage erase
+pytest -n 2 --cov --cov-report=term "$@"
