@@ -1,0 +1,10 @@
+"""What the product ships besides code: machine files, sample programs, fonts."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+
+def machine_file(name: str) -> str:
+    """The text of a shipped machine file, such as ``gt75.toml``. Raises FileNotFoundError."""
+    return files(__name__).joinpath("machines", name).read_text(encoding="utf-8")

@@ -44,6 +44,7 @@ class OutputModel:
 
     name: str
     safe: bool | None
+    terminal: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,3 +98,5 @@ class Machine:
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
     sim: Mapping[str, object] = field(default_factory=dict)
     source: str = ""  # the file it came from
+    clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
+    inch: bool = True  # what its builder counts in

@@ -1,0 +1,109 @@
+"""Every key that a machine file may hold, with its range. Ranges are in the model's units: mm, s, degrees."""
+
+from __future__ import annotations
+
+from core.machine.schema import Field, Kind
+from core.machine.units import Unit
+
+BACKENDS = ("sim",)
+AXES = ("X", "Z", "C")
+
+_NUMBER, _WHOLE, _FLAG, _TEXT, _CHOICE = Kind.NUMBER, Kind.WHOLE, Kind.FLAG, Kind.TEXT, Kind.CHOICE
+
+MACHINE = (
+    Field("name", _TEXT),
+    Field("units", _CHOICE, choices=("inch", "mm")),
+    Field("backend", _CHOICE, choices=BACKENDS, default="sim"),
+    Field("commit_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.2),
+    Field("lookahead_ms", _NUMBER, Unit.MILLISECONDS, 0.1, 10.0),
+    Field("low_water_ms", _NUMBER, Unit.MILLISECONDS, 0.005, 2.0),
+    Field("lease_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 0.5),
+    Field("setpoint_ms", _NUMBER, Unit.MILLISECONDS, 0.0001, 0.02),
+)
+LIMITS = (
+    Field("max_feed", _NUMBER, Unit.FEED, 0.1, 1000.0),
+    Field("manual_rapid", _NUMBER, Unit.FEED, 0.1, 500.0),
+    Field("resolution", _NUMBER, Unit.LENGTH, 1e-5, 0.02),
+    Field("clearance", _NUMBER, Unit.LENGTH, 0.1, 100.0),
+)
+SLIDE = (
+    Field("travel", Kind.PAIR, Unit.LENGTH, -5000.0, 5000.0),
+    Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0),
+    Field("amax", _NUMBER, Unit.ACCEL, 10.0, 30000.0),
+    Field("count", _NUMBER, Unit.LENGTH, 1e-5, 0.02),
+    Field("fe_window", _NUMBER, Unit.LENGTH, 0.005, 10.0),
+    Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
+    Field("in_pos", _NUMBER, Unit.LENGTH, 1e-5, 0.5),
+    Field("absolute", _FLAG, default=False),
+)
+HOME = (
+    Field("order", _WHOLE, low=1, high=9),
+    Field("speed", _NUMBER, Unit.FEED, 0.1, 200.0),
+)
+C_AXIS = (
+    Field("enabled", _FLAG),
+    Field("vmax", _NUMBER, Unit.TURNS_PER_MINUTE, 6.0, 6000.0),
+    Field("amax", _NUMBER, Unit.TURNS_PER_MINUTE_SECOND, 36.0, 360000.0),
+    Field("count", _NUMBER, Unit.DEGREES, 0.0001, 1.0),
+    Field("fe_window", _NUMBER, Unit.DEGREES, 0.05, 90.0),
+    Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
+    Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0),
+    Field("absolute", _FLAG, default=False),
+)
+C_OPTION = (Field("feedback", _FLAG, default=False),)
+SPINDLE = (
+    Field("rpm", Kind.PAIR, Unit.RPM, 1.0, 20000.0),
+    Field("accel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0),
+    Field("decel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0),
+    Field("at_speed_pct", _NUMBER, Unit.PERCENT, 0.005, 0.25),
+    Field("at_speed_s", _NUMBER, Unit.SECONDS, 0.05, 5.0),
+    Field("timeout_s", _NUMBER, Unit.SECONDS, 0.5, 60.0),
+    Field("stop_below", _NUMBER, Unit.RPM, 0.5, 50.0),
+    Field("encoder_ppr", _WHOLE, low=0, high=100000),
+)
+COLLET = (
+    Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0),
+    Field("close_s", _NUMBER, Unit.SECONDS, 0.01, 10.0),
+)
+INTERLOCKS = (
+    Field("spindle_with_collet_open", _FLAG, default=False),
+    Field("unclamp_while_turning", _FLAG, default=True),
+    Field("two_hand_start", _FLAG, default=True),
+)
+OUTPUT = (
+    Field("at", _TEXT),
+    Field("safe", _CHOICE, choices=(True, False, "keep")),
+)
+INPUT = (
+    Field("at", _TEXT),
+    Field("active", _CHOICE, choices=("high", "low"), default="high"),
+)
+M_CODE = (
+    Field("output", _TEXT),
+    Field("on", _FLAG),
+    Field("enabled", _FLAG, default=True),
+)
+SIM = (
+    Field("seed", _WHOLE, low=0, high=2**31, default=1),
+    Field("realtime", _FLAG, default=True),
+)
+FAULT = (
+    Field("at", _NUMBER, Unit.SECONDS, 0.0, 1e6),
+    Field("what", _TEXT),
+    Field("axis", _CHOICE, choices=AXES, default=""),
+    Field("value", _NUMBER, low=-1e9, high=1e9, default=0.0),
+)
+
+# Plain tables: path and keys. axis, io, m_codes and sim.faults have names or numbers of the owner's in them.
+TABLES = (
+    ("limits", LIMITS),
+    ("c_axis", C_OPTION),
+    ("spindle", SPINDLE),
+    ("collet", COLLET),
+    ("interlocks", INTERLOCKS),
+)
+TOP = ("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim")
+MAY_BE_MISSING = ("c_axis", "interlocks", "m_codes", "sim")
+
+# M codes with a meaning of their own; the machine file cannot assign them.
+FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

@@ -1,0 +1,151 @@
+"""Machine file to machine: one pass, all errors, no half-built machine."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import resources
+from core.machine import rules, signals
+from core.machine.errors import Finding, MachineFileError
+from core.machine.model import (
+    Axis,
+    InputModel,
+    Interlocks,
+    Machine,
+    OutputModel,
+    SpindleModel,
+    Timing,
+)
+from core.machine.reader import Reading
+
+SHIPPED = "gt75.toml"
+
+
+def load_machine(path: Path | None = None) -> Machine:
+    """The machine that ``path`` describes; None: the shipped simulated lathe.
+
+    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
+    """
+    if path is None:
+        return parse_machine(resources.machine_file(SHIPPED), SHIPPED)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        reason = error.strerror or "cannot be read"
+        raise MachineFileError(
+            [Finding("file", "", f"{reason}; check name and rights")], str(path)
+        ) from error
+    except UnicodeDecodeError as error:
+        raise MachineFileError(
+            [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
+        ) from error
+    return parse_machine(text, str(path))
+
+
+def parse_machine(text: str, source: str) -> Machine:
+    """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise MachineFileError([Finding("TOML", "", str(error))], source) from error
+    reading = Reading(data)
+    findings = [*reading.findings, *rules.broken(reading.values), *signals.broken(reading)]
+    if findings:
+        raise MachineFileError(findings, source)
+    return _machine(reading, source)
+
+
+def _machine(reading: Reading, source: str) -> Machine:
+    values = reading.values
+    return Machine(
+        name=values.text("machine.name"),
+        backend=values.text("machine.backend"),
+        axes=(_axis(reading, "X"), _axis(reading, "Z"), _axis(reading, "C")),
+        c_enabled=values.flag("axis.C.enabled"),
+        c_feedback=values.flag("c_axis.feedback"),
+        spindle=_spindle(reading),
+        timing=_timing(reading),
+        interlocks=Interlocks(
+            spindle_with_collet_open=values.flag("interlocks.spindle_with_collet_open"),
+            unclamp_while_turning=values.flag("interlocks.unclamp_while_turning"),
+            two_hand_start=values.flag("interlocks.two_hand_start"),
+        ),
+        max_feed=values.number("limits.max_feed"),
+        manual_rapid=values.number("limits.manual_rapid"),
+        resolution=values.number("limits.resolution"),
+        outputs={name: _output(reading, name) for name in reading.outputs},
+        inputs={name: _input(reading, name) for name in reading.inputs},
+        m_codes={code: (output, on) for code, output, on in signals.enabled_codes(reading)},
+        sim=_sim(reading),
+        source=source,
+        clearance=values.number("limits.clearance"),
+        inch=bool(values.inch),
+    )
+
+
+def _axis(reading: Reading, name: str) -> Axis:
+    values, path = reading.values, f"axis.{name}"
+    homed = values.has(f"{path}.home.order")
+    return Axis(
+        name=name,
+        travel=values.pair(f"{path}.travel") if name != "C" else None,
+        vmax=values.number(f"{path}.vmax"),
+        amax=values.number(f"{path}.amax"),
+        count=values.number(f"{path}.count"),
+        following_window=values.number(f"{path}.fe_window"),
+        following_time=values.number(f"{path}.fe_time_ms"),
+        in_position=values.number(f"{path}.in_pos"),
+        absolute=values.flag(f"{path}.absolute"),
+        home_order=int(values.number(f"{path}.home.order")) if homed else 0,
+        home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
+    )
+
+
+def _spindle(reading: Reading) -> SpindleModel:
+    values = reading.values
+    low, high = values.pair("spindle.rpm")
+    return SpindleModel(
+        rpm_min=low,
+        rpm_max=high,
+        accel=values.number("spindle.accel_rpm_s"),
+        decel=values.number("spindle.decel_rpm_s"),
+        at_speed=values.number("spindle.at_speed_pct"),
+        at_speed_time=values.number("spindle.at_speed_s"),
+        timeout=values.number("spindle.timeout_s"),
+        stop_below=values.number("spindle.stop_below"),
+        encoder_ppr=int(values.number("spindle.encoder_ppr")),
+    )
+
+
+def _timing(reading: Reading) -> Timing:
+    values = reading.values
+    return Timing(
+        commit=values.number("machine.commit_ms"),
+        lookahead=values.number("machine.lookahead_ms"),
+        low_water=values.number("machine.low_water_ms"),
+        lease=values.number("machine.lease_ms"),
+        setpoint=values.number("machine.setpoint_ms"),
+        collet_open=values.number("collet.open_s"),
+        collet_close=values.number("collet.close_s"),
+    )
+
+
+def _output(reading: Reading, name: str) -> OutputModel:
+    path = f"io.out.{name}"
+    safe = reading.values.found[f"{path}.safe"]
+    return OutputModel(name, None if safe == "keep" else bool(safe), reading.values.text(f"{path}.at"))
+
+
+def _input(reading: Reading, name: str) -> InputModel:
+    values, path = reading.values, f"io.in.{name}"
+    return InputModel(name, values.text(f"{path}.at"), values.text(f"{path}.active") == "low")
+
+
+def _sim(reading: Reading) -> dict[str, object]:
+    values = reading.values
+    keys = ("at", "what", "axis", "value")
+    faults = [
+        {key: values.found[f"sim.faults.{index}.{key}"] for key in keys} for index in range(reading.faults)
+    ]
+    return {"seed": int(values.number("sim.seed")), "realtime": values.flag("sim.realtime"), "faults": faults}

@@ -1,0 +1,104 @@
+"""Reads a parsed machine file against the declared tables: every value by its path, every finding at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.machine import fields
+from core.machine.errors import Finding
+from core.machine.schema import Field, Values, joined, read_table, unknown_keys, written
+
+
+class Reading:
+    """Values and findings of one file, and the names that its owner gave to signals and M codes."""
+
+    def __init__(self, data: Mapping[str, object]) -> None:
+        self.data = data
+        self.values = Values(_inch(data))
+        self.outputs: list[str] = []
+        self.inputs: list[str] = []
+        self.m_codes: list[str] = []
+        self.faults = 0
+        self.findings = _unknown_tables(data)
+        self._read()
+
+    def _read(self) -> None:
+        self._table("machine", fields.MACHINE)
+        for path, keys in fields.TABLES:
+            self._table(path, keys)
+        self._axes()
+        io = self._parent("io", ("in", "out"))
+        self.outputs = self._named(io.get("out"), "io.out", fields.OUTPUT)
+        self.inputs = self._named(io.get("in"), "io.in", fields.INPUT)
+        self.m_codes = self._named(self.data.get("m_codes", {}), "m_codes", fields.M_CODE)
+        self._sim()
+
+    def _table(self, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()) -> None:
+        table = self.data.get(path, {} if path in fields.MAY_BE_MISSING else None)
+        self._keys(table, path, keys, children)
+
+    def _keys(
+        self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()
+    ) -> None:
+        if table is None:
+            self.findings.append(
+                Finding(f"[{path}]", "", "missing; the control cannot do without this table")
+            )
+        else:
+            self.findings += read_table(table, keys, path, self.values, children)
+
+    def _parent(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
+        """A table that holds tables; an empty one where it is none."""
+        table = self.data.get(path, {})
+        if not isinstance(table, dict):
+            self.findings.append(Finding(path, written(table), f"expected a table, [{path}]"))
+            return {}
+        self.findings += unknown_keys(table, list(known), path)
+        return table
+
+    def _axes(self) -> None:
+        axes = self._parent("axis", fields.AXES)
+        for name in ("X", "Z"):
+            path = f"axis.{name}"
+            table = axes.get(name)
+            self._keys(table, path, fields.SLIDE, ("home",))
+            if isinstance(table, dict) and "home" in table:
+                self._keys(table["home"], f"{path}.home", fields.HOME)
+        self._keys(axes.get("C"), "axis.C", fields.C_AXIS)
+
+    def _named(self, table: object, path: str, keys: tuple[Field, ...]) -> list[str]:
+        """Reads tables under names of the owner's choice; returns those names."""
+        if not isinstance(table, dict):
+            self._keys(table, path, ())
+            return []
+        for name, entry in table.items():
+            self._keys(entry, joined(path, name), keys)
+        return list(table)
+
+    def _sim(self) -> None:
+        self._table("sim", fields.SIM, ("faults",))
+        sim = self.data.get("sim")
+        faults = sim.get("faults", []) if isinstance(sim, dict) else []
+        if not isinstance(faults, list):
+            self.findings.append(Finding("sim.faults", written(faults), "expected a list of tables"))
+            return
+        self.faults = len(faults)
+        for index, fault in enumerate(faults):
+            self._keys(fault, f"sim.faults.{index}", fields.FAULT)
+
+
+def _inch(data: Mapping[str, object]) -> bool | None:
+    """Whether the file counts in inches; None where it does not say so rightly: a finding elsewhere."""
+    machine = data.get("machine")
+    units = machine.get("units") if isinstance(machine, dict) else None
+    return units == "inch" if units in ("inch", "mm") else None
+
+
+def _unknown_tables(data: Mapping[str, object]) -> list[Finding]:
+    findings = []
+    for found in unknown_keys(data, list(fields.TOP), ""):
+        known = f"this version knows {', '.join(f'[{name}]' for name in fields.TOP)}"
+        guess = found.expected.removeprefix("unknown key; ")
+        near = f"{guess} " if guess.startswith("did") else ""
+        findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}"))
+    return findings

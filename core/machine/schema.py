@@ -1,0 +1,181 @@
+"""How a table of the machine file is declared, and the one reader that checks any of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from enum import Enum
+from math import inf
+from typing import TypeGuard
+
+from core.machine.errors import Finding
+from core.machine.units import LENGTHS, Unit, shown, to_file, to_model
+
+Pair = tuple[float, float]
+Value = float | bool | str | Pair
+
+
+class Kind(Enum):
+    """The shapes a value may have; the text says it in a finding."""
+
+    NUMBER = "a number"
+    WHOLE = "a whole number"
+    FLAG = "true or false"
+    TEXT = "a text in quotes"
+    PAIR = "two numbers, [low, high]"
+    CHOICE = "one of"
+
+
+_HUGE = 10**300
+_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR))
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One key: kind, unit, range in the model's unit, and the default; None: the file must say it."""
+
+    key: str
+    kind: Kind
+    unit: Unit = Unit.PLAIN
+    low: float = 0.0
+    high: float = 0.0
+    default: Value | None = None
+    choices: tuple[str | bool, ...] = ()
+
+
+class Values:
+    """Values by path in the model's units; lengths are known only once the file's unit is."""
+
+    def __init__(self, inch: bool | None) -> None:
+        self.inch = inch
+        self.found: dict[str, Value] = {}
+
+    def has(self, *paths: str) -> bool:
+        return all(path in self.found for path in paths)
+
+    def number(self, path: str) -> float:
+        value = self.found[path]
+        if isinstance(value, str | tuple):
+            raise TypeError(f"{path} holds no number")
+        return float(value)
+
+    def flag(self, path: str) -> bool:
+        return self.found[path] is True
+
+    def text(self, path: str) -> str:
+        return str(self.found[path])
+
+    def pair(self, path: str) -> Pair:
+        value = self.found[path]
+        if not isinstance(value, tuple):
+            raise TypeError(f"{path} holds no pair")
+        return value
+
+
+def written(value: object) -> str:
+    """A value the way TOML writes it, short enough for a sentence."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def joined(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[Finding]:
+    """A finding for every key nobody reads, with the nearest one that is read."""
+    found = []
+    for key in table:
+        if key not in known:
+            near = get_close_matches(key, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}"
+            found.append(Finding(joined(path, key), "", f"unknown key; {hint}"))
+    return found
+
+
+def read_table(
+    table: object, fields: tuple[Field, ...], path: str, values: Values, children: tuple[str, ...] = ()
+) -> list[Finding]:
+    """Puts every good value of ``table`` into ``values`` under ``path``; returns what is wrong.
+
+    ``children`` are tables inside that somebody else reads.
+    """
+    if not isinstance(table, dict):
+        return [Finding(path, written(table), f"expected a table, [{path}]")]
+    findings = unknown_keys(table, [*(field.key for field in fields), *children], path)
+    for field in fields:
+        place = joined(path, field.key)
+        raw = table.get(field.key)
+        if raw is None:
+            findings += _default(field, place, values)
+        elif problem := _problem(raw, field, values.inch):
+            findings.append(Finding(place, written(raw), f"expected {problem}"))
+        elif values.inch is not None or field.unit not in LENGTHS:
+            values.found[place] = _converted(raw, field, bool(values.inch))
+    return findings
+
+
+def _default(field: Field, place: str, values: Values) -> list[Finding]:
+    if field.default is None:
+        return [Finding(place, "", f"missing; expected {_expected(field, values.inch)}")]
+    values.found[place] = field.default
+    return []
+
+
+def _number(raw: object) -> TypeGuard[int | float]:
+    return isinstance(raw, int | float) and not isinstance(raw, bool)
+
+
+def _shape_is_right(raw: object, field: Field) -> bool:
+    match field.kind:
+        case Kind.NUMBER:
+            return _number(raw)
+        case Kind.WHOLE:
+            return isinstance(raw, int) and not isinstance(raw, bool)
+        case Kind.FLAG:
+            return isinstance(raw, bool)
+        case Kind.TEXT:
+            return isinstance(raw, str) and bool(raw.strip())
+        case Kind.PAIR:
+            return isinstance(raw, list) and len(raw) == 2 and all(_number(part) for part in raw)
+        case Kind.CHOICE:
+            return any(raw is choice or (isinstance(raw, str) and raw == choice) for choice in field.choices)
+
+
+def _parts(raw: object) -> list[float]:
+    """The numbers in a value: none, one or two. A whole number too large for a float counts as endless."""
+    numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
+    return [float(part) if abs(part) < _HUGE else inf for part in numbers]
+
+
+def _problem(raw: object, field: Field, inch: bool | None) -> str:
+    """What was expected instead of ``raw``, or nothing. NaN fails every range."""
+    if not _shape_is_right(raw, field):
+        return _expected(field, inch)
+    if field.kind not in _NUMERIC or inch is None:
+        return ""
+    slack = 1e-9 * max(abs(field.low), abs(field.high))  # a bound written in inches is no binary number
+    parts = _parts(raw)
+    inside = all(
+        field.low - slack <= to_model(part, field.unit, inch) <= field.high + slack for part in parts
+    )
+    return "" if inside and parts == sorted(set(parts)) else _expected(field, inch)
+
+
+def _converted(raw: object, field: Field, inch: bool) -> Value:
+    if isinstance(raw, bool | str):
+        return raw
+    numbers = [to_model(part, field.unit, inch) for part in _parts(raw)]
+    return (numbers[0], numbers[1]) if field.kind is Kind.PAIR else numbers[0]
+
+
+def _expected(field: Field, inch: bool | None) -> str:
+    if field.kind is Kind.CHOICE:
+        return "one of " + ", ".join(written(choice) for choice in field.choices)
+    if field.kind not in _NUMERIC or inch is None:
+        return str(field.kind.value)
+    low = f"{to_file(field.low, field.unit, inch):.6g}"
+    return f"{field.kind.value}, {low}…{shown(field.high, field.unit, inch)}"

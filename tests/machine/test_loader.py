@@ -1,0 +1,208 @@
+"""The machine file: what it becomes, and everything that is refused, by path."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import resources
+from core.machine.errors import Finding, MachineFileError
+from core.machine.loader import load_machine, parse_machine
+
+SHIPPED = resources.machine_file("gt75.toml")
+
+
+def changed(old: str, new: str) -> str:
+    """The shipped file with one text replaced, which must be there."""
+    assert old in SHIPPED
+    return SHIPPED.replace(old, new, 1)
+
+
+def findings(text: str) -> tuple[Finding, ...]:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "test.toml")
+    return caught.value.errors
+
+
+def only(text: str) -> Finding:
+    found = findings(text)
+    assert len(found) == 1, found
+    return found[0]
+
+
+def test_shipped_lathe_in_model_units() -> None:
+    machine = load_machine(None)
+    x, z, c = machine.axes
+    assert (x.name, z.name, c.name) == ("X", "Z", "C")
+    assert x.travel == pytest.approx((-101.6, 101.6))
+    assert z.travel == pytest.approx((-152.4, 152.4))
+    assert (x.vmax, x.amax) == pytest.approx((127.0, 3048.0))  # 300 in/min, 120 in/s²
+    assert (x.count, machine.resolution) == pytest.approx((0.00127, 0.00127))
+    assert c.travel is None
+    assert c.vmax == pytest.approx(1200.0)  # 200 rpm in degrees/s
+    assert machine.max_feed == 300 * 25.4 / 60  # the very number an F300 word gives
+    assert machine.manual_rapid == 100 * 25.4 / 60
+
+
+def test_shipped_times_spindle_and_interlocks() -> None:
+    machine = load_machine(None)
+    timing, spindle = machine.timing, machine.spindle
+    assert (timing.commit, timing.lookahead, timing.low_water, timing.lease) == (0.03, 1.0, 0.08, 0.2)
+    assert (timing.setpoint, timing.collet_open, timing.collet_close) == (0.001, 0.25, 0.3)
+    assert (spindle.rpm_min, spindle.rpm_max, spindle.accel, spindle.decel) == (50, 3500, 1500, 2500)
+    assert (spindle.at_speed, spindle.at_speed_time, spindle.timeout) == (0.05, 0.3, 5)
+    assert not machine.interlocks.spindle_with_collet_open
+    assert machine.interlocks.unclamp_while_turning
+    assert machine.interlocks.two_hand_start
+    assert all(axis.absolute for axis in machine.axes)
+
+
+def test_shipped_signals() -> None:
+    machine = load_machine(None)
+    assert machine.outputs["collet"].safe is None
+    assert machine.outputs["coolant"].safe is False
+    assert machine.inputs["estop"].active_low
+    assert {"TB2-5", "TB2-7", "TB2-9", *(str(n) for n in range(1, 17))} <= set(machine.inputs)
+    assert machine.m_codes[25] == ("catcher", True)
+    assert machine.m_codes[16] == ("live1", False)
+    assert 11 not in machine.m_codes  # the loader option is off until its owner enables it
+
+
+def test_metric_file_keeps_millimetres(tmp_path: Path) -> None:
+    text = changed('units = "inch"', 'units = "mm"').replace("travel = [-4.0, 4.0]", "travel = [-100, 100]")
+    text = text.replace("clearance = 1.25", "clearance = 30")
+    path = tmp_path / "metric.toml"
+    path.write_text(
+        text.replace("fe_window = 0.08", "fe_window = 2")
+        .replace("0.00005", "0.001")
+        .replace("0.0002", "0.005")
+    )
+    machine = load_machine(path)
+    assert machine.axes[0].travel == (-100, 100)
+    assert machine.axes[0].vmax == 5.0  # 300 mm/min
+    assert machine.source == str(path)
+
+
+def test_enabled_loader_code_is_there() -> None:
+    text = SHIPPED.replace("on = false, enabled = false", "on = false, enabled = true")
+    text = text.replace('11 = { output = "loader_feed", on = true, enabled = false }', "")
+    assert parse_machine(text, "t").m_codes[10] == ("loader_feed", False)
+
+
+def test_unknown_key_names_the_nearest() -> None:
+    found = only(changed("vmax = 300\n", "vmax = 300\nvmaxx = 3\n"))
+    assert found.path == "axis.X.vmaxx"
+    assert "did you mean vmax?" in found.expected
+
+
+def test_unknown_table_says_which_are_known() -> None:
+    found = only(SHIPPED + "\n[canopen]\nbitrate = 1000000\n")
+    assert found.path == "[canopen]"
+    assert "[machine], [limits], [axis]" in found.expected
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ('units = "inch"', 'units = "furlong"', "machine.units", '"inch", "mm"'),
+        ('backend = "sim"', 'backend = "canopen"', "machine.backend", '"sim"'),
+        ('name = "GT-75"', 'name = ""', "machine.name", "a text"),
+        ("commit_ms = 30", 'commit_ms = "30"', "machine.commit_ms", "1…200 ms"),
+        ("commit_ms = 30", "commit_ms = true", "machine.commit_ms", "1…200 ms"),
+        ("amax = 120", "amax = nan", "axis.X.amax", "in/s²"),
+        ("amax = 120", "amax = " + "9" * 400, "axis.X.amax", "in/s²"),
+        ("vmax = 300", "vmax = 30000", "axis.X.vmax", "in/min"),
+        ("fe_window = 0.08", "fe_window = 4294967295", "axis.X.fe_window", "in"),
+        ("travel = [-4.0, 4.0]", "travel = [4.0, -4.0]", "axis.X.travel", "[low, high]"),
+        ("travel = [-4.0, 4.0]", "travel = [-4.0]", "axis.X.travel", "two numbers"),
+        ("encoder_ppr = 1024", "encoder_ppr = 1024.5", "spindle.encoder_ppr", "a whole number"),
+        ("two_hand_start = true", "two_hand_start = 1", "interlocks.two_hand_start", "true or false"),
+        ('active = "low"', 'active = "down"', "io.in.estop.active", '"high", "low"'),
+        ('safe = "keep"', "safe = 0", "io.out.collet.safe", 'true, false, "keep"'),
+        ("faults = []", "faults = [{ at = -1, what = 'jam' }]", "sim.faults.0.at", "0…"),
+        ("[c_axis]\nfeedback = false", "c_axis = 3", "axis.C.c_axis", "unknown key"),
+    ],
+)
+def test_wrong_value_is_named_with_what_was_expected(old: str, new: str, path: str, expected: str) -> None:
+    found = only(changed(old, new))
+    assert found.path == path
+    assert expected in str(found)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ("count = 0.00005", "count = 0.000001", "axis.X.vmax", "counts/s"),
+        ("lease_ms = 200", "lease_ms = 260", "machine.lease_ms", "limits.clearance"),
+        ("travel = [-4.0, 4.0]", "travel = [1.0, 4.0]", "axis.X.travel", "0 must lie inside"),
+        ("max_feed = 300", "max_feed = 301", "limits.max_feed", "axis.X.vmax = 300 in/min"),
+        ("low_water_ms = 80", "low_water_ms = 20", "machine.commit_ms", "run dry"),
+        ("timeout_s = 5", "timeout_s = 2.6", "spindle.timeout_s", "2.63 s"),  # 3500 / 1500 + .3
+        ("rpm = [50, 3500]", "rpm = [4, 3500]", "spindle.stop_below", "counts as stopped"),
+        ('{ at = "IN-3" }', '{ at = "OUT-1" }', "io.in.hold.at", "io.out.coolant is on this one"),
+        ('coolant = { at = "OUT-1", safe = false }', "", "io.out.coolant", "M08"),
+        ('start = { at = "IN-2" }', "", "io.in.start", "two-hand relay"),
+        ('collet_closed = { at = "IN-5" }', "", "io.in.collet_closed", "collet open"),
+        ('16 = { output = "live1"', '16 = { output = "mill"', "m_codes.16.output", "live1"),
+        ('25 = { output = "catcher"', '8 = { output = "catcher"', "m_codes.8", "meaning of its own"),
+        ('25 = { output = "catcher"', '250 = { output = "catcher"', "m_codes.250", "0…99"),
+    ],
+)
+def test_values_that_do_not_go_together(old: str, new: str, path: str, expected: str) -> None:
+    found = [finding for finding in findings(changed(old, new)) if finding.path == path]
+    assert found
+    assert expected in str(found[0])
+
+
+def test_axis_that_is_not_absolute_needs_homing() -> None:
+    found = only(changed("absolute = true", "absolute = false"))
+    assert found.path == "axis.X.absolute"
+    homing = "absolute = false\nhome = { order = 2, speed = 60 }"
+    machine = parse_machine(changed("absolute = true ", homing), "t")
+    assert (machine.axes[0].home_order, machine.axes[0].home_speed) == (2, pytest.approx(25.4))
+
+
+def test_two_axes_may_not_home_at_once() -> None:
+    text = SHIPPED.replace("in_pos = 0.0002\n", "in_pos = 0.0002\nhome = { order = 1, speed = 60 }\n")
+    assert only(text).path == "axis.Z.home.order"
+
+
+def test_output_without_safe_state_is_refused() -> None:
+    found = only(changed('catcher = { at = "OUT-3", safe = false }', 'catcher = { at = "OUT-3" }'))
+    assert found.path == "io.out.catcher.safe"
+    assert "missing" in found.expected
+
+
+def test_output_that_nothing_switches_off_is_refused() -> None:
+    found = only(changed('26 = { output = "catcher", on = false }', ""))
+    assert found.path == "m_codes.25"
+    assert "no M code switches it off" in found.expected
+
+
+def test_all_errors_come_in_one_pass() -> None:
+    text = changed("amax = 120", "amax = 0").replace("lease_ms = 200", "lease_ms = 9")
+    text = text.replace("seed = 1", "sed = 1").replace("max_feed = 300", "")
+    assert {finding.path for finding in findings(text)} == {
+        "axis.X.amax",
+        "machine.lease_ms",
+        "sim.sed",
+        "limits.max_feed",
+    }
+
+
+def test_empty_file_names_every_missing_table() -> None:
+    paths = {finding.path for finding in findings("")}
+    assert {"[machine]", "[limits]", "[axis.X]", "[spindle]", "[io.out]"} <= paths
+
+
+def test_broken_toml_tells_the_line() -> None:
+    assert "line 2" in only("[machine]\nname = \n").expected
+
+
+def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
+    with pytest.raises(MachineFileError, match="No such file"):
+        load_machine(tmp_path / "none.toml")
+    (tmp_path / "latin.toml").write_bytes(b'name = "\xff"')
+    with pytest.raises(MachineFileError, match="UTF-8"):
+        load_machine(tmp_path / "latin.toml")
