@@ -19,6 +19,8 @@ from core.machine.model import (
 )
 from core.machine.reader import Reading
 
+__all__ = ["MachineFileError", "load_machine", "parse_machine"]
+
 SHIPPED = "gt75.toml"
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from core.machine.errors import Finding, MachineFileError
-from core.machine.loader import load_machine, parse_machine
+from core.machine.errors import Finding
+from core.machine.load import MachineFileError, load_machine, parse_machine
 
 SHIPPED = resources.machine_file("gt75.toml")
 
