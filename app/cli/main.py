@@ -37,7 +37,9 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
         description="The operator desk for OmniTurn-style CNC lathes. Without a command: the operator screen.",
     )
     parser.add_argument("--version", action="store_true", help="print the version")
-    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)")
+    parser.add_argument(
+        "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
+    )
     parser.add_argument("--program", metavar="FILE", help="program that the screen loads at the start")
     subparsers = parser.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", parser_class=_Parser

@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 
 if TYPE_CHECKING:
-    from core.interpreter.setup import Setup
+    from core.interpreter.setup import SecondaryOffset, Setup, ToolOffset
     from core.language.source import Source
     from core.machine.model import Machine
+
+    SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
+    Offsets = tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]
 
 DIALECTS = ("omniturn", "klartext", "sinumerik")
 _BY_ENDING = {".h": "klartext", ".mpf": "sinumerik", ".spf": "sinumerik"}
@@ -20,7 +23,9 @@ _BY_ENDING = {".h": "klartext", ".mpf": "sinumerik", ".spf": "sinumerik"}
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
     """Machine, dialect, offsets, inputs and switches, as interfaces.md names them."""
-    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)")
+    parser.add_argument(
+        "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
+    )
     parser.add_argument("--dialect", choices=DIALECTS, help="default: by file ending, else omniturn")
     parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
     parser.add_argument("--inputs", metavar="FILE", help="input states for M91 to M97")
@@ -32,22 +37,10 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Circumstances:
-    """Machine and setup of one command call, and which tool offsets somebody has entered."""
+    """Machine and setup of one command call."""
 
     machine: Machine
     setup: Setup
-    tools_set: frozenset[int]
-
-
-def dialect_of(path: Path, args: argparse.Namespace) -> str:
-    """The dialect that was asked for, or that the file's ending tells.
-
-    Raises CommandError for a dialect that cannot be run yet.
-    """
-    dialect: str = args.dialect or _BY_ENDING.get(path.suffix.lower(), "omniturn")
-    if dialect != "omniturn":
-        raise CommandError(f"{path}: {dialect} programs cannot be read yet; only omniturn programs can")
-    return dialect
 
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
@@ -55,13 +48,45 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
     from app.compose import read_machine, setup_for
 
     machine = read_machine(args.machine)
-    tools, secondary = _offsets(args)
+    tools, secondary = _offsets(args.offsets)
+    inputs = _inputs(args.inputs)
     setup = setup_for(
         machine,
         tools=tools,
         secondary=secondary,
-        inputs=_inputs(args),
+        inputs=inputs,
         block_delete=args.block_delete,
         strict=args.strict,
     )
-    return Circumstances(machine, setup, frozenset(tools))
+    return Circumstances(machine, setup)
+
+
+def _offsets(path: str | None) -> Offsets:
+    from app.compose import stored_offsets
+
+    if path is None:
+        return stored_offsets()
+    from app.cli.offset_file import read_offsets
+
+    return read_offsets(Path(path))
+
+
+def _inputs(path: str | None) -> dict[str, bool]:
+    if path is None:
+        return {}
+    from app.cli.inputs_file import read_inputs
+
+    return read_inputs(Path(path))
+
+
+def read_source(path: Path, args: argparse.Namespace) -> Source:
+    """The program text; raises CommandError when the file cannot be read or its dialect is not built yet."""
+    from core.language.source import SourceError, load_source
+
+    dialect = args.dialect or _BY_ENDING.get(path.suffix.lower(), "omniturn")
+    if dialect != "omniturn":
+        raise CommandError(f"{path}: {dialect} programs cannot be read yet; only omniturn programs can")
+    try:
+        return load_source(path)
+    except SourceError as error:
+        raise CommandError(str(error)) from error

@@ -1,0 +1,65 @@
+"""``turndesk expand FILE``: the elementary blocks that the control would execute."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.errors import EXIT_ERRORS, EXIT_OK
+from app.cli.options import add_program_options, circumstances, read_source
+from app.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from app.cli.options import SubParsers
+    from core.interpreter.blocks import Block
+
+_HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("expand", help="show the elementary blocks that would be executed")
+    parser.add_argument("file", metavar="FILE")
+    add_program_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the blocks in the order of execution; diagnostics go to stderr, 1 when there are errors."""
+    from app.cli.shown import block_json
+    from core.proving.timeline import Timeline, timed_blocks
+
+    path = Path(args.file)
+    around = circumstances(args)
+    source = read_source(path, args)
+    timeline = Timeline.of(source, around.setup, around.machine)
+    if not args.json:
+        sys.stdout.write(_HEAD)
+    with Progress(f"expanding {path.name}") as progress:
+        for block, t0, t1 in timed_blocks(timeline):
+            if args.json:
+                shown = json.dumps(block_json(block, source.lines[block.line - 1], t0, t1)) + "\n"
+            else:
+                shown = _row(block, t0)
+            sys.stdout.write(shown)
+            progress.reach(block.n)
+    return report_diagnostics(path, timeline)
+
+
+def report_diagnostics(path: Path, timeline: Timeline) -> int:
+    """Write the findings to stderr, a line each; the exit status they make."""
+    findings = timeline.diagnostics
+    sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in findings))
+    return EXIT_ERRORS if any(d.severity == "error" for d in findings) else EXIT_OK
+
+
+def _row(block: Block, t0: float) -> str:
+    from app.cli.shown import inches, per_minute
+
+    feed = f"{inches(block.feed):.5f}/r" if block.per_rev else f"{per_minute(block.feed):.2f}/m"
+    return (
+        f"{block.n:5d} {block.line:5d}  {block.kind:10s}{inches(block.x):11.5f}{inches(block.z):11.5f}"
+        f"{feed:>13s}{block.rpm:9.0f}{t0:8.2f}  {block.text}\n"
+    )

@@ -1,0 +1,65 @@
+"""``turndesk prove FILE…``: proves programs without moving anything."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.errors import EXIT_ERRORS, EXIT_OK
+from app.cli.options import Circumstances, add_program_options, circumstances, read_source
+from app.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from app.cli.options import SubParsers
+    from core.proving.report import Report
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("prove", help="prove programs: errors, limits, cycle time; nothing moves")
+    parser.add_argument("files", nargs="+", metavar="FILE")
+    add_program_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Prove each file; 1 when any has errors."""
+    around = circumstances(args)
+    reports = [_prove(Path(name), around, args) for name in args.files]
+    return EXIT_ERRORS if any(report.errors for report in reports) else EXIT_OK
+
+
+def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
+    from app.cli.shown import report_json
+    from core.proving.prove import prove
+
+    source = read_source(path, args)
+    with Progress(f"proving {path.name}") as progress:
+        report = prove(source, around.setup, around.machine, progress.reach)
+    if args.json:
+        sys.stdout.write(json.dumps(report_json(str(path), report)) + "\n")
+    else:
+        sys.stdout.write(_sheet(path, report))
+    return report
+
+
+def _sheet(path: Path, report: Report) -> str:
+    """The proof as a person reads it."""
+    from app.cli.shown import inches, per_minute
+
+    findings = "".join(f"{d.shown(str(path))}\n" for d in report.diagnostics)
+    times, reach = report.times, report.reach
+    tools = " ".join(f"T{n}" for n in report.tools) or "no tool"
+    verdict = f"{len(report.errors)} errors: will not run" if report.errors else "proved"
+    return findings + (
+        f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
+        f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"
+        f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
+        f"  path {inches(report.cutting_length):.4f} in cutting, {inches(report.rapid_length):.4f} in rapid\n"
+        f"  X radius {inches(reach.x[0]):.5f} … {inches(reach.x[1]):.5f}"
+        f"   Z {inches(reach.z[0]):.5f} … {inches(reach.z[1]):.5f} in\n"
+        f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
+        f"   feed {per_minute(reach.feed[0]):.3f} … {per_minute(reach.feed[1]):.3f} in/min\n"
+    )

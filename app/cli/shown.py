@@ -1,0 +1,114 @@
+"""Figures as the commands show them: inches and minutes outside, millimetres and seconds inside."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from core.interpreter.blocks import Block
+    from core.language.diagnostics import Diagnostic
+    from core.proving.report import Range, Report
+
+MM_PER_INCH = 25.4
+
+# A surface speed in ft/min is 12 in over 60 s.
+MM_S_PER_FT_MIN = 12 * MM_PER_INCH / 60
+
+Json = dict[str, object]
+
+
+def inches(mm: float) -> float:
+    """Inches of a length, to a billionth, so that the binary noise of the conversion does not show."""
+    return round(mm / MM_PER_INCH, 9) + 0.0  # + 0.0 makes -0.0 a plain zero
+
+
+def per_minute(mm_s: float) -> float:
+    """in/min of a speed in mm/s."""
+    return round(mm_s * 60 / MM_PER_INCH, 6)
+
+
+def seconds(t: float) -> float:
+    """Seconds to the microsecond."""
+    return round(t, 6)
+
+
+def degrees(angle: float) -> float:
+    """Degrees to a millionth."""
+    return round(angle, 6) + 0.0
+
+
+def diagnostic_json(diagnostic: Diagnostic) -> Json:
+    """One diagnostic with the keys of interfaces.md."""
+    return {
+        "line": diagnostic.line,
+        "column": diagnostic.column,
+        "severity": str(diagnostic.severity),
+        "code": diagnostic.code,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+
+
+def _range(values: Range) -> list[float]:
+    return [inches(values[0]), inches(values[1])]
+
+
+def report_json(file: str, report: Report) -> Json:
+    """A proof with the keys and units of interfaces.md; ``stock`` is null until removal is computed."""
+    reach, times = report.reach, report.times
+    return {
+        "file": file,
+        "dialect": "omniturn",
+        "units": "mm" if report.metric else "inch",
+        "blocks": report.blocks,
+        "elementary": report.elementary,
+        "diagnostics": [diagnostic_json(d) for d in report.diagnostics],
+        "cycle_time_s": seconds(times.cycle),
+        "cutting_time_s": seconds(times.cutting),
+        "rapid_time_s": seconds(times.rapid),
+        "dwell_time_s": seconds(times.dwell),
+        "wait_time_s": seconds(times.wait),
+        "cutting_length": inches(report.cutting_length),
+        "rapid_length": inches(report.rapid_length),
+        "tools": list(report.tools),
+        "limits": {
+            "x": _range(reach.x),
+            "z": _range(reach.z),
+            "c": [degrees(reach.c[0]), degrees(reach.c[1])],
+            "rpm": [round(rpm, 3) for rpm in reach.rpm],
+            "feed_ipm": [per_minute(speed) for speed in reach.feed],
+        },
+        "stock": None,
+        "final": {
+            "x": inches(report.final[0]),
+            "z": inches(report.final[1]),
+            "c": degrees(report.final[2]),
+        },
+    }
+
+
+def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
+    """One elementary block with the keys and units of interfaces.md; keys that do not apply are null."""
+    arc = block.kind == "arc"
+    feed = per_minute(block.feed) if not block.per_rev else inches(block.feed)
+    return {
+        "n": block.n,
+        "line": block.line,
+        "source": source_line,
+        "text": block.text,
+        "kind": str(block.kind),
+        "x": inches(block.x),
+        "z": inches(block.z),
+        "c": degrees(block.c),
+        "mx": inches(block.mx),
+        "mz": inches(block.mz),
+        "cx": inches(block.cx) if arc else None,
+        "cz": inches(block.cz) if arc else None,
+        "dir": ("cw" if block.clockwise else "ccw") if arc else None,
+        "feed": feed,
+        "feed_mode": "ipr" if block.per_rev else "ipm",
+        "rpm": round(block.rpm, 6) + 0.0,
+        "css": None if block.css is None else round(block.css / MM_S_PER_FT_MIN, 6),
+        "t0": seconds(t0),
+        "t1": seconds(t1),
+    }

@@ -1,0 +1,87 @@
+"""``turndesk trace FILE --out FILE.csv``: the time-stamped setpoints that the drives would get."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.errors import CommandError
+from app.cli.expand import report_diagnostics
+from app.cli.options import add_program_options, circumstances, read_source
+from app.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from app.cli.options import SubParsers
+    from core.proving.timeline import Timeline
+
+HEADER = "t,x,z,c,spindle_deg,line\n"
+
+
+def _interval(text: str) -> float:
+    """A setpoint interval in seconds, .0001 to 1."""
+    try:
+        dt = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds") from None
+    if not 1e-4 <= dt <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text} s: an interval from .0001 to 1 second")
+    return dt
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("trace", help="write the time-stamped setpoints that the drives would get")
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--dt", type=_interval, default=0.001, metavar="S", help="interval, s (default .001)")
+    parser.add_argument("--out", metavar="FILE.csv", help="where to (default: stdout)")
+    add_program_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the setpoints as CSV in inches (X a radius) and degrees; 1 when the program has errors."""
+    from core.proving.timeline import Timeline
+
+    path = Path(args.file)
+    around = circumstances(args)
+    timeline = Timeline.of(read_source(path, args), around.setup, around.machine)
+    if args.out is None:
+        sys.stdout.write(HEADER)
+        _write(timeline, args.dt, sys.stdout.write, path)
+    else:
+        _write_file(timeline, args, path)
+    return report_diagnostics(path, timeline)
+
+
+def _write_file(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
+    """Whole or not at all: a program with errors leaves no setpoints behind, nor does a full disk."""
+    out = Path(args.out)
+    partial = out.with_name(out.name + ".part")
+    try:
+        with partial.open("w", encoding="ascii", newline="") as file:
+            file.write(HEADER)
+            _write(timeline, args.dt, file.write, path)
+        if timeline.errors:
+            partial.unlink()
+        else:
+            partial.replace(out)
+    except OSError as error:
+        raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
+
+
+def _write(timeline: Timeline, dt: float, write: Callable[[str], object], path: Path) -> None:
+    from app.cli.shown import MM_PER_INCH
+    from core.proving.trace import setpoints
+
+    with Progress(f"tracing {path.name}") as progress:
+        for chunk in setpoints(timeline, dt):
+            write(
+                "".join(
+                    f"{t:.6f},{x / MM_PER_INCH:.7f},{z / MM_PER_INCH:.7f},{c:.5f},{turned:.4f},{line}\n"
+                    for t, x, z, c, turned, line in chunk
+                )
+            )
+            if chunk:
+                progress.reach(chunk[-1][0])
