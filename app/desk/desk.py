@@ -1,0 +1,279 @@
+"""The desk: what an operator can do on the Automatic page, and what the control answers. No Qt, never waits.
+
+Every method that a key or finger calls returns at once. What it cannot do it says on the prompt line
+(``notice``); what it does it posts, and the next snapshot tells whether it happened.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.desk import prompts
+from app.desk.alarms import AlarmLog
+from app.desk.session import Loaded, Session
+from app.desk.shelf import Shelf
+from app.desk.station import Palms, StationPanel
+from app.desk.view import Readout, View, view_of
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    FeedOverride,
+    Reset,
+    SetSwitch,
+)
+from core.executor.snapshot import Snapshot, State
+
+OVERRIDE_STEP = 0.1
+OVERRIDE_MOST = 1.5
+SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
+UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
+
+
+def _nothing() -> None:
+    """A desk without an executor of its own has nothing to close."""
+
+
+def _time_of_day() -> str:
+    return time.strftime("%H:%M:%S")
+
+
+@dataclass(slots=True)
+class Desk:
+    """The model behind the Automatic page.
+
+    ``station`` is there with the simulated machine only; ``two_hand`` as the machine file says.
+    """
+
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    session: Session
+    shelf: Shelf
+    station: StationPanel | None = None
+    two_hand: bool = True
+    with_c: bool = True
+    machine: str = ""
+    simulated: bool = True
+    shut: Callable[[], None] = _nothing
+    clock: Callable[[], float] = time.monotonic
+    time_of_day: Callable[[], str] = _time_of_day
+    readout: Readout = Readout.POSITION
+    notice: str = ""
+    palms: Palms = field(default_factory=Palms)
+    estop_pressed: bool = False
+    spindle_pot: float = 1.0
+    feed_pot: float = 1.0
+    log: AlarmLog = field(init=False)
+    _giving_up: bool = False
+    _refused: str = ""
+    _noticed_in: State | None = None
+
+    def __post_init__(self) -> None:
+        self.log = AlarmLog(self.time_of_day)
+
+    def look(self) -> tuple[Snapshot, View, Loaded]:
+        """One snapshot, and what the page shows of it; called once a frame."""
+        snapshot = self.snapshot()
+        self.log.see(snapshot.alarms)
+        self._mind_refusals(snapshot)
+        return snapshot, view_of(snapshot, self.readout, self.with_c), self.session.now
+
+    def prompt(self, snapshot: Snapshot, loaded: Loaded) -> str:
+        """The prompt line: the answer to the last key, or else what can be done now."""
+        if self.notice and snapshot.state is not self._noticed_in:
+            self.clear()
+        return self.notice or prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
+
+    def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
+        """Seconds to the end of the cycle at the present override; infinite while it stands still."""
+        picture = loaded.picture
+        if picture is None or loaded.proof is None:
+            return float("inf")
+        x, z, _c = snapshot.actual
+        end = snapshot.block_end
+        to_go = ((end[0] - x) ** 2 + (end[1] - z) ** 2) ** 0.5
+        left = picture.time_left(snapshot.block, to_go)
+        return left / snapshot.feed_override if snapshot.feed_override > 0 else float("inf")
+
+    @property
+    def start_words(self) -> str:
+        """How a cycle is started at this machine."""
+        if self.station is None:
+            return "PRESS BOTH PALM BUTTONS" if self.two_hand else "PRESS CYCLE START"
+        return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.two_hand else "PRESS CYCLE START (F12)"
+
+    @property
+    def release_words(self) -> str:
+        """How the E-stop is freed at this machine."""
+        return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (SHIFT+E)"
+
+    def say(self, text: str) -> None:
+        """Put an answer on the prompt line; it stays until the next key or the next state."""
+        self.notice = text
+        self._noticed_in = self.snapshot().state
+
+    def clear(self) -> None:
+        """Take the answer back."""
+        self.notice = ""
+        self._giving_up = False
+
+    # --- program -------------------------------------------------------------------------------------
+
+    def may_choose(self) -> bool:
+        """Whether a program can be chosen now; says why not."""
+        if self.snapshot().state in UNDER_WAY:
+            self.say("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER")
+            return False
+        return True
+
+    def choose(self, typed: str) -> bool:
+        """Load the program that was typed or picked; False when there is none of that name."""
+        path = self.shelf.find(typed)
+        if path is None:
+            return False
+        self.clear()
+        self.session.load(path, self.session.now.block_delete)
+        return True
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def switch(self, name: str) -> None:
+        """Turn ``single_block``, ``optional_stop`` or ``cycle_repeat`` over."""
+        if name not in SWITCHES:
+            raise ValueError(f"there is no switch called {name!r}")
+        self.clear()
+        self.post(SetSwitch(name, not getattr(self.snapshot(), name)))
+
+    def block_delete(self) -> None:
+        """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
+        loaded = self.session.now
+        if loaded.path is None:
+            self.say("CHOOSE A PROGRAM FIRST: BLOCK DELETE BELONGS TO THE PROGRAM THAT IS PROVED")
+        elif self.snapshot().state in UNDER_WAY:
+            self.say("BLOCK DELETE CHANGES WHAT WAS PROVED: ONLY BETWEEN TWO CYCLES")
+        else:
+            self.clear()
+            self.session.load(loaded.path, not loaded.block_delete)
+
+    def feed_hold(self) -> None:
+        """Feed hold, whatever else is going on."""
+        self.post(FeedHold())
+        self.clear()
+
+    def override(self, steps: int) -> None:
+        """Change the feed override by so many steps of ten percent."""
+        at = self.feed_pot if self.station else self.snapshot().feed_override
+        self.set_feed_pot(round(at / OVERRIDE_STEP + steps) * OVERRIDE_STEP)
+
+    def reset(self) -> None:
+        """Acknowledge an alarm; give up an interrupted program, after asking once."""
+        state = self.snapshot().state
+        if state in prompts.MOVING:
+            self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
+        elif state in prompts.INTERRUPTED and not self._giving_up:
+            self.say(prompts.GIVE_UP)
+            self._giving_up = True
+        else:
+            self.clear()
+            self.post(Reset())
+
+    def enable(self) -> None:
+        """Switch the drives on, after E-stop or power-up."""
+        state = self.snapshot().state
+        if state is State.DISABLED:
+            self.clear()
+            self.post(EnableDrives())
+        elif state is State.ESTOP:
+            self.say(f"THE E-STOP IS STILL PRESSED: {self.release_words} FIRST")
+        elif state is State.FAULT:
+            self.say("AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST")
+        else:
+            self.say("THE DRIVES ARE ON")
+
+    def escape(self) -> None:
+        """Esc takes a question back; while something moves it holds, because it is what a hand hits first."""
+        if self.notice:
+            self.clear()
+        elif self.snapshot().state in prompts.MOVING:
+            self.feed_hold()
+
+    def next_readout(self) -> None:
+        """Position, distance to go, distance from home."""
+        self.readout = self.readout.following
+
+    def later(self, key: str) -> None:
+        """A key whose page is not there yet says so."""
+        self.say(prompts.LATER[key])
+
+    # --- station -------------------------------------------------------------------------------------
+
+    def palm(self, side: str, down: bool) -> None:
+        """A palm button goes down or up; the station's relay decides whether that is a start."""
+        station = self.station
+        if station is None:
+            return
+        if down and side not in self.palms.down:
+            self.clear()
+            if self.palms.press(side, self.clock()):
+                self._refused = ""  # the same refusal again is worth saying again
+            (station.press_left if side == "left" else station.press_right)()
+        elif not down and side in self.palms.down:
+            (station.release_left if side == "left" else station.release_right)()
+            if self.palms.release(side):
+                self.say(prompts.ONE_PALM)
+
+    def start_button(self) -> None:
+        """Cycle start of a machine with one button."""
+        if not self.two_hand:
+            self.clear()
+            self.post(CycleStart())
+
+    def let_go(self) -> None:
+        """Hands off: the window has lost the keyboard, so no release would ever arrive."""
+        for side in tuple(self.palms.down):
+            self.palm(side, down=False)
+
+    def hold_button(self, down: bool) -> None:
+        """The station's feed hold button."""
+        if self.station:
+            (self.station.press_hold if down else self.station.release_hold)()
+
+    def estop(self, pressed: bool) -> None:
+        """Hit the mushroom, or twist it out."""
+        if self.station and pressed is not self.estop_pressed:
+            self.estop_pressed = pressed
+            self.clear()
+            (self.station.press_estop if pressed else self.station.release_estop)()
+
+    def set_spindle_auto(self, auto: bool) -> None:
+        """The spindle switch AUTO/OFF."""
+        if self.station:
+            self.station.set_spindle_auto(auto)
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """The spindle override pot, 0…1."""
+        self.spindle_pot = max(0.0, min(1.0, fraction))
+        if self.station:
+            self.station.set_spindle_pot(self.spindle_pot)
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Feed override 0…1.5: the station's pot where there is one, so that knob and value never differ."""
+        self.feed_pot = max(0.0, min(OVERRIDE_MOST, fraction))
+        if self.station:
+            self.station.set_feed_pot(self.feed_pot)
+        else:
+            self.post(FeedOverride(self.feed_pot))
+
+    def close(self) -> None:
+        """End the loading and whatever drives the machine."""
+        self.session.close()
+        self.shut()
+
+    def _mind_refusals(self, snapshot: Snapshot) -> None:
+        if snapshot.start_refused != self._refused:
+            self._refused = snapshot.start_refused
+            if self._refused:
+                self.say(f"NO START: {self._refused}")

@@ -1,0 +1,66 @@
+"""How figures are written for the operator: inch with 5 places, metric with 4, never a negative zero."""
+
+from __future__ import annotations
+
+import math
+
+MM_PER_INCH = 25.4
+MM_PER_FOOT = 304.8
+MINUS = "−"  # the true minus: a hyphen is too short to be read from two metres
+NOTHING = "—"
+
+
+def fixed(value: float, places: int) -> str:
+    """``value`` with ``places`` decimals; what rounds to zero has no sign; a value that is none is a dash."""
+    if not math.isfinite(value):
+        return NOTHING
+    digits = f"{abs(value):.{places}f}"
+    negative = value < 0 and digits.strip("0.") != ""
+    return MINUS + digits if negative else digits
+
+
+def length(mm: float, metric: bool) -> str:
+    """A length or coordinate: 5 places in inch, 4 in metric, as the control shows them."""
+    return fixed(mm, 4) if metric else fixed(mm / MM_PER_INCH, 5)
+
+
+def angle(degrees: float) -> str:
+    """The spindle angle; its step is .02 degree."""
+    return fixed(degrees, 2)
+
+
+def feed_unit(metric: bool, per_rev: bool) -> str:
+    """The unit of a feed."""
+    return f"{'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
+
+
+def feed(value: float, metric: bool, per_rev: bool) -> str:
+    """A feed given in mm/s, or in mm/rev when ``per_rev``; metric ones carry the control's ``MM`` prefix."""
+    if metric:
+        return "MM" + (fixed(value, 4) if per_rev else fixed(value * 60, 1))
+    return fixed(value / MM_PER_INCH, 5) if per_rev else fixed(value * 60 / MM_PER_INCH, 2)
+
+
+def surface_speed(mm_s: float, metric: bool) -> str:
+    """Surface speed: ft/min, or m/min; a speed over ground has no sign."""
+    return fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
+
+
+def rpm(value: float) -> str:
+    """Spindle speed without the sign: the direction stands beside it in words."""
+    return fixed(abs(value), 0)
+
+
+def percent(fraction: float) -> str:
+    """An override."""
+    return f"{fixed(fraction * 100, 0)} %"
+
+
+def duration(seconds: float) -> str:
+    """``m:ss``, from an hour on ``h:mm:ss``; rounded down as a clock does. No time known: a dash."""
+    if not math.isfinite(seconds) or seconds < 0:
+        return NOTHING
+    whole = int(seconds)
+    minutes, rest = divmod(whole, 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

@@ -1,0 +1,71 @@
+"""The prompt line: what the operator can do now, from one snapshot and the program on the desk."""
+
+from __future__ import annotations
+
+from app.desk.session import Loaded, Phase
+from core.executor.snapshot import Snapshot, State
+
+LATER = {
+    "F1": "THE MAIN MENU COMES WITH A LATER VERSION",
+    "F3": "THE EDITOR COMES WITH A LATER VERSION",
+    "F6": "SEARCHTO COMES WITH A LATER VERSION",
+    "F8": "THE TOOL OFFSET PAGE COMES WITH A LATER VERSION",
+    "F9": "THE SECONDARY OFFSET PAGE COMES WITH A LATER VERSION",
+    "F10": "THE SPECIAL FUNCTIONS COME WITH A LATER VERSION",
+}
+NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
+ASK_FILE = "FILE TO BE PROCESSED"
+ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
+GIVE_UP = "PRESS R ONCE MORE TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
+HOW_TO_HOLD = "PRESS H FOR FEED HOLD"
+MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
+INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
+
+
+def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
+    """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here."""
+    go_on = f"TO GO ON {start}; R GIVES THE PROGRAM UP"
+    standing = {
+        State.ESTOP: f"E-STOP: MAKE THE MACHINE SAFE, {release}, THEN PRESS D FOR DRIVES ON",
+        State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
+        State.FAULT: "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE",
+        State.RUN: HOW_TO_HOLD,
+        State.WAIT: HOW_TO_HOLD,
+        State.HOLDING: "COMING TO REST",
+        State.HOLD: go_on,
+        State.BLOCK_END: go_on,
+        State.PROGRAM_STOP: go_on,
+        State.HOME: "THE SLIDES ARE LOOKING FOR HOME",
+    }
+    return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
+
+
+def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
+    if loaded.busy:
+        return _progress(loaded)
+    if loaded.phase in {Phase.UNREADABLE, Phase.REFUSED}:
+        return refusal(loaded)
+    if not snapshot.program:
+        return "PRESS F2 TO CHOOSE A PROGRAM"
+    if snapshot.proof_wanted:
+        return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
+    return f"TO START {start}"
+
+
+def refusal(loaded: Loaded) -> str:
+    """Why the program on the desk will not run: the first error, and how many there are."""
+    if loaded.phase is Phase.UNREADABLE:
+        return f"{loaded.name} CANNOT BE LOADED: {loaded.trouble}; PRESS F2 FOR ANOTHER"
+    errors = loaded.errors
+    if not errors:
+        first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else "PROVING FOUND ERRORS"
+        return f"WILL NOT RUN: {first}"
+    first_error = errors[0]
+    where = f"LINE {first_error.line}: " if first_error.line else ""
+    more = f" ({len(errors) - 1} MORE)" if len(errors) > 1 else ""
+    return f"WILL NOT RUN: {where}{first_error.message}{more}"
+
+
+def _progress(loaded: Loaded) -> str:
+    count = f" {loaded.reached} BLOCKS" if loaded.reached else ""
+    return f"{loaded.phase.value} {loaded.name}{count}"

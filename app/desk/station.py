@@ -1,0 +1,66 @@
+"""The simulated operator station as the desk handles it, and its two palm buttons under two hands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+TOGETHER = 0.5  # seconds within which the second palm button must follow the first
+
+
+class StationPanel(Protocol):
+    """What a hand can do to the simulated station. Whether both palms came together the station says."""
+
+    def press_left(self) -> None: ...
+
+    def release_left(self) -> None: ...
+
+    def press_right(self) -> None: ...
+
+    def release_right(self) -> None: ...
+
+    def press_hold(self) -> None: ...
+
+    def release_hold(self) -> None: ...
+
+    def press_estop(self) -> None: ...
+
+    def release_estop(self) -> None:
+        """Twist the mushroom out again."""
+        ...
+
+    def set_spindle_auto(self, auto: bool) -> None: ...
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """0…1."""
+        ...
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """0…1.5."""
+        ...
+
+
+@dataclass(slots=True)
+class Palms:
+    """Which palm buttons are down and since when; tells a person what was wrong with a start."""
+
+    down: dict[str, float] = field(default_factory=dict)  # "left"/"right" → seconds, monotonic
+    together: bool = False  # both have been down at once since the last time none was
+
+    def press(self, side: str, now: float) -> bool:
+        """Note a press; True when this made both go down within the time."""
+        self.down.setdefault(side, now)
+        times = self.down.values()
+        if len(self.down) < 2 or max(times) - min(times) > TOGETHER:
+            return False
+        self.together = True
+        return True
+
+    def release(self, side: str) -> bool:
+        """Note a release; True when a button was let go that never had the other beside it in time."""
+        if self.down.pop(side, None) is None:
+            return False
+        alone = not self.together
+        if not self.down:
+            self.together = False
+        return alone

@@ -1,0 +1,280 @@
+"""One snapshot, put into the words and figures that the operator reads. No Qt, no machine logic, no state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.desk import formats
+from core.executor.snapshot import Alarm, Snapshot, State
+
+
+class Readout(StrEnum):
+    """What the large figures show."""
+
+    POSITION = "POSITION"
+    TO_GO = "DISTANCE TO GO"
+    HOME = "FROM HOME"
+
+    @property
+    def following(self) -> Readout:
+        """The one that the key goes on to."""
+        order = list(Readout)
+        return order[(order.index(self) + 1) % len(order)]
+
+
+class Tone(StrEnum):
+    """How a state is drawn: colour and shape together, so that colour alone never says it."""
+
+    OFF = "off"
+    READY = "ready"
+    RUN = "run"
+    PAUSE = "pause"
+    WAIT = "wait"
+    ALARM = "alarm"
+
+
+TONES = {
+    State.ESTOP: Tone.ALARM,
+    State.DISABLED: Tone.OFF,
+    State.IDLE: Tone.READY,
+    State.RUN: Tone.RUN,
+    State.HOLDING: Tone.PAUSE,
+    State.HOLD: Tone.PAUSE,
+    State.BLOCK_END: Tone.PAUSE,
+    State.PROGRAM_STOP: Tone.PAUSE,
+    State.WAIT: Tone.WAIT,
+    State.JOG: Tone.RUN,
+    State.HOME: Tone.RUN,
+    State.FAULT: Tone.ALARM,
+}
+TURNING = 1.0  # rpm above which a spindle is said to turn
+
+
+@dataclass(frozen=True, slots=True)
+class AxisView:
+    """One row of the readout; ``mark`` says Ø or R on X, ``beside`` is the second figure."""
+
+    name: str
+    mark: str
+    value: str
+    beside: str
+    homed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PositionView:
+    """The readout: all of it in one unit, from one instant."""
+
+    readout: Readout
+    beside: Readout
+    unit: str
+    x_words: str
+    axes: tuple[AxisView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FeedView:
+    """Programmed and actual feed in the unit of the program's mode."""
+
+    value: str
+    unit: str
+    actual: str
+    actual_unit: str
+    override: float
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleView:
+    """Commanded and actual rpm, surface speed, override and the AUTO/OFF switch."""
+
+    direction: str
+    rpm: str
+    actual: str
+    surface: str
+    surface_label: str
+    constant_surface: bool
+    override: float
+    auto: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Lamp:
+    """A lit word, and the key that switches it, if one does."""
+
+    word: str
+    lit: bool
+    key: str = ""
+    warn: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Everything on the page that comes from the machine."""
+
+    program: str
+    state: str
+    tone: Tone
+    position: PositionView
+    tool: str
+    secondary: str
+    feed: FeedView
+    spindle: SpindleView
+    modes: tuple[Lamp, ...]
+    lamps: tuple[Lamp, ...]
+    parts: str
+    cycle: str
+    last_cycle: str
+    line: int
+    block: int
+    block_text: str
+    next_text: str
+    comment: str
+    message: str
+    alarm: Alarm | None
+
+
+def view_of(snapshot: Snapshot, readout: Readout, with_c: bool) -> View:
+    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis."""
+    modal = snapshot.modal
+    state = snapshot.state.value
+    if snapshot.state is State.WAIT and snapshot.waiting_for:
+        state = f"WAITING: {snapshot.waiting_for}"
+    return View(
+        program=snapshot.program,
+        state=state,
+        tone=TONES[snapshot.state],
+        position=_position(snapshot, readout, with_c),
+        tool=f"T{modal.tool}",
+        secondary=f"D{modal.secondary}",
+        feed=_feed(snapshot),
+        spindle=_spindle(snapshot),
+        modes=_modes(snapshot),
+        lamps=_lamps(snapshot),
+        parts=str(snapshot.parts),
+        cycle=formats.duration(snapshot.cycle_elapsed),
+        last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
+        line=snapshot.line,
+        block=snapshot.block,
+        block_text=snapshot.block_text,
+        next_text=snapshot.next_text,
+        comment=snapshot.comment,
+        message=_message(snapshot),
+        alarm=snapshot.alarms[-1] if snapshot.alarms else None,
+    )
+
+
+def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, float, float]:
+    """(x, z, c) of a readout, mm with X a radius, and degrees."""
+    x, z, c = snapshot.actual
+    if readout is Readout.HOME:
+        return x, z, c
+    if readout is Readout.TO_GO:
+        end = snapshot.block_end if snapshot.block else snapshot.actual
+        return end[0] - x, end[1] - z, end[2] - c
+    return x - snapshot.offset[0], z - snapshot.offset[1], c
+
+
+def _position(snapshot: Snapshot, readout: Readout, with_c: bool) -> PositionView:
+    metric, diameter = snapshot.modal.metric, snapshot.modal.diameter
+    beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
+    large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
+    marks = ("Ø" if diameter else "R", "", "")
+    rows = [
+        AxisView(name, mark, a, b, homed)
+        for name, mark, a, b, homed in zip("XZC", marks, large, small, snapshot.homed, strict=True)
+    ]
+    return PositionView(
+        readout=readout,
+        beside=beside,
+        unit="MM" if metric else "INCH",
+        x_words="X IS A DIAMETER" if diameter else "X IS A RADIUS",
+        axes=tuple(rows if with_c else rows[:2]),
+    )
+
+
+def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> tuple[str, str, str]:
+    x, z, c = coordinates(snapshot, readout)
+    return (
+        formats.length(2 * x if diameter else x, metric),
+        formats.length(z, metric),
+        formats.angle(c),
+    )
+
+
+def _feed(snapshot: Snapshot) -> FeedView:
+    modal = snapshot.modal
+    metric, per_rev = modal.metric, modal.per_rev and not snapshot.rapid
+    turns = abs(snapshot.rpm_actual) / 60
+    if per_rev:
+        speed = snapshot.velocity / turns if turns > TURNING / 60 else math.nan
+    else:
+        speed = snapshot.velocity
+    unit = formats.feed_unit(metric, per_rev)
+    known = snapshot.rapid or snapshot.feed > 0
+    value = "RAPID" if snapshot.rapid else formats.feed(snapshot.feed, metric, modal.per_rev)
+    return FeedView(
+        value=value if known else formats.NOTHING,
+        unit="" if snapshot.rapid else unit,
+        actual=formats.feed(speed, metric, per_rev) if math.isfinite(speed) else formats.NOTHING,
+        actual_unit=unit,
+        override=snapshot.feed_override,
+    )
+
+
+def _spindle(snapshot: Snapshot) -> SpindleView:
+    modal = snapshot.modal
+    radius = snapshot.actual[0] - snapshot.offset[0]
+    surface = 2 * math.pi * radius * snapshot.rpm_actual / 60
+    command = snapshot.rpm_command
+    direction = "M03 FWD" if command > 0 else "M04 REV" if command < 0 else "M05 OFF"
+    return SpindleView(
+        direction=direction,
+        rpm=formats.rpm(command),
+        actual=formats.rpm(snapshot.rpm_actual),
+        surface=formats.surface_speed(surface, modal.metric),
+        surface_label="M/MIN" if modal.metric else "SFM",
+        constant_surface=modal.css,
+        override=snapshot.spindle_override,
+        auto=snapshot.spindle_auto,
+    )
+
+
+def _modes(snapshot: Snapshot) -> tuple[Lamp, ...]:
+    return (
+        Lamp("SINGLE BLOCK", snapshot.single_block, "S"),
+        Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
+        Lamp("BLOCK DELETE", snapshot.block_delete, "/"),
+        Lamp("CYCLE REPEAT", snapshot.cycle_repeat, "C"),
+    )
+
+
+def _lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
+    return (
+        _spindle_lamp(snapshot),
+        Lamp("COOLANT", snapshot.modal.coolant or "coolant" in snapshot.outputs),
+        _collet_lamp(snapshot),
+        Lamp("LIVE TOOL", "live_tool" in snapshot.outputs),
+    )
+
+
+def _spindle_lamp(snapshot: Snapshot) -> Lamp:
+    """Turning is told from the measured speed: one that coasts is as dangerous as one that is driven."""
+    turning = abs(snapshot.rpm_actual) > TURNING
+    if turning and snapshot.rpm_command == 0:
+        return Lamp("SPINDLE COASTS", lit=True, warn=True)
+    if turning:
+        return Lamp("SPINDLE REV" if snapshot.rpm_actual < 0 else "SPINDLE FWD", lit=True)
+    return Lamp("SPINDLE", lit=False)
+
+
+def _collet_lamp(snapshot: Snapshot) -> Lamp:
+    closed = snapshot.modal.collet_closed
+    return Lamp("COLLET CLOSED", lit=True) if closed else Lamp("COLLET OPEN", lit=True, warn=True)
+
+
+def _message(snapshot: Snapshot) -> str:
+    if snapshot.state is not State.PROGRAM_STOP:
+        return ""
+    return snapshot.message or "PROGRAM STOP"
