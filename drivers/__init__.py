@@ -1,0 +1,1 @@
+"""Drivers: one folder for each kind of machine, all behind ``core.ports``."""

@@ -1,0 +1,149 @@
+"""The queue that every setpoint driver plays: always a complete trajectory that ends at rest.
+
+A host that stalls, is killed or loses its cable therefore leaves slides that stop on their path, at the
+planned deceleration and without a fault. Hold, override, abort and jog are one verb: splice another tail.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.ports import DriverError, Segments
+from drivers.piece import Piece, at, pieces_of
+
+_SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
+_REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
+_TRIM = 64  # pieces; forgetting the past one by one would cost more than keeping it
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """How far two pieces may part where they meet, by axis: position (mm or degrees) and velocity.
+
+    Rounding alone asks for a micrometre. Velocity may jump by what a corner may, ``amax * interval``.
+    """
+
+    position: tuple[float, ...]
+    velocity: tuple[float, ...]
+
+
+class SetpointQueue:
+    """Setpoints of all axes, in pieces of constant acceleration; not thread-safe, its driver locks."""
+
+    def __init__(
+        self, axes: tuple[str, ...], rest: Sequence[float], commit: float, tolerance: Tolerance
+    ) -> None:
+        self.axes = axes
+        self.commit = commit
+        self._tolerance = tolerance
+        self._zero = (0.0,) * len(axes)
+        self._pieces: list[Piece] = []
+        self._starts: list[float] = []
+        self._end = -np.inf
+        self._rest = tuple(rest)
+
+    def rest_at(self, position: Sequence[float]) -> None:
+        """Forget every setpoint and rest here: after power-up, homing, or a stop by the drive itself."""
+        self._pieces, self._starts, self._end = [], [], -np.inf
+        self._rest = tuple(position)
+
+    def horizon(self, now: float) -> float:
+        """End of the last motion queued; ``now`` when nothing is."""
+        return max(self._end, now)
+
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Position and velocity at ``t``; where two pieces meet, those of the later one."""
+        if t >= self._end:
+            return self._rest, self._zero
+        index = bisect_right(self._starts, t) - 1
+        if index < 0:
+            return self._pieces[0].p, self._zero
+        return at(self._pieces[index], t)
+
+    def splice(self, segments: Segments, now: float) -> None:
+        """Replace everything from ``segments.t[0]`` on.
+
+        Raises DriverError, and keeps the old queue, unless the segments start at or after ``now`` + commit,
+        continue what stays in position and velocity, hang together, and end at rest.
+        """
+        pieces = pieces_of(segments, len(self.axes))
+        start = pieces[0].t
+        if start < now + self.commit - 1e-9:
+            late = 1000 * (now + self.commit - start)
+            raise DriverError(f"setpoints start {late:.1f} ms too early to be changed any more; splice later")
+        self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v), "where they take over")
+        self._check_run(segments)
+        self._replace(start, pieces, at(pieces[-1], np.inf)[0])
+
+    def brake(self, now: float, decel: Sequence[float]) -> float:
+        """The drive's own stop: from now on straight to rest, all axes together; returns when it ends.
+
+        For stops that do not ask the host (E-stop, a fault). It leaves the path only by the curve within the
+        braking distance.
+        """
+        p, v = self.demand_at(now)
+        dt = max((abs(speed) / limit for speed, limit in zip(v, decel, strict=True)), default=0.0)
+        if dt <= 0.0:
+            self.rest_at(p)
+            return now
+        piece = Piece(now, dt, p, v, tuple(-speed / dt for speed in v))
+        self._replace(now, [piece], at(piece, now + dt)[0])
+        return now + dt
+
+    def trim(self, before: float) -> None:
+        """Forget what was over ``before`` this time."""
+        gone = bisect_right(self._starts, before) - 1
+        if gone >= _TRIM:
+            del self._pieces[:gone], self._starts[:gone]
+
+    def _replace(self, start: float, pieces: list[Piece], rest: tuple[float, ...]) -> None:
+        """Cut at ``start`` and append; a gap before ``start`` is rest."""
+        keep = bisect_right(self._starts, start - 1e-12)
+        del self._pieces[keep:], self._starts[keep:]
+        if self._end < start:
+            pieces = [Piece(max(self._end, start - 1.0), 0.0, self._rest, self._zero, self._zero), *pieces]
+        self._pieces += pieces
+        self._starts += [piece.t for piece in pieces]
+        self._end = pieces[-1].t + pieces[-1].dt
+        self._rest = rest
+
+    def _check_run(self, segments: Segments) -> None:
+        """Each piece must begin where the one before ends, and the last must come to rest."""
+        dt = segments.dt[:, None]
+        t_end = segments.t + segments.dt
+        p_end = segments.p + (segments.v + 0.5 * segments.a * dt) * dt
+        v_end = segments.v + segments.a * dt
+        gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
+        if gaps.size:
+            raise DriverError(f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued")
+        jumps = (np.abs(segments.p[1:] - p_end[:-1]) > self._tolerance.position) | (
+            np.abs(segments.v[1:] - v_end[:-1]) > self._tolerance.velocity
+        )
+        if jumps.any():
+            row, axis = np.argwhere(jumps)[0]
+            before = f"{p_end[row, axis]:.4f} at {v_end[row, axis]:.3f}/s"
+            after = f"{segments.p[row + 1, axis]:.4f} at {segments.v[row + 1, axis]:.3f}/s"
+            where = f"{self.axes[axis]}: setpoints jump at t = {t_end[row]:.4f}"
+            raise DriverError(f"{where} from {before} to {after}; nothing was queued")
+        moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
+        if moving:
+            raise DriverError(f"setpoints do not end at rest: {', '.join(moving)} still moves at their end")
+
+    def _check_joint(
+        self,
+        old: tuple[tuple[float, ...], tuple[float, ...]],
+        new: tuple[tuple[float, ...], tuple[float, ...]],
+        where: str,
+    ) -> None:
+        """Position and velocity of both sides agree within the tolerance, axis by axis."""
+        limits = (self._tolerance.position, self._tolerance.velocity)
+        for what, limit, one, two in zip(("position", "velocity"), limits, old, new, strict=True):
+            for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
+                if abs(after - before) > tolerance:
+                    raise DriverError(
+                        f"{name}: setpoints {where} jump in {what} from {before:.4f} to {after:.4f}"
+                    )

@@ -1,0 +1,45 @@
+"""Time: the real one, and one that tests and headless runs move on themselves."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+
+class RealClock:
+    """Seconds of the monotonic clock since it was made."""
+
+    def __init__(self) -> None:
+        self._zero = time.monotonic()
+
+    def now(self) -> float:
+        """Seconds since this clock was made."""
+        return time.monotonic() - self._zero
+
+    def sleep_until(self, t: float) -> None:
+        """Wait until ``t``; returns at once when that is past."""
+        left = t - self.now()
+        if left > 0:
+            time.sleep(left)
+
+
+class StepClock:
+    """Time that stands still until somebody moves it; sleeping moves it. Thread-safe."""
+
+    def __init__(self, start: float = 0.0) -> None:
+        self._t = start
+        self._lock = threading.Lock()
+
+    def now(self) -> float:
+        """The time it was moved to."""
+        return self._t
+
+    def sleep_until(self, t: float) -> None:
+        """Move to ``t`` at once; never back."""
+        with self._lock:
+            self._t = max(self._t, t)
+
+    def advance(self, dt: float) -> None:
+        """Move on by ``dt`` seconds."""
+        with self._lock:
+            self._t += dt

@@ -1,0 +1,73 @@
+"""What the simulated machine is made of: filled by the app from the machine file, frozen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class SimAxis:
+    """One servo axis; mm and seconds, or degrees for C. ``amax`` is what the drive brakes with on its own."""
+
+    name: str
+    vmax: float
+    amax: float
+    count: float
+    following_window: float
+    following_time: float
+    travel: tuple[float, float] | None = None
+    absolute: bool = True
+    home_speed: float = 10.0
+    corner: float = 4.0  # velocity that a corner may jump: amax times the setpoint interval
+    power_up: float = 0.0  # where the slide stands from home when power comes on
+    bandwidth: float = 40.0  # Hz, of the position loop
+    feed_forward: float = 0.9  # of the velocity: what is missing shows as following error
+    reserve: float = 1.3  # the servo can accelerate this much harder than amax
+
+
+@dataclass(frozen=True, slots=True)
+class SimSpindle:
+    """AC spindle behind a frequency inverter; rpm and rpm/s, seconds."""
+
+    rpm_max: float = 3500.0
+    accel: float = 1500.0
+    decel: float = 2500.0
+    coast: float = 600.0
+    latency: float = 0.08
+    ppr: int = 1024
+
+
+@dataclass(frozen=True, slots=True)
+class SimOutput:
+    """One output: its state at power-up and what ``safe`` makes of it (None: keeps)."""
+
+    safe: bool | None = False
+    initial: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SimCollet:
+    """Collet with its switch; ``output`` on is clamped. Times seconds, ``spread`` a fraction of them."""
+
+    output: str = "collet"
+    closed_input: str = "collet_closed"
+    open_time: float = 0.25
+    close_time: float = 0.30
+    spread: float = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class SimConfig:
+    """The whole simulated machine."""
+
+    axes: tuple[SimAxis, ...]
+    spindle: SimSpindle = field(default_factory=SimSpindle)
+    collet: SimCollet = field(default_factory=SimCollet)
+    outputs: Mapping[str, SimOutput] = field(default_factory=dict)
+    inputs: tuple[str, ...] = ()
+    commit: float = 0.03
+    step: float = 0.001  # of the servo model
+    seed: int = 1
+    palms: float = 0.5  # seconds within which both palms must go down
+    start_pulse: float = 0.1  # how long the two-hand relay holds its output at least

@@ -1,0 +1,73 @@
+"""Spindle motor behind a frequency inverter: late to obey, ramps, a counting encoder, faults."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+from drivers.simulated.config import SimSpindle
+
+
+@dataclass(slots=True)
+class SpindleFaults:
+    """What tests may break."""
+
+    bog: float = 1.0  # fraction of the commanded speed that the motor reaches
+    ignores_stop: bool = False
+    fault: str = ""
+
+
+class SpindleMotor:
+    """Speed and angle, advanced in closed form: ramps are straight lines."""
+
+    def __init__(self, config: SimSpindle) -> None:
+        self.config = config
+        self.faults = SpindleFaults()
+        self.speed = 0.0
+        self.turns = 0.0
+        self.t = 0.0
+        self._target = 0.0
+        self._coasting = False
+        self._orders: deque[tuple[float, float, bool]] = deque()
+
+    def order(self, now: float, rpm: float, coast: bool = False) -> None:
+        """A command that the inverter obeys after its latency."""
+        if self.faults.ignores_stop and abs(rpm) < abs(self._target):
+            return
+        limit = self.config.rpm_max
+        self._orders.append((now + self.config.latency, min(max(rpm, -limit), limit), coast))
+
+    def cut(self, now: float) -> None:
+        """Power off by hardware: coasts, whatever was ordered."""
+        self._orders.clear()
+        self._orders.append((now, 0.0, True))
+
+    def advance(self, now: float) -> None:
+        """Move on to ``now``, order by order."""
+        while self._orders and self._orders[0][0] <= now:
+            at, rpm, coast = self._orders.popleft()
+            self._ramp(max(at - self.t, 0.0))
+            self.t = max(self.t, at)
+            self._target, self._coasting = rpm, coast
+        self._ramp(now - self.t)
+        self.t = now
+
+    def _ramp(self, dt: float) -> None:
+        """Towards the target for ``dt`` seconds, then on at its speed."""
+        faults = self.faults
+        target = 0.0 if faults.fault else self._target * faults.bog
+        while dt > 0.0:
+            braking = self.speed * target <= 0.0 < abs(self.speed) or abs(target) < abs(self.speed)
+            rate = self.config.decel if braking else self.config.accel
+            if braking and (self._coasting or faults.fault):
+                rate = self.config.coast
+            goal = 0.0 if self.speed * target < 0.0 else target
+            used = min(dt, abs(goal - self.speed) / rate)
+            before = self.speed
+            reached = used < dt
+            self.speed = goal if reached else before + (rate if goal > before else -rate) * used
+            self.turns += 0.5 * (before + self.speed) / 60.0 * used
+            dt -= used
+            if reached and goal == target:
+                self.turns += self.speed / 60.0 * dt
+                return

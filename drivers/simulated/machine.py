@@ -1,0 +1,141 @@
+"""The hands and the hammer: what an operator does at the simulated station, and what a test breaks."""
+
+from __future__ import annotations
+
+from drivers.simulated.plant import Plant
+from drivers.simulated.servo import Servo
+
+
+class SimMachine:
+    """Buttons of the station and faults of the machine; every method may be called from any thread."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    # --- the operator's hands -----------------------------------------------------------------------------
+
+    def palm(self, which: str, down: bool) -> None:
+        """Press or let go palm ``left`` or ``right``."""
+        with self._plant.lock:
+            relay, now = self._plant.panel.relay, self._plant.clock.now()
+            if down:
+                relay.press(which, now)
+            else:
+                relay.release(which, now)
+
+    def press_start(self) -> None:
+        """Both palms down together and up again."""
+        for down in (True, False):
+            self.palm("left", down)
+            self.palm("right", down)
+
+    def hold(self, down: bool = True) -> None:
+        """Feed hold button."""
+        with self._plant.lock:
+            self._plant.panel.hold(down, self._plant.clock.now())
+
+    def press_hold(self) -> None:
+        """Feed hold pressed and let go."""
+        self.hold(True)
+        self.hold(False)
+
+    def estop(self) -> None:
+        """Press the E-stop: it latches."""
+        self._plant.press_estop()
+
+    def release_estop(self) -> None:
+        """Twist the E-stop free."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.panel.estop = False
+
+    def spindle_switch(self, auto: bool) -> None:
+        """Spindle AUTO/OFF."""
+        with self._plant.lock:
+            self._plant.panel.spindle_auto = auto
+
+    def spindle_pot(self, fraction: float) -> None:
+        """Spindle override pot, 0…1."""
+        with self._plant.lock:
+            self._plant.panel.spindle_pot = min(max(fraction, 0.0), 1.0)
+
+    def feed_pot(self, fraction: float) -> None:
+        """Feed override pot, 0…1.5."""
+        with self._plant.lock:
+            self._plant.panel.feed_pot = min(max(fraction, 0.0), 1.5)
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Make an input of the machine file true or false; raises DriverError for an unknown name."""
+        with self._plant.lock:
+            self._plant.terminals.set_input(name, on)
+
+    # --- faults -------------------------------------------------------------------------------------------
+
+    def jam(self, axis: str, on: bool = True) -> None:
+        """Something blocks the slide."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).jammed = on
+
+    def encoder_stuck(self, axis: str, on: bool = True) -> None:
+        """The encoder no longer counts."""
+        with self._plant.lock:
+            self._plant.advance()
+            servo = self._servo(axis)
+            servo.stuck = servo.reading if on else None
+
+    def drive_fault(self, axis: str, text: str = "drive fault") -> None:
+        """A drive trips."""
+        with self._plant.lock:
+            self._plant.trip(f"{axis}: {text}")
+
+    def spindle_bog(self, fraction: float) -> None:
+        """The motor reaches only this fraction of what is commanded; 1 is healthy."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.bog = fraction
+
+    def spindle_ignores_stop(self, on: bool = True) -> None:
+        """The inverter no longer obeys when asked to slow down."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.ignores_stop = on
+
+    def spindle_fault(self, text: str) -> None:
+        """The inverter trips and the spindle coasts; an empty text mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.fault = text
+
+    def collet_sensor_stuck(self, on: bool = True) -> None:
+        """The collet's switch stays where it is."""
+        with self._plant.lock:
+            self._plant.terminals.read(self._plant.advance())
+            self._plant.terminals.sensor_stuck = on
+
+    def station_silent(self, on: bool = True) -> None:
+        """The station's cable is off."""
+        with self._plant.lock:
+            self._plant.panel.silence(on, self._plant.clock.now())
+
+    def pot_noise(self, width: float) -> None:
+        """A worn wiper: both pots jump by up to ``width``."""
+        with self._plant.lock:
+            self._plant.panel.noise = width
+
+    # --- what only a simulation can know ------------------------------------------------------------------
+
+    def true_position(self) -> tuple[float, ...]:
+        """Where the slides really are, encoder or not."""
+        with self._plant.lock:
+            self._plant.advance()
+            return tuple(servo.p for servo in self._plant.servos)
+
+    def spindle_rpm(self) -> float:
+        """How fast the spindle really turns."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.speed
+
+    def _servo(self, axis: str) -> Servo:
+        return self._plant.servos[self._plant.names.index(axis)]

@@ -1,0 +1,210 @@
+"""The machine itself, simulated: advanced to the clock whenever somebody looks, so it needs no thread.
+
+The model steps on a grid of fixed times, so what happens does not depend on who looks when.
+"""
+
+from __future__ import annotations
+
+import threading
+
+from core.ports import Clock, DriverError, Segments, Stop
+from drivers.setpoint_queue import SetpointQueue, Tolerance
+from drivers.simulated.config import SimConfig
+from drivers.simulated.drive_spindle import SpindleMotor
+from drivers.simulated.servo import Servo
+from drivers.simulated.station_panel import Panel
+from drivers.simulated.terminals import Terminals
+from drivers.straight import straight
+
+_NEVER = float("inf")
+_HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
+
+
+class Plant:
+    """Slides, spindle, terminals and station behind one lock, so that any thread may call."""
+
+    def __init__(self, config: SimConfig, clock: Clock) -> None:
+        self.config = config
+        self.clock = clock
+        self.lock = threading.RLock()
+        self.servos = tuple(Servo(axis) for axis in config.axes)
+        self.names = tuple(axis.name for axis in config.axes)
+        self.spindle = SpindleMotor(config.spindle)
+        self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.panel = Panel(config.palms, config.start_pulse, config.seed)
+        tolerance = Tolerance(
+            position=(0.001,) * len(self.names), velocity=tuple(axis.corner for axis in config.axes)
+        )
+        self.queue = SetpointQueue(self.names, self._readings(), config.commit, tolerance)
+        self.enabled = False
+        self.fault = ""
+        self._off_at = _NEVER
+        self._homing: tuple[Servo, float] | None = None
+        self._k = int(clock.now() / config.step)
+        self.spindle.t = clock.now()
+
+    @property
+    def t(self) -> float:
+        """Time of the model: the last point of the grid."""
+        return self._k * self.config.step
+
+    def advance(self) -> float:
+        """Bring everything up to the clock; returns the clock's time."""
+        now = self.clock.now()
+        with self.lock:
+            if now > self.spindle.t:
+                self.spindle.advance(now)
+            last = int(now / self.config.step + 1e-6)
+            if last > self._k:
+                self._slides(last)
+                self.queue.trim(self.t)
+        return now
+
+    def splice(self, segments: Segments) -> None:
+        """Queue setpoints; raises DriverError when the drives cannot take them."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            if self._homing is not None:
+                raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
+            self._check_limits(segments)
+            self.queue.splice(segments, now)
+
+    def power(self, on: bool) -> None:
+        """Drives on: they hold the slides where these are. Raises DriverError in E-stop or fault."""
+        with self.lock:
+            self.advance()
+            if not on:
+                self._power_off()
+                return
+            if self.panel.estop:
+                raise DriverError("drives stay off while E-stop is pressed; release it first")
+            if self.fault:
+                raise DriverError(f"drives stay off: {self.fault}; clear the fault first")
+            if not self.enabled:
+                self.queue.rest_at(self._readings())
+            self.enabled, self._off_at = True, _NEVER
+
+    def stop(self, how: Stop) -> None:
+        """The drives' own stop, without the host's path."""
+        with self.lock:
+            now = self.advance()
+            self._homing = None
+            if how is Stop.OFF:
+                self._power_off()
+            elif self.enabled:
+                ends = self.queue.brake(now, [axis.amax for axis in self.config.axes])
+                self._off_at = ends if how is Stop.RAMP_OFF else _NEVER
+
+    def home(self, name: str) -> None:
+        """Look for the home switch of one axis; an absolute axis has nothing to look for."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            index = self.names.index(name)
+            servo = self.servos[index]
+            if servo.axis.absolute:
+                return
+            rest, velocity = self.queue.demand_at(now)
+            if any(velocity) or self._homing is not None:
+                raise DriverError(f"{name} cannot home while an axis moves; wait for standstill")
+            pieces = straight(
+                now + self.config.commit,
+                rest,
+                index,
+                to=servo.switch,
+                speed=servo.axis.home_speed,
+                accel=servo.axis.amax,
+            )
+            self.queue.splice(pieces, now)
+            self._homing = (servo, self.queue.horizon(now) + _HOME_SETTLE)
+
+    def press_estop(self) -> None:
+        """The hardware chain: slides brake and lose power, the spindle too, whatever any program wants."""
+        with self.lock:
+            now = self.advance()
+            self.panel.estop = True
+            self.stop(Stop.RAMP_OFF)
+            self.spindle.cut(now)
+
+    def trip(self, fault: str) -> None:
+        """A drive gives up: no axis is kept alive without the others."""
+        self.fault = self.fault or fault
+        self.stop(Stop.RAMP_OFF)
+
+    def clear_fault(self) -> None:
+        """The operator has seen it; the drives stay off until somebody switches them on."""
+        self.advance()
+        self.fault = ""
+        for servo in self.servos:
+            servo.over = 0.0
+
+    def _readings(self) -> tuple[float, ...]:
+        return tuple(servo.reading for servo in self.servos)
+
+    def _need_power(self) -> None:
+        if self.fault:
+            raise DriverError(f"{self.fault}; clear the fault first")
+        if not self.enabled or self._off_at < _NEVER:
+            raise DriverError("the drives are off; switch them on first")
+
+    def _check_limits(self, segments: Segments) -> None:
+        """The drives' own limits, the last line behind the control's."""
+        for i, servo in enumerate(self.servos):
+            axis = servo.axis
+            if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
+                raise DriverError(f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued")
+            if axis.travel is None or not servo.homed:
+                continue
+            low, high = axis.travel
+            if segments.p[:, i].min() < low - 0.01 or segments.p[:, i].max() > high + 0.01:
+                raise DriverError(
+                    f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued"
+                )
+
+    def _power_off(self) -> None:
+        self.enabled, self._off_at, self._homing = False, _NEVER, None
+        self.queue.rest_at(self._readings())
+        for servo in self.servos:
+            servo.power_lost()
+
+    def _slides(self, last: int) -> None:
+        """Step the servos up to grid point ``last``; a machine at rest is left alone."""
+        while self._k < last:
+            if self.t >= self._off_at:
+                self._power_off()
+            if self._resting():
+                off = int(min(self._off_at / self.config.step + 1, last))
+                self._k = max(self._k + 1, off)
+            else:
+                self._step()
+            self._reference()
+
+    def _resting(self) -> bool:
+        if not self.enabled:
+            return all(servo.v == 0.0 for servo in self.servos)
+        if self.queue.horizon(self.t) > self.t:
+            return False
+        rest, _ = self.queue.demand_at(self.t)
+        settled = [servo.settle(p) for servo, p in zip(self.servos, rest, strict=True)]
+        return all(settled)
+
+    def _step(self) -> None:
+        dt, t = self.config.step, self.t
+        self._k += 1
+        if not self.enabled:
+            for servo in self.servos:
+                servo.roll(dt)
+            return
+        p, v = self.queue.demand_at(t)
+        for servo, position, speed in zip(self.servos, p, v, strict=True):
+            if servo.follow(position, speed, dt) and not self.fault:
+                self.fault = f"{servo.axis.name}: following error"
+        if self.fault and self._off_at == _NEVER:
+            self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+
+    def _reference(self) -> None:
+        if self._homing is not None and self.t >= self._homing[1]:
+            self._homing[0].reference()
+            self._homing = None
+            self.queue.rest_at(self._readings())

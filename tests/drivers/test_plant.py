@@ -1,0 +1,222 @@
+"""The simulated slides, spindle, terminals and station: what they do, and what they refuse."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.ports import DriverError, Stop
+from tests.drivers.machines import CONFIG, play, ramp, simulation
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+def test_slide_follows_with_an_error_and_arrives() -> None:
+    sim, clock = simulation()
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+    play(sim, clock, 0.2)
+    cruising = sim.ports.axes.sample()
+    assert cruising.moving
+    # 2(1 - .9)v/wn with wn = 2*pi*40: 0.0955 mm
+    assert cruising.following_error[0] == pytest.approx(0.0955, abs=0.003)
+    play(sim, clock, 0.4)
+    arrived = sim.ports.axes.sample()
+    assert not arrived.moving
+    assert arrived.actual[0] == pytest.approx(120.0 * 0.24, abs=0.00127)
+    assert arrived.fault == ""
+
+
+@pytest.mark.parametrize("tick", [0.0013, 0.01, 0.37])
+def test_it_does_not_matter_who_looks_when(tick: float) -> None:
+    sim, clock = simulation()
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+    play(sim, clock, 0.185, tick)
+    clock.sleep_until(0.5)
+    looked = sim.machine.true_position()
+    other, clock2 = simulation()
+    other.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
+    clock2.sleep_until(0.5)
+    assert other.machine.true_position() == looked
+
+
+def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
+    sim, clock = simulation()
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
+    play(sim, clock, 0.2)
+    sim.machine.jam("X")
+    play(sim, clock, 0.15)
+    sample = sim.ports.axes.sample()
+    assert sample.fault == "X: following error"
+    assert not sample.enabled
+    with pytest.raises(DriverError, match="clear the fault"):
+        sim.ports.axes.enable(True)
+    sim.machine.jam("X", False)
+    sim.ports.axes.clear_fault()
+    assert not sim.ports.axes.sample().enabled
+    sim.ports.axes.enable(True)
+    play(sim, clock, 0.1)
+    assert sim.ports.axes.sample().fault == ""
+
+
+def test_a_stuck_encoder_trips() -> None:
+    sim, clock = simulation()
+    sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.6))
+    play(sim, clock, 0.2)
+    sim.machine.encoder_stuck("X")
+    play(sim, clock, 0.2)
+    assert sim.ports.axes.sample().fault == "X: following error"
+
+
+@pytest.mark.parametrize("how", [Stop.RAMP_OFF, Stop.RAMP_HOLD, Stop.OFF])
+def test_the_drives_own_stop(how: Stop) -> None:
+    sim, clock = simulation()
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
+    play(sim, clock, 0.2)
+    before = sim.machine.true_position()[0]
+    sim.ports.axes.stop(how)
+    play(sim, clock, 0.3)
+    sample = sim.ports.axes.sample()
+    assert not sample.moving
+    assert sample.enabled == (how is Stop.RAMP_HOLD)
+    # v²/2a = 2.36 mm braked and the following error; friction alone takes 4.7 mm
+    assert sim.machine.true_position()[0] - before < (2.6 if how is not Stop.OFF else 4.8)
+
+
+def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
+    sim, clock = simulation(powered=False)
+    with pytest.raises(DriverError, match="drives are off"):
+        sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
+    sim.ports.axes.enable(True)
+    with pytest.raises(DriverError, match="faster than"):
+        sim.ports.axes.splice(ramp(0.03, ZERO, 128.0, 0.1))
+    with pytest.raises(DriverError, match="leave the travel"):
+        sim.ports.axes.splice(ramp(0.03, ZERO, 100.0, 1.2))
+    sim.machine.drive_fault("Z", "overtemperature")
+    with pytest.raises(DriverError, match="Z: overtemperature"):
+        sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
+    assert sim.machine.true_position() == ZERO
+    assert clock.now() == 0.0
+
+
+def test_estop_is_hardware() -> None:
+    sim, clock = simulation()
+    sim.ports.spindle.run(1000.0)
+    sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
+    play(sim, clock, 0.2)
+    sim.machine.estop()
+    play(sim, clock, 0.1)
+    assert sim.ports.station.snapshot().estop
+    assert not sim.ports.axes.sample().enabled
+    assert not sim.ports.axes.sample().moving
+    with pytest.raises(DriverError, match="E-stop"):
+        sim.ports.axes.enable(True)
+    with pytest.raises(DriverError, match="E-stop"):
+        sim.ports.spindle.run(500.0)
+    play(sim, clock, 3.0)
+    assert sim.machine.spindle_rpm() == 0.0
+    sim.machine.release_estop()
+    play(sim, clock, 1.0)
+    assert not sim.ports.axes.sample().enabled
+    assert sim.machine.spindle_rpm() == 0.0
+
+
+def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
+    lost = dataclasses.replace(CONFIG.axes[1], absolute=False, power_up=-12.0, home_speed=20.0)
+    config = dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2]))
+    sim, clock = simulation(config)
+    assert sim.ports.axes.sample().homed == (True, False, True)
+    assert sim.ports.axes.sample().actual[1] == 0.0
+    sim.ports.axes.home("Z")
+    with pytest.raises(DriverError, match="homing"):
+        sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.1))
+    play(sim, clock, 1.5)
+    assert sim.ports.axes.sample().homed == (True, True, True)
+    assert sim.ports.axes.sample().actual[1] == pytest.approx(0.0, abs=0.00127)
+    sim.machine.estop()
+    play(sim, clock, 0.1)
+    assert sim.ports.axes.sample().homed == (True, False, True)
+
+
+def test_homing_refuses_while_moving_and_an_unknown_axis() -> None:
+    lost = dataclasses.replace(CONFIG.axes[1], absolute=False)
+    sim, clock = simulation(dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2])))
+    sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.6))
+    play(sim, clock, 0.2)
+    with pytest.raises(DriverError, match="standstill"):
+        sim.ports.axes.home("Z")
+    with pytest.raises(DriverError, match="no axis 'B'"):
+        sim.ports.axes.home("B")
+
+
+def test_spindle_ramps_after_its_latency() -> None:
+    sim, clock = simulation()
+    sim.ports.spindle.run(1500.0)
+    clock.sleep_until(0.08)
+    assert sim.ports.spindle.speed() == pytest.approx(0.0)
+    clock.sleep_until(0.58)
+    assert sim.ports.spindle.speed() == pytest.approx(750.0)
+    clock.sleep_until(2.08)
+    assert sim.ports.spindle.speed() == 1500.0
+    angle = sim.ports.spindle.angle()
+    assert angle is not None
+    # half of 1500/min for 1 s, then 1500/min for 1 s
+    assert angle[1] == pytest.approx(12.5 + 25.0, abs=0.0003)
+    sim.ports.spindle.run(-1500.0)
+    clock.sleep_until(2.16 + 0.6)
+    assert sim.ports.spindle.speed() == pytest.approx(0.0, abs=1e-6)
+    clock.sleep_until(2.76 + 0.5)
+    assert sim.ports.spindle.speed() == pytest.approx(-750.0)
+
+
+def test_spindle_faults() -> None:
+    sim, clock = simulation()
+    sim.ports.spindle.run(9000.0)
+    clock.sleep_until(5.0)
+    assert sim.ports.spindle.speed() == 3500.0
+    sim.machine.spindle_bog(0.6)
+    clock.sleep_until(7.0)
+    assert sim.ports.spindle.speed() == pytest.approx(2100.0)
+    sim.machine.spindle_bog(1.0)
+    sim.machine.spindle_ignores_stop()
+    sim.ports.spindle.run(0.0)
+    clock.sleep_until(12.0)
+    assert sim.ports.spindle.speed() == 3500.0
+    sim.machine.spindle_fault("overcurrent")
+    assert sim.ports.spindle.fault() == "overcurrent"
+    with pytest.raises(DriverError, match="overcurrent"):
+        sim.ports.spindle.run(100.0)
+    clock.sleep_until(20.0)
+    assert sim.ports.spindle.speed() == 0.0
+
+
+def test_collet_takes_its_time() -> None:
+    sim, clock = simulation()
+    assert sim.ports.io.inputs()["collet_closed"]
+    sim.ports.io.write("collet", False)
+    clock.sleep_until(0.31)  # 0.25 s and 20 %
+    assert not sim.ports.io.inputs()["collet_closed"]
+    sim.ports.io.write("collet", True)
+    clock.sleep_until(0.31 + 0.23)  # 0.30 s less 20 %, less a little
+    assert not sim.ports.io.inputs()["collet_closed"]
+    clock.sleep_until(0.31 + 0.37)
+    assert sim.ports.io.inputs()["collet_closed"]
+    sim.machine.collet_sensor_stuck()
+    sim.ports.io.write("collet", False)
+    clock.sleep_until(2.0)
+    assert sim.ports.io.inputs()["collet_closed"]
+
+
+def test_safe_keeps_the_collet() -> None:
+    sim, _ = simulation()
+    sim.ports.io.write("coolant", True)
+    sim.ports.io.safe()
+    assert sim.ports.io.outputs() == {"collet": True, "coolant": False, "catcher": False}
+
+
+def test_terminals_refuse_unknown_names() -> None:
+    sim, _ = simulation()
+    with pytest.raises(DriverError, match="output 'laser' is not in the machine file"):
+        sim.ports.io.write("laser", True)
+    with pytest.raises(DriverError, match="input '77' is not in the machine file"):
+        sim.machine.set_input("77", True)

@@ -1,0 +1,160 @@
+"""The queue refuses whatever would not end at rest on the path."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.ports import DriverError, Segments
+from drivers.setpoint_queue import SetpointQueue, Tolerance
+from tests.drivers.machines import ramp
+
+REST = (1.0, 2.0, 3.0)
+
+
+def queue() -> SetpointQueue:
+    return SetpointQueue(("X", "Z", "C"), REST, 0.03, Tolerance((0.001,) * 3, (3.0, 3.0, 3.6)))
+
+
+def test_plays_what_was_queued_and_rests_after_it() -> None:
+    q = queue()
+    q.splice(ramp(0.05, REST, 60.0, 0.2), now=0.0)
+    assert q.demand_at(0.0) == (REST, (0.0, 0.0, 0.0))
+    p, v = q.demand_at(0.05 + 0.02 + 0.1)
+    assert v == pytest.approx((60.0, 0.0, 0.0))
+    assert p[0] == pytest.approx(1.0 + 0.6 + 6.0)  # half of 60*0.02, then 60*0.1
+    p, v = q.demand_at(9.0)
+    assert p == pytest.approx((1.0 + 1.2 + 12.0, 2.0, 3.0))
+    assert v == (0.0, 0.0, 0.0)
+    assert q.horizon(0.0) == pytest.approx(0.29)
+    assert q.horizon(7.0) == 7.0
+
+
+def test_a_splice_replaces_what_came_later() -> None:
+    q = queue()
+    q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
+    p, v = q.demand_at(0.5)
+    brake = Segments(
+        np.array([0.5]), np.array([0.02]), np.array([p]), np.array([v]), np.array([[-3000.0, 0.0, 0.0]])
+    )
+    q.splice(brake, now=0.47)
+    assert q.horizon(0.47) == pytest.approx(0.52)
+    assert q.demand_at(1.0)[0][0] == pytest.approx(p[0] + 0.6)
+    assert q.demand_at(0.4)[1][0] == pytest.approx(60.0)
+
+
+def test_splice_after_the_end_waits_at_rest() -> None:
+    q = queue()
+    q.splice(ramp(0.03, REST, 60.0, 0.1), now=0.0)
+    rest = q.demand_at(1.0)[0]
+    q.splice(ramp(2.0, (rest[0], rest[1], rest[2]), -60.0, 0.1), now=1.0)
+    assert q.demand_at(1.9)[0] == pytest.approx(rest)
+    assert q.demand_at(1.9)[1] == (0.0, 0.0, 0.0)
+    assert q.demand_at(3.0)[0] == pytest.approx(REST)
+
+
+def test_refuses_what_starts_before_commit() -> None:
+    q = queue()
+    with pytest.raises(DriverError, match="too early"):
+        q.splice(ramp(0.029, REST, 60.0, 0.1), now=0.0)
+    assert q.horizon(0.0) == 0.0
+
+
+@pytest.mark.parametrize(("off", "axis"), [(0.0011, 0), (-0.0011, 1), (0.0011, 2)])
+def test_refuses_a_jump_in_position(off: float, axis: int) -> None:
+    start = list(REST)
+    start[axis] += off
+    with pytest.raises(DriverError, match=f"{'XZC'[axis]}: setpoints .* jump in position"):
+        queue().splice(ramp(0.05, (start[0], start[1], start[2]), 60.0, 0.1), now=0.0)
+
+
+def test_refuses_a_jump_in_velocity() -> None:
+    good = ramp(0.05, REST, 60.0, 0.1)
+    moving = Segments(good.t[1:], good.dt[1:], good.p[1:] - good.p[1] + good.p[0], good.v[1:], good.a[1:])
+    with pytest.raises(DriverError, match=r"X: setpoints .* jump in velocity from 0"):
+        queue().splice(moving, now=0.0)
+
+
+def test_refuses_a_queue_that_does_not_end_at_rest() -> None:
+    good = ramp(0.05, REST, 60.0, 0.1)
+    endless = Segments(*(part[:2] for part in good))
+    with pytest.raises(DriverError, match="do not end at rest: X"):
+        queue().splice(endless, now=0.0)
+
+
+@pytest.mark.parametrize("part", [2, 3])
+def test_refuses_a_jump_between_its_own_pieces(part: int) -> None:
+    bad = ramp(0.05, REST, 60.0, 0.1)
+    bad[part][1, 1] += 5.0
+    with pytest.raises(DriverError, match=r"Z: setpoints jump at t = 0\.0700"):
+        queue().splice(bad, now=0.0)
+
+
+def test_refuses_a_gap_and_time_running_backwards() -> None:
+    bad = ramp(0.05, REST, 60.0, 0.1)
+    bad.t[2] += 0.01
+    with pytest.raises(DriverError, match="gap"):
+        queue().splice(bad, now=0.0)
+    bad.dt[1] = -0.1
+    with pytest.raises(DriverError, match="backwards"):
+        queue().splice(bad, now=0.0)
+
+
+def test_refuses_no_numbers_and_wrong_shapes() -> None:
+    bad = ramp(0.05, REST, 60.0, 0.1)
+    bad.p[0, 0] = np.nan
+    with pytest.raises(DriverError, match="no number"):
+        queue().splice(bad, now=0.0)
+    with pytest.raises(DriverError, match="one row each"):
+        queue().splice(Segments(bad.t, bad.dt, bad.p[:, :2], bad.v, bad.a), now=0.0)
+    empty = np.zeros((0, 3))
+    with pytest.raises(DriverError, match="one row each"):
+        queue().splice(Segments(np.zeros(0), np.zeros(0), empty, empty, empty), now=0.0)
+
+
+def test_brake_needs_nobody() -> None:
+    q = queue()
+    q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
+    before = q.demand_at(0.5)[0][0]
+    assert q.brake(0.5, (3000.0, 3000.0, 3600.0)) == pytest.approx(0.52)
+    assert q.demand_at(0.52)[1] == (0.0, 0.0, 0.0)
+    assert q.demand_at(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
+
+
+def test_trimming_forgets_only_the_past() -> None:
+    q, rest = queue(), REST
+    for k in range(100):
+        q.splice(ramp(0.1 + k, rest, 60.0 if k % 2 else -60.0, 0.1), now=float(k))
+        after = q.demand_at(k + 0.9)[0]
+        rest = (after[0], after[1], after[2])
+    late = q.demand_at(99.15)
+    q.trim(99.1)
+    assert q.demand_at(99.15) == late
+    assert len(q._pieces) < 20
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    st.lists(
+        st.tuples(st.floats(0.001, 0.4), st.floats(-120.0, 120.0), st.floats(0.0, 0.3)),
+        min_size=1,
+        max_size=12,
+    )
+)
+def test_any_splices_leave_a_continuous_queue_that_ends_at_rest(
+    calls: list[tuple[float, float, float]],
+) -> None:
+    q, now = queue(), 0.0
+    for wait, speed, cruise in calls:
+        now += wait
+        try:
+            p, _ = q.demand_at(now + 0.03)
+            q.splice(ramp(now + 0.03, (p[0], p[1], p[2]), speed, cruise), now)
+        except DriverError:
+            continue
+    assert q.demand_at(q.horizon(now) + 1e-9)[1] == (0.0, 0.0, 0.0)
+    times = np.arange(0.0, q.horizon(now) + 0.01, 0.0005)
+    x = np.array([q.demand_at(float(t))[0][0] for t in times])
+    assert np.abs(np.diff(x)).max() <= 120.0 * 0.0005 + 0.0011
