@@ -1,0 +1,69 @@
+"""What the axes can do: the numbers from which the time law follows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from core.motion.errors import MotionError
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+AXES = ("X", "Z", "C")
+OVERRIDE_MAX = (
+    1.5  # largest feed_scale and rapid_scale; the speed for which an arc keeps acceleration in hand
+)
+CENTRIPETAL_SHARE = 0.8  # of the acceleration; the rest, in the vector sum, is left for braking on the arc
+
+
+@dataclass(frozen=True, slots=True)
+class MotionLimits:
+    """Limits of the axes in the order X, Z, C: mm/s and mm/s², for C degrees/s and degrees/s².
+
+    ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
+    ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
+    of a limit that the law does not have yet; docs/decisions/0003-time-law.md says where it will act.
+
+    Raises MotionError where a figure is not positive and finite.
+    """
+
+    vmax: tuple[float, float, float] = (127.0, 127.0, 1200.0)
+    amax: tuple[float, float, float] = (3048.0, 3048.0, 12000.0)
+    interval: float = 0.001
+    jerk: None = None
+
+    def __post_init__(self) -> None:
+        for name in (f.name for f in fields(self) if f.name in {"vmax", "amax"}):
+            for axis, value in zip(AXES, getattr(self, name), strict=True):
+                _demand_positive(f"{name} of {axis}", value)
+        _demand_positive("interval", self.interval)
+
+    @property
+    def speeds(self) -> FloatArray:
+        """``vmax`` as an array (3,)."""
+        return np.array(self.vmax)
+
+    @property
+    def accelerations(self) -> FloatArray:
+        """``amax`` as an array (3,)."""
+        return np.array(self.amax)
+
+    @property
+    def plane_speed(self) -> float:
+        """The smaller vmax of both slides, mm/s: what an arc, which turns through all directions, may use."""
+        return min(self.vmax[:2])
+
+    @property
+    def plane_acceleration(self) -> float:
+        """The smaller amax of both slides, mm/s²; see ``plane_speed``."""
+        return min(self.amax[:2])
+
+
+def _demand_positive(what: str, value: float) -> None:
+    if not (math.isfinite(value) and value > 0.0):
+        raise MotionError(f"Motion limit {what} is {value}; give a positive number in the machine file.")

@@ -1,0 +1,184 @@
+"""The path: pieces, their limits, and which block owns them; built at once or as blocks come in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.motion.bounds import accelerations, corner_caps, corner_turns, spare_for_chords, speed_caps
+from core.motion.errors import MotionError
+from core.motion.limits import FloatArray, IntArray, MotionLimits
+from core.motion.pieces import Pieces, joined, make_pieces
+from core.motion.rates import by_radius, constant_rates, split_by_radius
+from core.motion.words import MotionBlock, Words, read_words
+
+GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path in machine coordinates that can be planned; n pieces of m blocks.
+
+    ``s`` (n+1,) is the distance of the joints along the path, mm; it goes on counting where a builder has
+    dropped what lies behind. ``cap`` (n,) mm/s and ``a`` (n,) mm/s² are the limits along the pieces,
+    ``corner`` (n+1,) the squared speed limits of the joints, endless at both ends. Block i, whose number is
+    ``blocks[i]``, owns the pieces ``first[i]:first[i+1]``, none when it has no length. ``start`` (3,) is the
+    point where the path begins.
+    """
+
+    pieces: Pieces
+    s: FloatArray
+    cap: FloatArray
+    a: FloatArray
+    corner: FloatArray
+    blocks: IntArray
+    first: IntArray
+    start: FloatArray
+    limits: MotionLimits
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    @property
+    def length(self) -> float:
+        """Length of the whole path, mm."""
+        return float(self.s[-1] - self.s[0])
+
+    def block_span(self, n: int) -> tuple[float, float]:
+        """Distances at which block ``n`` starts and ends. Raises MotionError when it is not on this path."""
+        i = int(np.searchsorted(self.blocks, n))
+        if i == len(self.blocks) or self.blocks[i] != n:
+            raise MotionError(f"Block {n} is not on the planned path.")
+        return float(self.s[self.first[i]]), float(self.s[self.first[i + 1]])
+
+    def piece_at(self, s: FloatArray) -> IntArray:
+        """Index of the piece that holds each distance; at a joint the piece that starts there."""
+        found: IntArray = np.searchsorted(self.s, s, side="right") - 1
+        return np.clip(found, 0, max(len(self) - 1, 0))
+
+    def point(self, s: FloatArray, piece: IntArray | None = None) -> FloatArray:
+        """Machine position (k, 3) at the distances ``s`` (k,), exact on lines and arcs."""
+        if not len(self):
+            return np.tile(self.start, (len(s), 1))
+        index = self.piece_at(s) if piece is None else piece
+        pieces = self.pieces[index]
+        return pieces.point(np.clip(s - self.s[index], 0.0, pieces.length))
+
+
+class PathBuilder:
+    """Makes paths of blocks that come in one after the other.
+
+    ``rpm_max`` is the highest spindle speed that can be reached now: the machine's, or the operator's limit.
+    """
+
+    def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
+        self._limits = limits
+        self._rpm_max = rpm_max
+        self._parts: list[Pieces] = []
+        self._blocks: list[IntArray] = []
+        self._counts: list[IntArray] = []
+        self._start: FloatArray | None = None
+        self._end: FloatArray | None = None
+        self._s0 = 0.0
+        self._path: Path | None = None
+
+    def add(self, blocks: Iterable[MotionBlock]) -> None:
+        """Append blocks that move. Raises MotionError, and adds nothing, when one of them cannot be moved."""
+        batch = list(blocks)
+        if not batch:
+            return
+        words = read_words(batch, self._rpm_max)
+        _demand_unbroken(words, self._end)
+        pieces, counts = _pieces(words)
+        if self._start is None:
+            self._start = words.start[0].copy()
+        self._end = words.end[-1].copy()
+        self._parts.append(pieces)
+        self._blocks.append(words.n.astype(np.int64))
+        self._counts.append(counts)
+        self._path = None
+
+    def path(self) -> Path:
+        """The path of all blocks that were added and not dropped. Raises MotionError before the first."""
+        if self._path is None:
+            self._path = self._make()
+        return self._path
+
+    def drop_before(self, n: int) -> None:
+        """Forget the blocks before block ``n`` but the last with a length: corners need a neighbour."""
+        path = self.path()
+        keep = int(np.searchsorted(path.blocks, n))
+        piece = int(path.first[keep])
+        if piece == 0:
+            return
+        keep = int(np.searchsorted(path.first, piece - 1, side="right")) - 1
+        piece = int(path.first[keep])
+        self._s0 = float(path.s[piece])
+        self._start = path.point(path.s[piece : piece + 1])[0]
+        self._parts = [path.pieces[piece:]]
+        self._blocks = [path.blocks[keep:]]
+        self._counts = [np.diff(path.first)[keep:]]
+        self._path = None
+
+    def _make(self) -> Path:
+        if self._start is None:
+            raise MotionError("There is no block to plan a path of; add the blocks first.")
+        pieces = joined(self._parts)
+        cap, a, corner = _limits(pieces, self._limits)
+        return Path(
+            pieces=pieces,
+            s=self._s0 + np.concatenate([[0.0], np.cumsum(pieces.length)]),
+            cap=cap,
+            a=a,
+            corner=corner,
+            blocks=np.concatenate(self._blocks),
+            first=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
+            start=self._start,
+            limits=self._limits,
+        )
+
+
+def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: float = np.inf) -> Path:
+    """The path of ``blocks``; see ``PathBuilder``. Raises MotionError when a block cannot be moved."""
+    builder = PathBuilder(limits, rpm_max=rpm_max)
+    builder.add(blocks)
+    return builder.path()
+
+
+def _limits(pieces: Pieces, limits: MotionLimits) -> tuple[FloatArray, FloatArray, FloatArray]:
+    cap = speed_caps(pieces, limits)
+    a = accelerations(pieces, cap, limits)
+    corner = np.full(len(pieces) + 1, np.inf)
+    if len(pieces) > 1:
+        turns = corner_turns(pieces)
+        corner[1:-1] = corner_caps(pieces, turns, limits)
+        a = np.minimum(a, spare_for_chords(pieces, cap, turns, corner[1:-1], limits))
+    return cap, a, corner
+
+
+def _pieces(words: Words) -> tuple[Pieces, IntArray]:
+    """Pieces of the blocks and how many (m,) each block has."""
+    whole = make_pieces(words, constant_rates(words))
+    counts = (whole.length > 0.0).astype(np.int64)
+    turned = np.flatnonzero((counts > 0) & by_radius(words))
+    parts, done = [], 0
+    for i in turned.tolist():
+        split = split_by_radius(whole, words, i)
+        if len(split) > 1:
+            parts += [whole[done:i], split]
+            counts[i], done = len(split), i + 1
+    pieces = joined([*parts, whole[done:]])
+    return pieces[pieces.length > 0.0], counts
+
+
+def _demand_unbroken(words: Words, end: FloatArray | None) -> None:
+    before = words.end[:-1] if end is None else np.vstack([end, words.end[:-1]])
+    gap = np.abs(words.start[len(words.n) - len(before) :] - before).max(axis=1, initial=0.0)
+    if (gap > GAP).any():
+        i = int(gap.argmax()) + len(words.n) - len(before)
+        raise MotionError(
+            f"Block {words.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
+            "plan it from where the machine stands."
+        )

@@ -1,0 +1,174 @@
+"""The time law itself: squared speeds at the joints, then phases of constant acceleration.
+
+Where a jerk limit will go: ``_phases`` gives every piece a speed-up, a cruise and a slow-down of constant
+acceleration; a jerk limit replaces these three by seven, and ``2·a·length`` by what such a ramp reaches.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.motion.errors import MotionError
+from core.motion.limits import OVERRIDE_MAX, FloatArray
+from core.motion.minima import reachable_backward, reachable_forward
+from core.motion.path import Path
+from core.motion.phases import at_rest, profile_of
+from core.motion.profile import Profile
+
+NEAR = 1e-9  # mm of path and relative squared speed that are rounding, not motion
+
+
+def plan(
+    path: Path,
+    *,
+    start_s: float | None = None,
+    start_v: float = 0.0,
+    feed_scale: float = 1.0,
+    rapid_scale: float = 1.0,
+    stop: bool = False,
+) -> Profile:
+    """The fastest motion from ``start_s`` (default: the path's start) at ``start_v`` that ends at rest.
+
+    It ends at the path's end, with ``stop`` as soon as braking allows; a scale of 0 stops before the first
+    feed (or rapid) piece, or at once when braking before it is no longer possible. A present speed above a
+    new, lower feed is braked down with full acceleration; limits of axes, arcs and corners hold always.
+
+    Raises MotionError when a figure makes no sense, or the speed is too high for the next corner or for
+    coming to rest on this path: the state then does not come from a plan on this path.
+    """
+    _demand_sane(start_v, feed_scale, rapid_scale)
+    at = _start(path, start_s)
+    first = int(path.piece_at(np.array([at]))[0])
+    if path.s[-1] - at <= NEAR or not len(path):
+        return _rest(path, at, start_v)
+    if stop:
+        return _brake(path, at, start_v, first)
+    scale = np.where(path.pieces.rapid[first:], rapid_scale, feed_scale)
+    soft = np.minimum(path.cap[first:], scale * path.pieces.rate[first:])
+    blocked = np.flatnonzero(soft == 0.0)
+    last = int(blocked[0]) if len(blocked) else len(soft)
+    run = _Run.of(path, at, first, first + last)
+    if len(blocked) and (last == 0 or not run.can_rest(start_v)):
+        return _brake(path, at, start_v, first)
+    speeds = _squared_speeds(run, soft[:last] ** 2, start_v)
+    cap = soft[:last] ** 2
+    return profile_of(path, first, at, length=run.length, a=run.a, cap=cap, speeds=speeds)
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The pieces that a plan covers: n pieces, the first perhaps in part."""
+
+    length: FloatArray
+    a: FloatArray
+    hard: FloatArray  # (n+1,) squared speeds that nothing may exceed, 0 at the end
+
+    @classmethod
+    def of(cls, path: Path, at: float, first: int, last: int) -> _Run:
+        length, cap = path.pieces.length[first:last].copy(), path.cap[first:last] ** 2
+        hard = np.zeros(len(length) + 1)
+        if len(length):
+            length[0] = path.s[first + 1] - at
+            hard[:-1] = cap
+            hard[1:-1] = np.minimum(np.minimum(cap[:-1], cap[1:]), path.corner[first + 1 : last])
+            if at <= path.s[first]:
+                hard[0] = min(cap[0], path.corner[first])
+        return cls(length, path.a[first:last], hard)
+
+    @property
+    def gain(self) -> FloatArray:
+        return 2.0 * self.a * self.length
+
+    def can_rest(self, v: float) -> bool:
+        return v * v <= float(self.gain.sum()) + self.slack(v)
+
+    def slack(self, v: float) -> float:
+        """What a squared speed may be off by rounding of the distances."""
+        return float(NEAR * v * v + 2.0 * NEAR * self.a.max(initial=0.0))
+
+
+def _squared_speeds(run: _Run, soft: FloatArray, v: float) -> FloatArray:
+    """Squared speeds (n+1,) at the joints, beginning with v²."""
+    limit = run.hard.copy()
+    np.minimum(limit[:-1], soft, out=limit[:-1])
+    np.minimum(limit[1:], soft, out=limit[1:])
+    allowed = reachable_backward(limit, run.gain)
+    slack = run.slack(v)
+    if v * v <= allowed[0] + slack:
+        allowed[0] = v * v
+        return reachable_forward(allowed, run.gain)
+    return _braked_into(run, allowed, v * v, slack)
+
+
+def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) -> FloatArray:
+    """Full braking from a speed that the new feeds do not allow, until they allow it; then on as usual."""
+    braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
+    fits = np.flatnonzero(braked <= allowed + slack)
+    fits = fits[fits > 0]
+    if not len(fits):
+        raise MotionError(
+            f"A speed of {math.sqrt(square):.3f} mm/s cannot come to rest within the "
+            f"{run.length.sum():.4f} mm that are left; plan from a state of this path."
+        )
+    k = int(fits[0])
+    _demand_passable(braked[:k], run.hard[:k], slack)
+    allowed[k] = min(allowed[k], braked[k - 1] + run.gain[k - 1])
+    tail = reachable_forward(allowed[k:], run.gain[k:])
+    return np.concatenate([braked[:k], tail])
+
+
+def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None:
+    over = braked > hard + slack
+    if over.any():
+        i = int(over.argmax())
+        raise MotionError(
+            f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for what follows, which allows "
+            f"{math.sqrt(hard[i]):.3f} mm/s; plan from a state of this path."
+        )
+
+
+def _brake(path: Path, at: float, v: float, first: int) -> Profile:
+    """To rest with full acceleration along the path; looks only as far ahead as it must."""
+    last = first
+    while True:
+        last = min(len(path), last + max(64, last - first))
+        run = _Run.of(path, at, first, last)
+        if run.can_rest(v) or last == len(path):
+            break
+    if not run.can_rest(v):
+        _braked_into(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
+    braked = v * v - np.concatenate([[0.0], np.cumsum(run.gain)])
+    k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
+    if k == 0:
+        return at_rest(path, at)
+    _demand_passable(braked[:k], run.hard[:k], run.slack(v))
+    length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)
+    length[-1] = min(length[-1], speeds[-2] / (2.0 * run.a[k - 1]))
+    speeds[-1] = 0.0
+    return profile_of(path, first, at, length=length, a=run.a[:k], cap=np.zeros(k), speeds=speeds)
+
+
+def _rest(path: Path, at: float, v: float) -> Profile:
+    if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
+        raise MotionError(
+            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan earlier."
+        )
+    return at_rest(path, at)
+
+
+def _start(path: Path, start_s: float | None) -> float:
+    at = float(path.s[0]) if start_s is None else start_s
+    if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
+        raise MotionError(f"Distance {at} is not on the path from {path.s[0]:.6f} to {path.s[-1]:.6f} mm.")
+    return min(max(at, float(path.s[0])), float(path.s[-1]))
+
+
+def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:
+    if not (math.isfinite(start_v) and start_v >= 0.0):
+        raise MotionError(f"The present speed is {start_v}; it must be zero or above.")
+    for name, scale in (("feed", feed_scale), ("rapid", rapid_scale)):
+        if not 0.0 <= scale <= OVERRIDE_MAX:
+            raise MotionError(f"The {name} override is {scale}; it must lie between 0 and {OVERRIDE_MAX}.")

@@ -1,0 +1,152 @@
+"""What the time law reads from elementary blocks: one row of numbers a block."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from operator import attrgetter
+from typing import Protocol
+
+import numpy as np
+
+from core.motion.errors import MotionError
+from core.motion.limits import BoolArray, FloatArray
+
+
+class ModalLike(Protocol):
+    """The clamp of the spindle speed under constant surface speed, rpm."""
+
+    @property
+    def css_min(self) -> float: ...
+    @property
+    def css_max(self) -> float | None: ...
+
+
+class MotionBlock(Protocol):
+    """An elementary block as the interpreter makes it; mm, X a radius, degrees, mm/s or mm/rev."""
+
+    @property
+    def n(self) -> int: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def x0(self) -> float: ...
+    @property
+    def z0(self) -> float: ...
+    @property
+    def c0(self) -> float: ...
+    @property
+    def x(self) -> float: ...
+    @property
+    def z(self) -> float: ...
+    @property
+    def c(self) -> float: ...
+    @property
+    def offset_x(self) -> float: ...
+    @property
+    def offset_z(self) -> float: ...
+    @property
+    def feed(self) -> float: ...
+    @property
+    def per_rev(self) -> bool: ...
+    @property
+    def rpm(self) -> float: ...
+    @property
+    def css(self) -> float | None: ...
+    @property
+    def cx(self) -> float: ...
+    @property
+    def cz(self) -> float: ...
+    @property
+    def clockwise(self) -> bool: ...
+    @property
+    def modal(self) -> ModalLike: ...
+
+
+KINDS = {"rapid": 0, "feed": 1, "arc": 2}
+_COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
+_read = attrgetter(*_COLUMNS, "per_rev", "clockwise")
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The words of m blocks: ``start`` and ``end`` (m, 3) and ``centre`` (m, 2) in machine coordinates.
+
+    ``axis`` (m,) is the machine X of the spindle axis, from which radii count. ``surface lo hi`` (m,)
+    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
+    """
+
+    n: FloatArray
+    start: FloatArray
+    end: FloatArray
+    centre: FloatArray
+    axis: FloatArray
+    feed: FloatArray
+    rpm: FloatArray
+    per_rev: BoolArray
+    clockwise: BoolArray
+    rapid: BoolArray
+    arc: BoolArray
+    surface: FloatArray
+    lo: FloatArray
+    hi: FloatArray
+
+
+def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
+    """The words of blocks that move; ``rpm_max`` is what the spindle can do at all.
+
+    Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
+    """
+    width = len(_COLUMNS) + 2
+    table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
+    _demand_finite(table)
+    kinds = _kinds(blocks)
+    shift = table[:, 7:9]
+    start, end = table[:, 1:4].copy(), table[:, 4:7].copy()
+    start[:, :2] += shift
+    end[:, :2] += shift
+    surface, lo, hi = _surface(blocks, rpm_max)
+    return Words(
+        n=table[:, 0],
+        start=start,
+        end=end,
+        centre=table[:, 11:13] + shift,
+        axis=table[:, 7],
+        feed=table[:, 9],
+        rpm=np.minimum(np.abs(table[:, 10]), rpm_max),
+        per_rev=(table[:, 13] != 0.0) & (kinds != KINDS["rapid"]),
+        clockwise=table[:, 14] != 0.0,
+        rapid=kinds == KINDS["rapid"],
+        arc=kinds == KINDS["arc"],
+        surface=surface,
+        lo=lo,
+        hi=hi,
+    )
+
+
+def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
+    try:
+        return np.array([KINDS[b.kind] for b in blocks], dtype=np.float64)
+    except KeyError:
+        block = next(b for b in blocks if b.kind not in KINDS)
+        raise MotionError(f"Block {block.n}: a {block.kind} block has no time law of its own.") from None
+
+
+def _demand_finite(table: FloatArray) -> None:
+    bad = ~np.isfinite(table).all(axis=1)
+    if bad.any():
+        row = table[bad.argmax()]
+        names = (*_COLUMNS, "per_rev", "clockwise")
+        name = names[int(np.argmax(~np.isfinite(row)))]
+        raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.")
+
+
+def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    surface = np.full(len(blocks), np.nan)
+    lo, hi = np.zeros(len(blocks)), np.full(len(blocks), rpm_max)
+    for i, block in enumerate(blocks):
+        if block.css is not None:
+            surface[i], lo[i] = block.css, block.modal.css_min
+            hi[i] = rpm_max if block.modal.css_max is None else min(block.modal.css_max, rpm_max)
+    return surface, np.minimum(lo, hi), hi
