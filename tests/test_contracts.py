@@ -23,7 +23,7 @@ def test_no_command_but_the_screen_imports_qt(command: str) -> None:
     importlib.import_module(f"app.cli.{command}")
     script = (
         "import sys; from app.cli.main import build_parser; "
-        f"build_parser(['{command}']); import app.compose; "
+        f"build_parser(['{command}']); import app.compose.machine; "
         "sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0

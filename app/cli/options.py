@@ -45,7 +45,7 @@ class Circumstances:
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
-    from app.compose import read_machine, setup_for
+    from app.compose.machine import read_machine, setup_for
 
     machine = read_machine(args.machine)
     tools, secondary = _offsets(args.offsets)
@@ -62,7 +62,7 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
 
 
 def _offsets(path: str | None) -> Offsets:
-    from app.compose import stored_offsets
+    from app.compose.offsets import stored_offsets
 
     if path is None:
         return stored_offsets()

@@ -1,4 +1,4 @@
-"""The one place where rooms and drivers are put together: machine file, setup, ports, executor."""
+"""The machine file and the circumstances of one pass through a program."""
 
 from __future__ import annotations
 

@@ -1,0 +1,1 @@
+"""The one place where rooms and drivers are put together. Each module is imported only by who needs it."""

@@ -1,0 +1,72 @@
+"""The simulated lathe as the machine file describes it."""
+
+from __future__ import annotations
+
+from typing import cast
+
+from core.machine.model import Axis, Machine
+from core.ports import Clock
+from drivers.simulated import (
+    SimAxis,
+    SimCollet,
+    SimConfig,
+    SimOutput,
+    SimSpindle,
+    Simulation,
+    StepClock,
+    build_simulation,
+)
+
+
+def simulated(machine: Machine, clock: Clock) -> Simulation:
+    """Ports and handle of a simulated lathe on this clock."""
+    return build_simulation(sim_config(machine), clock)
+
+
+def sim_config(machine: Machine) -> SimConfig:
+    """The plant's figures from the machine file's."""
+    spindle = machine.spindle
+    return SimConfig(
+        axes=tuple(_axis(axis, machine) for axis in machine.axes),
+        spindle=SimSpindle(
+            rpm_max=spindle.rpm_max, accel=spindle.accel, decel=spindle.decel, ppr=spindle.encoder_ppr
+        ),
+        collet=SimCollet(open_time=machine.timing.collet_open, close_time=machine.timing.collet_close),
+        outputs={
+            name: SimOutput(safe=output.safe, initial=name == "collet")
+            for name, output in machine.outputs.items()
+        },
+        inputs=tuple(machine.inputs),
+        commit=machine.timing.commit,
+        seed=cast("int", machine.sim.get("seed", 1)),
+    )
+
+
+def _axis(axis: Axis, machine: Machine) -> SimAxis:
+    return SimAxis(
+        name=axis.name,
+        vmax=axis.vmax,
+        amax=axis.amax,
+        count=axis.count,
+        following_window=axis.following_window,
+        following_time=axis.following_time,
+        travel=axis.travel,
+        absolute=axis.absolute,
+        home_speed=axis.home_speed or 10.0,
+        corner=axis.amax * machine.timing.setpoint,
+    )
+
+
+def check_ports(machine: Machine) -> list[tuple[str, str, str]]:
+    """Connect and ask: (name, state, detail) of each drive, the spindle, the station and each input."""
+    ports = simulated(machine, StepClock()).ports
+    sample = ports.axes.sample()
+    rows = [
+        (name, "fault" if sample.fault else "ok", f"homed {homed}, at {at:.4f}")
+        for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True)
+    ]
+    rows.append(("spindle", ports.spindle.fault() or "ok", f"{ports.spindle.speed():.0f} rpm"))
+    station = ports.station.snapshot()
+    rows.append(("station", "E-stop" if station.estop else "ok", f"feed pot {station.feed_pot:.0%}"))
+    rows += [(f"input {name}", "on" if on else "off", "") for name, on in ports.io.inputs().items()]
+    return rows

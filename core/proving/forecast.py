@@ -1,0 +1,61 @@
+"""How long the machine itself takes: spindle ramps, collet, the start and end of a motion."""
+
+from __future__ import annotations
+
+from core.machine.model import Machine
+
+# Seconds before a drive follows a new command; inverters need 50 to 100 ms.
+DRIVE_LATENCY = 0.08
+
+
+class SpindleForecast:
+    """The spindle as its drive ramps it: signed rpm over time, and when it will have been at speed.
+
+    Times must not go backwards between calls of ``command``.
+    """
+
+    def __init__(self, machine: Machine) -> None:
+        self._model = machine.spindle
+        self._from = 0.0
+        self._to = 0.0
+        self._since = 0.0
+
+    @property
+    def target(self) -> float:
+        """The command in force, signed rpm."""
+        return self._to
+
+    def command(self, t: float, rpm: float) -> None:
+        """A new command at ``t``; the ramp starts from the speed of that moment."""
+        if rpm == self._to:
+            return
+        self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
+
+    def speed(self, t: float) -> float:
+        """Signed rpm at ``t``."""
+        left = max(0.0, t - self._since)
+        rpm = self._from
+        for goal, rate in self._legs():
+            need = abs(goal - rpm) / rate
+            if left < need:
+                return rpm + (goal - rpm) * left / need
+            left -= need
+            rpm = goal
+        return self._to
+
+    def _legs(self) -> list[tuple[float, float]]:
+        """The ramp as (rpm to reach, rpm/s): a reversal slows to rest first."""
+        slow, fast = self._model.decel, self._model.accel
+        if self._from * self._to < 0:
+            return [(0.0, slow), (self._to, fast)]
+        return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
+
+    def ready_at(self) -> float:
+        """When the speed will have been within the at-speed band for as long as the machine file asks."""
+        rpm, t = self._from, self._since
+        band = self._model.at_speed * abs(self._to)
+        for goal, rate in self._legs():
+            inside = band if goal == self._to else 0.0
+            t += max(0.0, abs(goal - rpm) - inside) / rate
+            rpm = goal
+        return t + self._model.at_speed_time

@@ -1,0 +1,75 @@
+"""Sums over a program while it passes by: lengths, reach, tools; constant memory at any size."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.extent import arc_extent, arc_sweep
+from core.interpreter.blocks import Block, Kind
+from core.proving.report import Range, Reach
+
+
+class Span:
+    """Least and greatest of what was seen; (0, 0) when nothing was."""
+
+    def __init__(self) -> None:
+        self.low, self.high = math.inf, -math.inf
+
+    def see(self, *values: float) -> None:
+        """Widen to these values."""
+        self.low = min(self.low, *values)
+        self.high = max(self.high, *values)
+
+    @property
+    def range(self) -> Range:
+        """What was seen."""
+        return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
+
+
+class Tally:
+    """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
+
+    def __init__(self) -> None:
+        self.x, self.z, self.c, self.rpm, self.feed = Span(), Span(), Span(), Span(), Span()
+        self.cutting_length = 0.0
+        self.rapid_length = 0.0
+
+    @property
+    def reach(self) -> Reach:
+        """What the program reaches."""
+        return Reach(self.x.range, self.z.range, self.c.range, self.rpm.range, self.feed.range)
+
+    def add(self, blocks: Sequence[Block]) -> None:
+        """Count the moving blocks of a stretch."""
+        if not blocks:
+            return
+        table = np.array([(b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev) for b in blocks])
+        rapid = np.array([b.kind is Kind.RAPID for b in blocks])
+        length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
+        for index, block in enumerate(blocks):
+            if block.kind is Kind.ARC:
+                length[index] = self._arc(block)
+        self.rapid_length += float(length[rapid].sum())
+        self.cutting_length += float(length[~rapid].sum())
+        for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
+            span.see(float(table[:, column].min()), float(table[:, column].max()))
+        self._speeds(table)
+
+    def _arc(self, block: Block) -> float:
+        box = arc_extent(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        self.x.see(box[0], box[1])
+        self.z.see(box[2], box[3])
+        _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
+
+    def _speeds(self, table: npt.NDArray[np.float64]) -> None:
+        rpm = np.abs(table[:, 5])
+        path_speed = np.where(table[:, 7] > 0, table[:, 6] * rpm / 60, table[:, 6])
+        self.feed.see(float(path_speed.min()), float(path_speed.max()))
+        turning = rpm[rpm > 0]
+        if turning.size:
+            self.rpm.see(float(turning.min()), float(turning.max()))
