@@ -15,6 +15,7 @@ from app.cli.progress import Progress
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from core.interpreter.blocks import Block
+    from core.proving.timeline import Timeline
 
 _HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
 

@@ -34,7 +34,7 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     """The parser with these subcommands."""
     parser = _Parser(
         prog="turndesk",
-        description="The operator desk for OmniTurn-style CNC lathes. Without a command: the operator screen.",
+        description="The operator desk for OmniTurn-style lathes. Without a command: the operator screen.",
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     parser.add_argument(

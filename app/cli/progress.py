@@ -12,7 +12,7 @@ WIDTH = 30
 
 
 class Progress:
-    """Counts towards ``total`` (0: unknown) and draws itself on stderr once the work has taken long enough."""
+    """Counts towards ``total`` (0: unknown) and draws itself on stderr once the work takes long."""
 
     def __init__(self, what: str, total: float = 0.0) -> None:
         self.what = what
