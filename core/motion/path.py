@@ -84,6 +84,11 @@ class PathBuilder:
         self._s0 = 0.0
         self._path: Path | None = None
 
+    @property
+    def holds_blocks(self) -> bool:
+        """Whether there is anything to make a path of."""
+        return self._start is not None
+
     def add(self, blocks: Iterable[MotionBlock]) -> None:
         """Append blocks that move. Raises MotionError, and adds nothing, when one of them cannot be moved."""
         batch = list(blocks)

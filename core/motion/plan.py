@@ -18,6 +18,7 @@ from core.motion.path import Path
 from core.motion.phases import at_rest, profile_of
 from core.motion.profile import Profile
 
+_SETTLED = 1e-12  # relative difference of squared speeds that is rounding
 NEAR = 1e-9  # mm of path and relative squared speed that are rounding, not motion
 
 
@@ -56,6 +57,27 @@ def plan(
     speeds = _squared_speeds(run, soft[:last] ** 2, start_v)
     cap = soft[:last] ** 2
     return profile_of(path, first, at, length=run.length, a=run.a, cap=cap, speeds=speeds)
+
+
+def settled_joints(path: Path, start_s: float | None = None) -> int:
+    """The last joint of the path whose planned speed no further piece can change, -1 when there is none.
+
+    The last piece may get a sharp corner at its end or none, so the speed at its start may turn out to be
+    anything up to its limit. Joints that come out the same for 0 and for that limit are settled.
+    """
+    first = int(path.piece_at(np.array([_start(path, start_s)]))[0])
+    if len(path) - first < 2:
+        return -1
+    run = _Run.of(path, float(path.s[first]), first, len(path))
+    limit = run.hard[:-1].copy()
+    soft = np.minimum(path.cap, path.pieces.rate)[first:] ** 2
+    np.minimum(limit, soft, out=limit)
+    np.minimum(limit[1:], soft[:-1], out=limit[1:])
+    most = reachable_backward(limit, run.gain[:-1])
+    limit[-1] = 0.0
+    least = reachable_backward(limit, run.gain[:-1])
+    same = np.flatnonzero(most - least <= _SETTLED * most)
+    return first + int(same[-1]) if len(same) else -1
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,6 +43,14 @@ class Profile:
         done = times >= self.duration
         return np.where(done, self.end_s, s), np.where(done, 0.0, np.maximum(v0 + a * tau, 0.0))
 
+    @property
+    def end_v(self) -> float:
+        """Speed at the end, mm/s: 0 for a plan, the speed to go on with for a part of one."""
+        if not len(self):
+            return 0.0
+        last = self.phases.pick(slice(-1, None))
+        return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
+
     def position(self, t: FloatArray | float) -> FloatArray:
         """Machine position (m, 3) at the times ``t`` (m,), exact on lines and arcs."""
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
