@@ -14,33 +14,41 @@ class SimMachine:
 
     # --- the operator's hands -----------------------------------------------------------------------------
 
-    def palm(self, which: str, down: bool) -> None:
-        """Press or let go palm ``left`` or ``right``."""
-        with self._plant.lock:
-            relay, now = self._plant.panel.relay, self._plant.clock.now()
-            if down:
-                relay.press(which, now)
-            else:
-                relay.release(which, now)
+    def press_left(self) -> None:
+        """Left palm button down."""
+        self._palm("left", down=True)
+
+    def release_left(self) -> None:
+        """Left palm button up."""
+        self._palm("left", down=False)
+
+    def press_right(self) -> None:
+        """Right palm button down."""
+        self._palm("right", down=True)
+
+    def release_right(self) -> None:
+        """Right palm button up."""
+        self._palm("right", down=False)
 
     def press_start(self) -> None:
         """Both palms down together and up again."""
-        for down in (True, False):
-            self.palm("left", down)
-            self.palm("right", down)
-
-    def hold(self, down: bool = True) -> None:
-        """Feed hold button."""
-        with self._plant.lock:
-            self._plant.panel.hold(down, self._plant.clock.now())
+        self.press_left()
+        self.press_right()
+        self.release_left()
+        self.release_right()
 
     def press_hold(self) -> None:
-        """Feed hold pressed and let go."""
-        self.hold(True)
-        self.hold(False)
+        """Feed hold button down."""
+        with self._plant.lock:
+            self._plant.panel.hold(True, self._plant.clock.now())
 
-    def estop(self) -> None:
-        """Press the E-stop: it latches."""
+    def release_hold(self) -> None:
+        """Feed hold button up."""
+        with self._plant.lock:
+            self._plant.panel.hold(False, self._plant.clock.now())
+
+    def press_estop(self) -> None:
+        """Hit the E-stop: it latches."""
         self._plant.press_estop()
 
     def release_estop(self) -> None:
@@ -49,17 +57,17 @@ class SimMachine:
             self._plant.advance()
             self._plant.panel.estop = False
 
-    def spindle_switch(self, auto: bool) -> None:
+    def set_spindle_auto(self, auto: bool) -> None:
         """Spindle AUTO/OFF."""
         with self._plant.lock:
             self._plant.panel.spindle_auto = auto
 
-    def spindle_pot(self, fraction: float) -> None:
+    def set_spindle_pot(self, fraction: float) -> None:
         """Spindle override pot, 0…1."""
         with self._plant.lock:
             self._plant.panel.spindle_pot = min(max(fraction, 0.0), 1.0)
 
-    def feed_pot(self, fraction: float) -> None:
+    def set_feed_pot(self, fraction: float) -> None:
         """Feed override pot, 0…1.5."""
         with self._plant.lock:
             self._plant.panel.feed_pot = min(max(fraction, 0.0), 1.5)
@@ -136,6 +144,14 @@ class SimMachine:
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.speed
+
+    def _palm(self, which: str, *, down: bool) -> None:
+        with self._plant.lock:
+            relay, now = self._plant.panel.relay, self._plant.clock.now()
+            if down:
+                relay.press(which, now)
+            else:
+                relay.release(which, now)
 
     def _servo(self, axis: str) -> Servo:
         return self._plant.servos[self._plant.names.index(axis)]

@@ -104,7 +104,7 @@ def test_estop_is_hardware() -> None:
     sim.ports.spindle.run(1000.0)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
-    sim.machine.estop()
+    sim.machine.press_estop()
     play(sim, clock, 0.1)
     assert sim.ports.station.snapshot().estop
     assert not sim.ports.axes.sample().enabled
@@ -133,7 +133,7 @@ def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
     play(sim, clock, 1.5)
     assert sim.ports.axes.sample().homed == (True, True, True)
     assert sim.ports.axes.sample().actual[1] == pytest.approx(0.0, abs=0.00127)
-    sim.machine.estop()
+    sim.machine.press_estop()
     play(sim, clock, 0.1)
     assert sim.ports.axes.sample().homed == (True, False, True)
 

@@ -9,14 +9,14 @@ from tests.drivers.machines import simulation
 
 def test_both_palms_together_start() -> None:
     sim, clock = simulation()
-    sim.machine.palm("left", True)
+    sim.machine.press_left()
     clock.advance(0.49)
     assert not sim.ports.station.snapshot().start
-    sim.machine.palm("right", True)
+    sim.machine.press_right()
     assert sim.ports.station.snapshot().start
     clock.advance(3.0)
     assert sim.ports.station.snapshot().start
-    sim.machine.palm("right", False)
+    sim.machine.release_right()
     assert not sim.ports.station.snapshot().start
 
 
@@ -32,27 +32,27 @@ def test_a_short_press_lasts_one_pulse() -> None:
 @pytest.mark.parametrize("apart", [0.51, 5.0])
 def test_palms_too_far_apart_do_not_start(apart: float) -> None:
     sim, clock = simulation()
-    sim.machine.palm("left", True)
+    sim.machine.press_left()
     clock.advance(apart)
-    sim.machine.palm("right", True)
+    sim.machine.press_right()
     assert not sim.ports.station.snapshot().start
 
 
 def test_a_palm_tied_down_never_starts_again() -> None:
     sim, clock = simulation()
-    sim.machine.palm("left", True)
-    sim.machine.palm("right", True)
+    sim.machine.press_left()
+    sim.machine.press_right()
     for _ in range(3):
-        sim.machine.palm("right", False)
+        sim.machine.release_right()
         clock.advance(0.2)
-        sim.machine.palm("right", True)
+        sim.machine.press_right()
         assert not sim.ports.station.snapshot().start
-    sim.machine.palm("left", False)
+    sim.machine.release_left()
     clock.advance(0.2)
-    sim.machine.palm("left", True)
+    sim.machine.press_left()
     assert not sim.ports.station.snapshot().start
-    sim.machine.palm("left", False)
-    sim.machine.palm("right", False)
+    sim.machine.release_left()
+    sim.machine.release_right()
     sim.machine.press_start()
     assert sim.ports.station.snapshot().start
 
@@ -60,11 +60,12 @@ def test_a_palm_tied_down_never_starts_again() -> None:
 def test_hold_and_estop() -> None:
     sim, clock = simulation()
     sim.machine.press_hold()
+    sim.machine.release_hold()
     clock.advance(0.05)
     assert sim.ports.station.snapshot().hold
     clock.advance(0.1)
     assert not sim.ports.station.snapshot().hold
-    sim.machine.estop()
+    sim.machine.press_estop()
     clock.advance(60.0)
     assert sim.ports.station.snapshot().estop
     sim.machine.release_estop()
@@ -73,16 +74,16 @@ def test_hold_and_estop() -> None:
 
 def test_a_silent_station_ages_but_its_estop_does_not() -> None:
     sim, clock = simulation()
-    sim.machine.feed_pot(0.8)
+    sim.machine.set_feed_pot(0.8)
     sim.machine.station_silent()
-    sim.machine.feed_pot(0.1)
+    sim.machine.set_feed_pot(0.1)
     sim.machine.press_start()
     clock.advance(0.4)
     state = sim.ports.station.snapshot()
     assert state.age == pytest.approx(0.4)
     assert state.feed_pot == 0.8
     assert not state.start
-    sim.machine.estop()
+    sim.machine.press_estop()
     assert sim.ports.station.snapshot().estop
     sim.machine.station_silent(False)
     assert sim.ports.station.snapshot().age == 0.0
@@ -91,9 +92,9 @@ def test_a_silent_station_ages_but_its_estop_does_not() -> None:
 def test_pots_are_clamped_and_noise_is_seeded() -> None:
     first, _ = simulation()
     second, _ = simulation()
-    first.machine.feed_pot(7.0)
+    first.machine.set_feed_pot(7.0)
     assert first.ports.station.snapshot().feed_pot == 1.5
-    first.machine.feed_pot(1.0)
+    first.machine.set_feed_pot(1.0)
     for sim in (first, second):
         sim.machine.pot_noise(0.4)
     a = [first.ports.station.snapshot().feed_pot for _ in range(20)]
