@@ -1,0 +1,94 @@
+"""Backup and restore. A backup is one file; neither ever leaves half a file under its name."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from contextlib import closing, suppress
+from datetime import UTC, datetime
+from pathlib import Path
+
+from core.store import checking, database
+from core.store.errors import StoreError
+from core.store.lock import WriterLock
+
+
+def backup(folder: Path, target: Path) -> None:
+    """Copies the store of ``folder`` as it is at this moment, also while it is being written.
+
+    Raises StoreError when there is no good store, or ``target`` is a file that is no backup of ours.
+    """
+    path = folder / database.FILE_NAME
+    if not path.exists():
+        raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up")
+    if target.exists():
+        if target.samefile(path):
+            raise StoreError(f"{target} is the store itself; name another file for the backup")
+        database.check_header(target)
+    found = checking.problems(path)
+    if found:
+        raise StoreError(f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup")
+    _copy(path, target)
+
+
+def restore(folder: Path, source: Path) -> Path | None:
+    """Puts a backup in the store's place; answers where the replaced store is kept, None: there was none.
+
+    The backup is checked through first. Raises StoreError when it is no good or the store is in use.
+    """
+    found = checking.problems(source)
+    if found:
+        raise StoreError(f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup")
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / database.FILE_NAME
+    with closing(WriterLock(folder)):
+        if path.exists() and path.samefile(source):
+            raise StoreError(f"{source} is the store itself; name a backup")
+        kept = _keep(path) if path.exists() else None
+        for leftover in database.companions(path):
+            leftover.unlink(missing_ok=True)
+        _copy(source, path)
+        return kept
+
+
+def _keep(path: Path) -> Path:
+    """A copy of the store that is about to be replaced, good or damaged, with its log when it has one."""
+    _empty_log(path)
+    stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
+    kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
+    log, _ = database.companions(path)
+    if log.exists() and log.stat().st_size:
+        shutil.copy2(log, database.companions(kept)[0])
+    unfinished = kept.with_name(kept.name + ".new")
+    shutil.copy2(path, unfinished)
+    database.put_in_place(unfinished, kept)
+    return kept
+
+
+def _empty_log(path: Path) -> None:
+    """Pours the log into the store. A damaged store keeps its log; a busy one raises StoreError."""
+    busy = 0
+    with suppress(sqlite3.Error, StoreError), closing(database.connect(path, read_only=False)) as connection:
+        busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
+    if busy:
+        raise StoreError(f"{path} is being read by another program; close that one, then restore again")
+
+
+def _copy(source: Path, target: Path) -> None:
+    """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture."""
+    unfinished = target.with_name(target.name + ".new")
+    unfinished.unlink(missing_ok=True)
+    try:
+        with (
+            closing(database.connect(source, read_only=True)) as reading,
+            closing(sqlite3.connect(unfinished)) as writing,
+        ):
+            reading.backup(writing)
+            writing.execute("PRAGMA journal_mode = DELETE")
+        database.put_in_place(unfinished, target)
+    except (OSError, sqlite3.Error) as error:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+        raise StoreError(
+            f"{target} cannot be written ({error}); check the folder, its space and rights"
+        ) from error

@@ -1,0 +1,7 @@
+"""The one error of the store."""
+
+from __future__ import annotations
+
+
+class StoreError(Exception):
+    """The store cannot do what it was asked; the sentence says what, where and what to do."""

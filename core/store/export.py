@@ -1,0 +1,66 @@
+"""The store as plain files that any editor reads, in inches: for looking, for moving, for another control."""
+
+from __future__ import annotations
+
+import csv
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+from core.store.errors import StoreError
+from core.store.rows import EventRow, inches
+from core.store.store import Store
+
+PROGRAMS, OFFSETS, EVENTS = "programs", "offsets.toml", "events.csv"
+_ALL = 2**62
+
+
+def export(store: Store, folder: Path) -> int:
+    """Writes the newest version of every program, offsets and event log; answers how many programs.
+
+    The folder appears when all of it is written. Raises StoreError when it is there already and not empty.
+    """
+    unfinished = folder.with_name(folder.name + ".new")
+    try:
+        if folder.exists() and any(folder.iterdir()):
+            raise StoreError(f"{folder} is not empty; name a new folder for the export")
+        shutil.rmtree(unfinished, ignore_errors=True)
+        (unfinished / PROGRAMS).mkdir(parents=True)
+        names = [row.name for row in store.programs()]
+        for name in names:
+            (unfinished / PROGRAMS / name).write_bytes(store.load_program(name))
+        (unfinished / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
+        _write_events(store, unfinished / EVENTS)
+        unfinished.replace(folder)
+    except OSError as error:
+        raise StoreError(
+            f"{folder} cannot be written ({error}); check the folder, its space and rights"
+        ) from error
+    return len(names)
+
+
+def _offset_lines(store: Store) -> Iterator[str]:
+    yield "# Offsets in inches, X a radius."
+    for number, tool in store.tools().items():
+        yield f"[tool.{number}]"
+        yield from (f"{key} = {inches(value)!r}" for key, value in tool._asdict().items())
+    for number, row in store.secondary().items():
+        yield f"[secondary.{number}]"
+        yield from (f"{key} = {inches(value)!r}" for key, value in row._asdict().items())
+
+
+def _write_events(store: Store, path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(EventRow._fields)
+        table.writerows(reversed(store.events(limit=_ALL)))
+
+
+def program_files(folder: Path) -> dict[str, bytes]:
+    """The programs of an exported folder by name. Raises StoreError when it is no such folder."""
+    try:
+        return {path.name: path.read_bytes() for path in sorted((folder / PROGRAMS).iterdir())}
+    except OSError as error:
+        raise StoreError(
+            f"{folder} is no exported folder ({error}); name one that 'store export' wrote"
+        ) from error

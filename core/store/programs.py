@@ -1,0 +1,110 @@
+"""Programs, every version of them, and how many parts each has made."""
+
+from __future__ import annotations
+
+import sqlite3
+from hashlib import sha256
+
+from core.store.errors import StoreError
+from core.store.rows import ProgramRow, VersionRow, utc_now
+
+_NAME_BYTES = 200
+_FORBIDDEN = frozenset('/\\:*?"<>|')
+
+
+def check_name(name: str) -> None:
+    """Raises StoreError for a name that could not be a file's on every disk it may be exported to."""
+    clean = name.strip() == name and name not in ("", ".", "..")
+    if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
+        raise StoreError(f"{name!r} cannot name a program; take letters, digits, dot, dash and blank")
+
+
+def save(connection: sqlite3.Connection, name: str, text: bytes, why: str) -> int:
+    """Keeps ``text`` as the newest version; answers its number. The same text again makes no new version."""
+    check_name(name)
+    now, digest = utc_now(), sha256(text).hexdigest()
+    connection.execute(
+        "INSERT INTO programs (name, created) VALUES (?, ?) ON CONFLICT DO NOTHING", (name, now)
+    )
+    program = connection.execute("SELECT id FROM programs WHERE name = ?", (name,)).fetchone()[0]
+    last = connection.execute(
+        "SELECT number, sha256 FROM program_versions WHERE program = ? ORDER BY number DESC LIMIT 1",
+        (program,),
+    ).fetchone()
+    if last is not None and last[1] == digest:
+        return int(last[0])
+    number = int(last[0]) + 1 if last else 1
+    connection.execute(
+        "INSERT INTO program_versions (program, number, text, sha256, saved, why) VALUES (?, ?, ?, ?, ?, ?)",
+        (program, number, text, digest, now, why),
+    )
+    return number
+
+
+def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
+    """All programs by name, with their newest version."""
+    rows = connection.execute(
+        "SELECT name, created, max(number), saved"
+        " FROM programs JOIN program_versions ON program = programs.id"
+        " GROUP BY programs.id ORDER BY name"
+    )
+    return tuple(ProgramRow(*row) for row in rows)
+
+
+def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
+    """Every version of a program, newest first; none of a program that is not there."""
+    rows = connection.execute(
+        "SELECT number, sha256, saved, why, length(text) FROM program_versions"
+        " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
+        (name,),
+    )
+    return tuple(VersionRow(*row) for row in rows)
+
+
+def load(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
+    """The text of a version, None: the newest. Raises StoreError for one that is not there or spoilt."""
+    row = connection.execute(
+        "SELECT number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
+        " WHERE name = ? AND (number = ? OR ? IS NULL) ORDER BY number DESC LIMIT 1",
+        (name, version, version),
+    ).fetchone()
+    if row is None:
+        which = "" if version is None else f" version {version}"
+        raise StoreError(f"the store has no program {name!r}{which}; see the list of programs and versions")
+    number, text, digest = row
+    if sha256(text).hexdigest() != digest:
+        raise StoreError(f"{name!r} version {number} is not what was saved; load another version or a backup")
+    return bytes(text)
+
+
+def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
+    """Name and number of every version whose text is not what was saved."""
+    rows = connection.execute(
+        "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
+    )
+    return tuple(
+        f"{name!r} version {number}"
+        for name, number, text, digest in rows
+        if sha256(text).hexdigest() != digest
+    )
+
+
+def count_part(connection: sqlite3.Connection, program: str) -> int:
+    """One part more; answers the new count."""
+    connection.execute(
+        "INSERT INTO part_counts VALUES (?, 1, ?)"
+        " ON CONFLICT (program) DO UPDATE SET count = count + 1, last = excluded.last",
+        (program, utc_now()),
+    )
+    return parts(connection, program)
+
+
+def parts(connection: sqlite3.Connection, program: str) -> int:
+    """Parts made since the count was last put to nought."""
+    row = connection.execute("SELECT count FROM part_counts WHERE program = ?", (program,)).fetchone()
+    return int(row[0]) if row else 0
+
+
+def reset_parts(connection: sqlite3.Connection, program: str) -> None:
+    """The count of one program to nought."""
+    connection.execute("DELETE FROM part_counts WHERE program = ?", (program,))

@@ -1,0 +1,75 @@
+"""The reading half of the store: answers at once, from any thread, beside a writer anywhere."""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from core.store import database, offsets, programs, records
+from core.store.rows import Change, EventRow, Kind, ProgramRow, SecondaryRow, ToolRow, VersionRow
+
+
+class StoreReader:
+    """Questions to a store. Every one of them raises StoreError when the file turns out to be damaged."""
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._reader = connection
+        self._reading = threading.Lock()
+
+    @contextmanager
+    def read(self) -> Iterator[sqlite3.Connection]:
+        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError."""
+        with self._reading:
+            try:
+                yield self._reader
+            except sqlite3.Error as error:
+                raise database.damaged(self.path, error) from error
+
+    def tools(self) -> dict[int, ToolRow]:
+        """The tool offsets that have been set."""
+        with self.read() as connection:
+            return {n: ToolRow(*row) for n, row in offsets.current(connection, Kind.TOOL).items()}
+
+    def secondary(self) -> dict[int, SecondaryRow]:
+        """The secondary offsets that have been set."""
+        with self.read() as connection:
+            return {n: SecondaryRow(*row) for n, row in offsets.current(connection, Kind.SECONDARY).items()}
+
+    def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
+        """Changes of offsets, newest first."""
+        with self.read() as connection:
+            return offsets.history(connection, kind, limit)
+
+    def programs(self) -> tuple[ProgramRow, ...]:
+        """All programs by name."""
+        with self.read() as connection:
+            return programs.listing(connection)
+
+    def versions(self, name: str) -> tuple[VersionRow, ...]:
+        """Every version of a program, newest first."""
+        with self.read() as connection:
+            return programs.versions(connection, name)
+
+    def load_program(self, name: str, version: int | None = None) -> bytes:
+        """The text as saved. Raises StoreError for a version that is not there or not as it was saved."""
+        with self.read() as connection:
+            return programs.load(connection, name, version)
+
+    def events(self, search: str = "", limit: int = 100) -> tuple[EventRow, ...]:
+        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters."""
+        with self.read() as connection:
+            return records.events(connection, search, limit)
+
+    def parts(self, program: str) -> int:
+        """Parts of this program that were counted."""
+        with self.read() as connection:
+            return programs.parts(connection, program)
+
+    def setting(self, key: str) -> object:
+        """A setting, None: not set."""
+        with self.read() as connection:
+            return records.setting(connection, key)

@@ -1,0 +1,49 @@
+"""The event log and the settings."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable
+
+from core.store.errors import StoreError
+from core.store.rows import EventRow
+
+
+def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> int:
+    """Adds to the log; answers how many."""
+    rows = tuple(events)
+    connection.executemany("INSERT INTO events (at, kind, text, line) VALUES (?, ?, ?, ?)", rows)
+    return len(rows)
+
+
+def events(connection: sqlite3.Connection, search: str, limit: int) -> tuple[EventRow, ...]:
+    """The last events whose kind or text holds ``search``, newest first."""
+    rows = connection.execute(
+        "SELECT at, kind, text, line FROM events"
+        " WHERE ? = '' OR instr(lower(text), lower(?)) OR instr(lower(kind), lower(?))"
+        " ORDER BY id DESC LIMIT ?",
+        (search, search, search, limit),
+    )
+    return tuple(EventRow(*row) for row in rows)
+
+
+def setting(connection: sqlite3.Connection, key: str) -> object:
+    """What was stored under ``key``, None: nothing."""
+    row = connection.execute("SELECT value FROM settings WHERE key = ?", (key,)).fetchone()
+    return json.loads(row[0]) if row else None
+
+
+def set_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
+    """Stores anything that JSON can hold; None forgets the key. Raises StoreError for what it cannot."""
+    if value is None:
+        connection.execute("DELETE FROM settings WHERE key = ?", (key,))
+        return
+    try:
+        text = json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise StoreError(f"the setting {key} cannot be stored: {error}") from error
+    connection.execute(
+        "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
+        (key, text),
+    )

@@ -1,0 +1,93 @@
+"""What the store hands out. Lengths mm, X a radius; times UTC, ISO 8601."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from enum import StrEnum
+from typing import NamedTuple
+
+MM_PER_INCH = 25.4
+OFFSETS = range(1, 33)
+TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
+SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
+RADIUS_MAX = 50.8  # mm: 2 in
+
+
+class Kind(StrEnum):
+    """The two tables of offsets."""
+
+    TOOL = "tool"
+    SECONDARY = "secondary"
+
+
+class ToolRow(NamedTuple):
+    """Machine position at which the tip stands on part zero, and the nose radius."""
+
+    x: float = 0.0
+    z: float = 0.0
+    nose_radius: float = 0.0
+
+
+class SecondaryRow(NamedTuple):
+    """D offset as stored: X a radius, R the nose radius."""
+
+    x: float = 0.0
+    z: float = 0.0
+    r: float = 0.0
+
+
+class Change(NamedTuple):
+    """One offset's change: (x, z, r) before and after, None where it was not set. Ids give the order."""
+
+    id: int
+    step: int
+    undoes: int | None
+    at: str
+    kind: Kind
+    number: int
+    old: tuple[float, float, float] | None
+    new: tuple[float, float, float] | None
+    why: str
+    who: str
+
+
+class ProgramRow(NamedTuple):
+    """A program's name and its newest version."""
+
+    name: str
+    created: str
+    version: int
+    saved: str
+
+
+class VersionRow(NamedTuple):
+    """One saved version of a program."""
+
+    number: int
+    sha256: str
+    saved: str
+    why: str
+    size: int
+
+
+class EventRow(NamedTuple):
+    """One line of the log; ``line`` is the program's, 0 none."""
+
+    at: str
+    kind: str
+    text: str
+    line: int = 0
+
+
+def inches(mm: float) -> float:
+    """Millimetres as the shortest number of inches that means the same millimetres again."""
+    for places in range(4, 16):
+        value = round(mm / MM_PER_INCH, places)
+        if value * MM_PER_INCH == mm:
+            return value
+    return mm / MM_PER_INCH
+
+
+def utc_now() -> str:
+    """This moment, to the millisecond."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -1,0 +1,155 @@
+"""The store as the rest of the product sees it: reads answer at once, writes answer by a future."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterable, Mapping
+from concurrent.futures import Future
+from pathlib import Path
+from types import TracebackType
+from typing import TypeVar
+
+from core.store import offsets, programs, records
+from core.store.errors import StoreError
+from core.store.offsets import Reason
+from core.store.opening import Opened, open_to_read, open_to_write
+from core.store.reading import StoreReader
+from core.store.rows import Change, EventRow, Kind, SecondaryRow, ToolRow, utc_now
+from core.store.writer import Operation, StoreWriter
+
+__all__ = ["Store", "StoreError"]
+
+T = TypeVar("T")
+
+
+class Store(StoreReader):
+    """Programs, offsets, events, part counts and settings of one folder; see ``open``.
+
+    A future of a write is answered when the change is on the disk, and with StoreError when it is refused or
+    fails; nobody but a command line need wait for it. All methods may be called from any thread.
+    """
+
+    def __init__(self, opened: Opened) -> None:
+        super().__init__(opened.path, opened.reader)
+        self._opened = opened
+        self._writer = StoreWriter(opened.writer) if opened.writer else None
+
+    @classmethod
+    def open(cls, folder: Path, *, read_only: bool = False) -> Store:
+        """The store in ``folder``, made where there is none.
+
+        Read-only works beside a writer, and shows an empty store where there is none. Raises StoreError when
+        another process writes it, or when the file is damaged, foreign or newer; such a file is not touched.
+        """
+        return cls(open_to_read(folder) if read_only else open_to_write(folder))
+
+    def close(self) -> None:
+        """Writes what is queued, then gives the store free. Calling it again does nothing."""
+        if self._writer:
+            self._writer.close()
+        with self._reading:
+            self._opened.close()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @property
+    def trouble(self) -> str:
+        """Why the last write that failed did so, for the alarm line; empty while all is well."""
+        return self._writer.trouble if self._writer else ""
+
+    def write(self, operation: Operation[T]) -> Future[T]:
+        """Posts one transaction to the writer. Raises StoreError in a read-only store."""
+        if self._writer is None:
+            raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
+        return self._writer.post(operation)
+
+    def set_tool(
+        self,
+        number: int,
+        why: str,
+        *,
+        x: float | None = None,
+        z: float | None = None,
+        nose_radius: float | None = None,
+        who: str = "operator",
+    ) -> Future[ToolRow]:
+        """Sets what is given of tool offset 1…32, mm; the rest stays."""
+        reason = Reason(why, who)
+        return self.write(
+            lambda c: ToolRow(*offsets.change(c, Kind.TOOL, number, reason, (x, z, nose_radius)))
+        )
+
+    def set_secondary(
+        self,
+        number: int,
+        why: str,
+        *,
+        x: float | None = None,
+        z: float | None = None,
+        r: float | None = None,
+        who: str = "operator",
+    ) -> Future[SecondaryRow]:
+        """Sets what is given of D offset 1…32, mm, X as the radius that is stored; the rest stays."""
+        reason = Reason(why, who)
+        return self.write(
+            lambda c: SecondaryRow(*offsets.change(c, Kind.SECONDARY, number, reason, (x, z, r)))
+        )
+
+    def clear_secondary(self, why: str, *, who: str = "operator") -> Future[int]:
+        """All D offsets at once, as one step of the history; answers how many were set."""
+        return self.write(lambda c: offsets.clear(c, Kind.SECONDARY, Reason(why, who)))
+
+    def undo_offset(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
+        """Takes the last change of offsets back; again: the one before. StoreError when there is none."""
+        return self.write(lambda c: offsets.undo(c, Reason(why, who)))
+
+    def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
+        """Keeps a version; answers its number, that of the newest when the text is the same."""
+        return self.write(lambda c: programs.save(c, name, text, why))
+
+    def log_event(self, kind: str, text: str, line: int = 0) -> Future[int]:
+        """One line of the log, at this moment."""
+        return self.log_events([EventRow(utc_now(), kind, text, line)])
+
+    def log_events(self, events: Iterable[EventRow]) -> Future[int]:
+        """Several lines of the log in one transaction."""
+        rows = tuple(events)
+        return self.write(lambda c: records.log(c, rows))
+
+    def count_part(self, program: str) -> Future[int]:
+        """One part more of this program; answers the count."""
+        return self.write(lambda c: programs.count_part(c, program))
+
+    def reset_parts(self, program: str) -> Future[None]:
+        """The part count of this program to nought."""
+        return self.write(lambda c: programs.reset_parts(c, program))
+
+    def set_setting(self, key: str, value: object) -> Future[None]:
+        """Keeps anything JSON can hold; None forgets it."""
+        return self.write(lambda c: records.set_setting(c, key, value))
+
+    def import_all(
+        self,
+        texts: Mapping[str, bytes],
+        tools: Mapping[int, ToolRow],
+        secondary: Mapping[int, SecondaryRow],
+        why: str,
+    ) -> Future[None]:
+        """Programs and offsets of an export in one transaction: all of them or none."""
+
+        def operation(connection: sqlite3.Connection) -> None:
+            reason = Reason(why, "import")
+            for name, text in texts.items():
+                programs.save(connection, name, text, why)
+            for number, tool in tools.items():
+                offsets.change(connection, Kind.TOOL, number, reason, tool)
+            for number, row in secondary.items():
+                offsets.change(connection, Kind.SECONDARY, number, reason, row)
+
+        return self.write(operation)
