@@ -80,12 +80,8 @@ class EventRow(NamedTuple):
 
 
 def inches(mm: float) -> float:
-    """Millimetres as the shortest number of inches that means the same millimetres again."""
-    for places in range(4, 16):
-        value = round(mm / MM_PER_INCH, places)
-        if value * MM_PER_INCH == mm:
-            return value
-    return mm / MM_PER_INCH
+    """Millimetres as inches with ten places: what was entered in inches comes back as it was entered."""
+    return round(mm / MM_PER_INCH, 10)
 
 
 def utc_now() -> str:

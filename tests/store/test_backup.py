@@ -1,0 +1,171 @@
+"""Backup, restore, export, verify."""
+
+from __future__ import annotations
+
+import csv
+import sqlite3
+import tomllib
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, checking, database, export
+from core.store.rows import SecondaryRow, ToolRow
+from core.store.store import Store, StoreError
+
+
+def fill(store: Store) -> None:
+    store.set_tool(1, "x", x=31.75, z=-12.7, nose_radius=0.381)
+    store.set_secondary(4, "wear", x=-0.0127)
+    store.save_program("PIN.nc", b"G90\r\nM30\r\n", "new")
+    store.log_event("start", 'PIN.nc, "first" part').result()
+
+
+def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path, tmp_path: Path) -> None:
+    fill(store)
+    target = tmp_path / "b.db"
+    backup.backup(folder, target)
+    store.set_tool(1, "later", x=1.0).result()
+    assert backup.restore(tmp_path / "other", target) is None
+    with Store.open(tmp_path / "other") as other:
+        assert other.tools() == {1: ToolRow(31.75, -12.7, 0.381)}
+        assert other.load_program("PIN.nc") == b"G90\r\nM30\r\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["b.db", "home", "other"]
+
+
+def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    backup.backup(folder, tmp_path / "b.db")
+    with Store.open(folder) as store:
+        store.set_tool(1, "later", x=1.0).result()
+    kept = backup.restore(folder, tmp_path / "b.db")
+    assert kept is not None
+    assert kept.parent == folder
+    with Store.open(folder) as store:
+        assert store.tools()[1].x == 31.75
+    connection = sqlite3.connect(kept)
+    assert connection.execute("SELECT x FROM tool_offsets").fetchall() == [(1.0,)]
+    connection.close()
+
+
+def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_path: Path) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    backup.backup(folder, tmp_path / "b.db")
+    (folder / database.FILE_NAME).write_bytes(b"rubbish" * 1000)
+    kept = backup.restore(folder, tmp_path / "b.db")
+    assert kept is not None
+    assert kept.read_bytes() == b"rubbish" * 1000
+    with Store.open(folder) as store:
+        assert store.tools()[1].x == 31.75
+
+
+def test_restore_while_the_store_is_in_use_is_refused(store: Store, folder: Path, tmp_path: Path) -> None:
+    fill(store)
+    backup.backup(folder, tmp_path / "b.db")
+    with pytest.raises(StoreError, match="in use"):
+        backup.restore(folder, tmp_path / "b.db")
+
+
+@pytest.mark.parametrize("content", [b"", b"G90\r\n" * 100, b"SQLite format 3\0" + b"\0" * 200])
+def test_restore_of_what_is_no_backup_changes_nothing(
+    store: Store, folder: Path, tmp_path: Path, content: bytes
+) -> None:
+    fill(store)
+    store.close()
+    before = (folder / database.FILE_NAME).read_bytes()
+    (tmp_path / "b.db").write_bytes(content)
+    with pytest.raises(StoreError):
+        backup.restore(folder, tmp_path / "b.db")
+    assert (folder / database.FILE_NAME).read_bytes() == before
+
+
+def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    target = tmp_path / "b.db"
+    backup.backup(folder, target)
+    target.write_bytes(target.read_bytes().replace(b"G90\r\nM30", b"G91\r\nM30"))
+    with pytest.raises(StoreError, match=r"cannot be restored: 'PIN\.nc' version 1 is not what was saved"):
+        backup.restore(folder, target)
+
+
+def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, tmp_path: Path) -> None:
+    fill(store)
+    precious = tmp_path / "part.nc"
+    precious.write_bytes(b"G90")
+    with pytest.raises(StoreError, match="not a database"):
+        backup.backup(folder, precious)
+    assert precious.read_bytes() == b"G90"
+    with pytest.raises(StoreError, match="the store itself"):
+        backup.backup(folder, folder / database.FILE_NAME)
+
+
+def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(StoreError, match="no store"):
+        backup.backup(folder, tmp_path / "b.db")
+    with Store.open(folder) as store:
+        fill(store)
+    with pytest.raises(StoreError, match="cannot be written"):
+        backup.backup(folder, tmp_path / "none" / "b.db")
+
+
+def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path) -> None:
+    fill(store)
+    target = tmp_path / "b.db"
+    backup.backup(folder, target)
+    first = sha256(target.read_bytes()).digest()
+    store.set_tool(2, "x", x=1.0).result()
+    backup.backup(folder, target)
+    assert sha256(target.read_bytes()).digest() != first
+    assert checking.problems(target) == ()
+
+
+def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
+    fill(store)
+    assert export.export(store, tmp_path / "out") == 1
+    assert (tmp_path / "out/programs/PIN.nc").read_bytes() == b"G90\r\nM30\r\n"
+    offsets = tomllib.loads((tmp_path / "out/offsets.toml").read_text())
+    assert offsets["tool"]["1"] == {"x": 1.25, "z": -0.5, "nose_radius": 0.015}
+    assert offsets["secondary"]["4"] == {"x": -0.0005, "z": 0.0, "r": 0.0}
+    with (tmp_path / "out/events.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0] == ["at", "kind", "text", "line"]
+    assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0"]
+
+
+def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
+    fill(store)
+    export.export(store, tmp_path / "out")
+    with Store.open(tmp_path / "other") as other:
+        rows = {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        other.import_all(export.program_files(tmp_path / "out"), {}, rows, "import").result()
+        assert other.load_program("PIN.nc") == b"G90\r\nM30\r\n"
+        assert other.secondary() == rows
+        assert other.history()[0].who == "import"
+
+
+def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/precious").write_text("x")
+    with pytest.raises(StoreError, match="not empty"):
+        export.export(store, tmp_path / "out")
+    with pytest.raises(StoreError, match="no exported folder"):
+        export.program_files(tmp_path / "out")
+    assert (tmp_path / "out/precious").read_text() == "x"
+
+
+def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
+    with Store.open(folder) as store:
+        fill(store)
+    path = folder / database.FILE_NAME
+    assert checking.problems(path) == ()
+    with sqlite3.connect(path) as connection:
+        connection.execute("UPDATE program_versions SET text = X'58'")
+        connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '')")
+    connection.close()
+    told = " ".join(checking.problems(path))
+    assert "'PIN.nc' version 1 is not what was saved" in told
+    assert "a row of programs that is not there" in told

@@ -1,0 +1,64 @@
+"""Killed in the middle of writing: what was acknowledged is there, nothing is there by half."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from core.store import checking, database
+from core.store.store import Store
+
+KILLS = 5
+ACKNOWLEDGED = 25  # of each process before it is killed; the next transactions are then in flight
+
+# One transaction writes a version of the program and an offset that must belong together.
+WRITER = """
+import sys
+from pathlib import Path
+from core.store import offsets, programs
+from core.store.rows import Kind
+from core.store.store import Store
+
+store = Store.open(Path(sys.argv[1]))
+number = len(store.versions("part"))
+
+def both(connection):
+    programs.save(connection, "part", b"%d " % number * 2000, "kill")
+    wanted = (float(number % 1000), None, None)
+    offsets.change(connection, Kind.TOOL, 1, offsets.Reason("kill", "test"), wanted)
+
+while True:
+    number += 1
+    store.write(both).result()
+    sys.stdout.write(f"{number}\\n")
+    sys.stdout.flush()
+"""
+
+
+def _write_and_kill(folder: Path) -> int:
+    """Starts a writer and kills it; answers the last number that it said was stored."""
+    with subprocess.Popen([sys.executable, "-c", WRITER, str(folder)], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        for _ in range(ACKNOWLEDGED):
+            assert process.stdout.readline()
+        process.kill()
+        rest = process.stdout.read().splitlines(keepends=True)
+        whole = [line for line in rest if line.endswith(b"\n")]
+    assert process.returncode == -9
+    return int(whole[-1]) if whole else -1
+
+
+def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None:
+    for _ in range(KILLS):
+        last = _write_and_kill(folder)
+        assert checking.problems(folder / database.FILE_NAME) == ()
+        with Store.open(folder, read_only=True) as store:
+            versions = store.versions("part")
+            assert [row.number for row in versions] == list(range(len(versions), 0, -1))
+            newest = versions[0].number
+            assert newest in (last, last + 1) or last == -1  # one may have been stored and not yet told
+            assert newest >= ACKNOWLEDGED
+            assert store.load_program("part") == b"%d " % newest * 2000
+            assert store.tools()[1].x == newest % 1000
+            assert len(store.history(limit=10**6)) == newest

@@ -1,0 +1,108 @@
+"""Offsets: what is set, what is kept, what is refused, and the way back."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import pytest
+
+from core.store.rows import Kind, SecondaryRow, ToolRow, inches
+from core.store.store import Store, StoreError
+
+
+def test_new_store_has_no_offsets(store: Store) -> None:
+    assert store.tools() == {}
+    assert store.secondary() == {}
+    assert store.history() == ()
+
+
+def test_setting_one_value_keeps_the_others(store: Store) -> None:
+    store.set_tool(3, "touched off", x=31.75, z=-12.7, nose_radius=0.381).result()
+    assert store.set_tool(3, "again", z=-12.5).result() == ToolRow(31.75, -12.5, 0.381)
+    assert store.tools() == {3: ToolRow(31.75, -12.5, 0.381)}
+
+
+def test_tool_and_secondary_do_not_mix(store: Store) -> None:
+    store.set_tool(4, "tool", x=1.0)
+    store.set_secondary(4, "wear", x=-0.0127).result()
+    assert store.tools() == {4: ToolRow(1.0, 0.0, 0.0)}
+    assert store.secondary() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+
+
+def test_history_tells_from_to_why_and_who(store: Store) -> None:
+    store.set_secondary(1, "size too big", x=-0.01, who="night shift")
+    store.set_secondary(1, "and again", x=-0.02).result()
+    newest, oldest = store.history()
+    assert (oldest.old, oldest.new) == (None, (-0.01, 0.0, 0.0))
+    assert (oldest.why, oldest.who) == ("size too big", "night shift")
+    assert (newest.old, newest.new, newest.kind) == ((-0.01, 0.0, 0.0), (-0.02, 0.0, 0.0), Kind.SECONDARY)
+    assert newest.id > oldest.id
+    assert newest.at.endswith("Z")
+
+
+def test_history_of_one_kind_and_limited(store: Store) -> None:
+    for number in (1, 2, 3):
+        store.set_tool(number, "t", x=1.0)
+    store.set_secondary(7, "d", x=1.0).result()
+    assert [change.number for change in store.history(Kind.TOOL, limit=2)] == [3, 2]
+
+
+def test_the_same_value_is_no_change(store: Store) -> None:
+    store.set_tool(1, "first", x=2.0)
+    store.set_tool(1, "same", x=2.0).result()
+    assert len(store.history()) == 1
+
+
+def test_clear_is_one_step_and_undo_brings_all_back(store: Store) -> None:
+    store.set_tool(1, "stays", x=9.0)
+    store.set_secondary(1, "a", x=1.0)
+    store.set_secondary(2, "b", r=0.5)
+    assert store.clear_secondary("new job").result() == 2
+    assert store.secondary() == {}
+    assert len(store.undo_offset().result()) == 2
+    assert store.secondary() == {1: SecondaryRow(1.0, 0.0, 0.0), 2: SecondaryRow(0.0, 0.0, 0.5)}
+    assert store.tools() == {1: ToolRow(9.0, 0.0, 0.0)}
+
+
+def test_undo_goes_further_back_each_time(store: Store) -> None:
+    for x in (1.0, 2.0, 3.0):
+        store.set_tool(5, "wear", x=x)
+    store.undo_offset().result()
+    assert store.tools()[5].x == 2.0
+    store.set_tool(5, "other", x=7.0)
+    store.undo_offset()
+    store.undo_offset().result()
+    assert store.tools()[5].x == 1.0
+    store.undo_offset().result()
+    assert store.tools() == {}
+    with pytest.raises(StoreError, match="no offset change to undo"):
+        store.undo_offset().result()
+
+
+@pytest.mark.parametrize("number", [0, 33, -1])
+def test_number_outside_the_table_is_refused(store: Store, number: int) -> None:
+    with pytest.raises(StoreError, match="T1…32"):
+        store.set_tool(number, "no", x=1.0).result()
+    with pytest.raises(StoreError, match="D1…32"):
+        store.set_secondary(number, "no", x=1.0).result()
+    assert store.history() == ()
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "r"), [(1270.1, 0, 0), (0, -1270.1, 0), (nan, 0, 0), (0, inf, 0), (0, 0, -0.001), (0, 0, 51)]
+)
+def test_value_out_of_range_changes_nothing(store: Store, x: float, z: float, r: float) -> None:
+    with pytest.raises(StoreError, match="out of range"):
+        store.set_tool(1, "no", x=x, z=z, nose_radius=r).result()
+    assert store.tools() == {}
+    assert store.trouble == ""  # a refusal is no trouble of the disk
+
+
+def test_secondary_has_the_narrower_range(store: Store) -> None:
+    with pytest.raises(StoreError, match=r"-10…10 in"):
+        store.set_secondary(1, "no", x=254.1).result()
+
+
+@pytest.mark.parametrize("entered", [1.25, -0.0005, 0.00005, 3.99995, 0.015])
+def test_inches_come_back_as_entered(entered: float) -> None:
+    assert inches(entered * 25.4) == entered

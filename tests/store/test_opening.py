@@ -1,0 +1,187 @@
+"""Who may open what: locks, damaged, foreign and newer files. What is refused is not touched."""
+
+from __future__ import annotations
+
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from core.store import database
+from core.store.rows import ToolRow
+from core.store.store import Store, StoreError
+
+
+def digest(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()
+
+
+@pytest.fixture
+def closed(folder: Path) -> Path:
+    """A closed store with something in it; the path of its file."""
+    with Store.open(folder) as store:
+        store.set_tool(1, "x", x=1.0)
+        store.save_program("big", b"G90 X1.2345\n" * 20000, "x").result()
+    return folder / database.FILE_NAME
+
+
+def test_what_is_stored_is_there_next_time(closed: Path) -> None:
+    with Store.open(closed.parent) as store:
+        assert store.tools() == {1: ToolRow(1.0, 0.0, 0.0)}
+
+
+def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
+    with Store.open(closed.parent) as store:
+        pragmas = store.write(
+            lambda c: [
+                c.execute(f"PRAGMA {n}").fetchone()[0]
+                for n in ("journal_mode", "synchronous", "foreign_keys")
+            ]
+        ).result()
+    assert pragmas == ["wal", 2, 1]  # 2 is FULL
+    header = closed.read_bytes()[:100]
+    assert int.from_bytes(header[68:72], "big") == database.APPLICATION_ID
+
+
+def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path) -> None:
+    store.set_tool(2, "x", x=3.0).result()
+    with pytest.raises(StoreError, match=r"in use by another TurnDesk \(process \d+\)"):
+        Store.open(folder)
+    with Store.open(folder, read_only=True) as reader:
+        assert reader.tools() == {2: ToolRow(3.0, 0.0, 0.0)}
+        with pytest.raises(StoreError, match="reading only"):
+            reader.set_tool(2, "x", x=4.0)
+    store.set_tool(2, "x", x=5.0).result()
+    assert store.tools()[2].x == 5.0
+
+
+def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
+    code = (
+        "import sys\nfrom pathlib import Path\nfrom core.store.store import Store, StoreError\n"
+        "try:\n    Store.open(Path(sys.argv[1]))\nexcept StoreError as error:\n    sys.exit(str(error))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert done.returncode == 1
+    assert "in use by another TurnDesk" in done.stderr
+
+
+def test_reader_of_nothing_sees_an_empty_store_and_makes_no_file(folder: Path) -> None:
+    with Store.open(folder, read_only=True) as reader:
+        assert reader.tools() == {}
+        assert reader.programs() == ()
+    assert not folder.exists()
+
+
+def test_refused_opening_gives_the_lock_back(closed: Path) -> None:
+    good = closed.read_bytes()
+    closed.write_bytes(b"rubbish" * 100)
+    with pytest.raises(StoreError, match="not a database"):
+        Store.open(closed.parent)
+    closed.write_bytes(good)
+    with Store.open(closed.parent) as store:
+        assert store.tools()
+
+
+def _not_a_database(path: Path) -> None:
+    path.write_bytes(b"G90\r\nG01X1\r\n" * 50)
+
+
+def _empty(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def _cut_short(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: 4096 * 5 + 100])
+
+
+def _overwritten_page(path: Path) -> None:
+    content = bytearray(path.read_bytes())
+    content[4096 : 4096 * 3] = b"\xa5" * 4096 * 2
+    path.write_bytes(content)
+
+
+def _foreign(path: Path) -> None:
+    path.unlink()
+    with sqlite3.connect(path) as connection:
+        connection.execute("CREATE TABLE t (a)")
+    connection.close()
+
+
+def _newer(path: Path) -> None:
+    connection = sqlite3.connect(path)
+    connection.execute("PRAGMA user_version = 99")
+    connection.close()
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (_not_a_database, "is not a database"),
+        (_empty, "is not a database"),
+        (_cut_short, "is damaged"),
+        (_overwritten_page, "is damaged"),
+        (_foreign, "of another program"),
+        (_newer, "newer TurnDesk"),
+    ],
+)
+def test_bad_file_is_told_and_left_as_it_is(closed: Path, spoil: Callable[[Path], None], told: str) -> None:
+    spoil(closed)
+    before = digest(closed)
+    with pytest.raises(StoreError, match=told) as caught:
+        Store.open(closed.parent)
+    assert str(closed) in str(caught.value)
+    assert "left as it is" in str(caught.value)
+    assert digest(closed) == before
+
+
+@pytest.mark.parametrize(("spoil", "told"), [(_not_a_database, "not a database"), (_newer, "newer TurnDesk")])
+def test_reader_refuses_a_bad_file_too(closed: Path, spoil: Callable[[Path], None], told: str) -> None:
+    spoil(closed)
+    with pytest.raises(StoreError, match=told):
+        Store.open(closed.parent, read_only=True)
+
+
+def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> None:
+    log, _ = database.companions(closed)
+    closed.unlink()
+    log.write_bytes(b"something")
+    with pytest.raises(StoreError, match="has gone but its log"):
+        Store.open(closed.parent)
+    assert not closed.exists()
+
+
+def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(StoreError, match="cannot be made"):
+        Store.open(tmp_path / "file" / "home")
+
+
+def test_migration_is_whole_or_not_at_all() -> None:
+    first, *_ = scripts = (*database.migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
+    connection = database.configured(sqlite3.connect(":memory:", isolation_level=None))
+    with pytest.raises(StoreError, match=f"version {len(scripts)}"):
+        database.migrate(connection, scripts)
+    assert first
+    assert database.version_of(connection) == len(scripts) - 1
+    tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
+    assert "programs" in tables
+    assert "extra" not in tables
+    connection.close()
+
+
+def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    newer = (*database.migrations(), "CREATE TABLE extra (a);")
+    monkeypatch.setattr(database, "migrations", lambda: newer)
+    with pytest.raises(StoreError, match="older TurnDesk"):
+        Store.open(closed.parent, read_only=True)
+    with Store.open(closed.parent) as store:
+        assert store.tools() == {1: ToolRow(1.0, 0.0, 0.0)}
+    assert database.check_file(closed, thorough=True) == len(newer)
+    kept = closed.with_name("turndesk-version-1.db")
+    assert database.check_file(kept, thorough=True) == len(newer) - 1

@@ -1,0 +1,118 @@
+"""Programs and versions, part counts, events, settings."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.store.rows import EventRow
+from core.store.store import Store, StoreError
+
+
+def test_every_save_is_a_version(store: Store) -> None:
+    assert store.save_program("PIN.nc", b"G90\r\n", "new").result() == 1
+    assert store.save_program("PIN.nc", b"G91\r\n", "wrong mode").result() == 2
+    assert store.load_program("PIN.nc") == b"G91\r\n"
+    assert store.load_program("PIN.nc", 1) == b"G90\r\n"
+    newest, first = store.versions("PIN.nc")
+    assert (newest.number, newest.why, first.number, first.size) == (2, "wrong mode", 1, 5)
+    assert [(row.name, row.version) for row in store.programs()] == [("PIN.nc", 2)]
+
+
+def test_the_same_text_makes_no_new_version(store: Store) -> None:
+    store.save_program("a", b"G90", "x")
+    assert store.save_program("a", b"G90", "again").result() == 1
+    assert len(store.versions("a")) == 1
+
+
+def test_going_back_to_an_old_text_is_a_version(store: Store) -> None:
+    for text in (b"1", b"2", b"1"):
+        store.save_program("a", text, "x").result()
+    assert [row.number for row in store.versions("a")] == [3, 2, 1]
+
+
+def test_bytes_survive_whatever_they_are(store: Store) -> None:
+    text = bytes(range(256))
+    store.save_program("odd", text, "x").result()
+    assert store.load_program("odd") == text
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
+def test_name_that_is_no_file_name_is_refused(store: Store, name: str) -> None:
+    with pytest.raises(StoreError, match="cannot name a program"):
+        store.save_program(name, b"", "x").result()
+    assert store.programs() == ()
+
+
+def test_missing_program_and_version_are_refused(store: Store) -> None:
+    store.save_program("a", b"", "x").result()
+    with pytest.raises(StoreError, match="no program 'b'"):
+        store.load_program("b")
+    with pytest.raises(StoreError, match="'a' version 2"):
+        store.load_program("a", 2)
+    assert store.versions("b") == ()
+
+
+def test_spoilt_text_is_not_handed_out(store: Store) -> None:
+    store.save_program("a", b"X1.000", "x").result()
+    store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
+    with pytest.raises(StoreError, match="not what was saved"):
+        store.load_program("a")
+
+
+def test_parts_are_counted_by_program(store: Store) -> None:
+    assert store.count_part("a").result() == 1
+    assert store.count_part("a").result() == 2
+    store.count_part("b").result()
+    assert (store.parts("a"), store.parts("b"), store.parts("c")) == (2, 1, 0)
+    store.reset_parts("a").result()
+    assert (store.parts("a"), store.parts("b")) == (0, 1)
+
+
+def test_events_newest_first_and_searched(store: Store) -> None:
+    rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12)]
+    rows.append(EventRow("2026-01-01T00:00:01.000Z", "start", "PIN.nc"))
+    assert store.log_events(rows).result() == 2
+    store.log_event("stop", "feed hold").result()
+    assert [row.kind for row in store.events()] == ["stop", "start", "alarm"]
+    assert store.events(search="FOLLOWING") == (rows[0],)
+    assert store.events(search="%") == ()  # no pattern, a text
+    assert len(store.events(limit=1)) == 1
+
+
+def test_settings_are_json(store: Store) -> None:
+    store.set_setting("theme", {"dark": True, "size": [1, 2]}).result()
+    assert store.setting("theme") == {"dark": True, "size": [1, 2]}
+    store.set_setting("theme", None).result()
+    assert store.setting("theme") is None
+
+
+def test_setting_that_is_no_json_is_refused(store: Store) -> None:
+    with pytest.raises(StoreError, match="setting theme cannot be stored"):
+        store.set_setting("theme", object()).result()
+    with pytest.raises(StoreError, match="cannot be stored"):
+        store.set_setting("pot", float("nan")).result()
+
+
+def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store) -> None:
+    def breaks(connection: object) -> None:
+        raise KeyError("a bug")
+
+    with pytest.raises(KeyError):
+        store.write(breaks).result()
+    with pytest.raises(StoreError, match="nothing was stored"):
+        store.write(lambda c: c.execute("INSERT INTO settings VALUES ('k', NULL)").close()).result()
+    assert "nothing was stored" in store.trouble
+    assert store.save_program("a", b"", "x").result() == 1
+    assert store.setting("k") is None
+
+
+def test_half_of_an_import_is_none_of_it(store: Store) -> None:
+    with pytest.raises(StoreError, match="cannot name"):
+        store.import_all({"good": b"1", "bad/name": b"2"}, {}, {}, "import").result()
+    assert store.programs() == ()
+
+
+def test_closed_store_refuses_writes(store: Store) -> None:
+    store.close()
+    with pytest.raises(StoreError, match="closed"):
+        store.log_event("start", "late")
