@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
+import codecs
+import re
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+
+from core.language.diagnostics import Diagnostic, Severity
+
+# Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
+_LINE_END = re.compile(r"\r\n|\r|\n")
+_LONGEST_LINE = 8192
+_LARGEST_FILE = 64 * 1024 * 1024
+_DOS_END_OF_FILE = "\x1a"
+_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
@@ -16,4 +28,70 @@ class Source:
     @cached_property
     def lines(self) -> tuple[str, ...]:
         """The lines without their ends; a last empty line after the final newline does not count."""
-        return tuple(self.text.splitlines())
+        lines = _LINE_END.split(self.text) if "\r" in self.text else self.text.split("\n")
+        if not lines[-1]:
+            lines.pop()
+        return tuple(lines)
+
+
+class SourceError(Exception):
+    """A file holds no program text; ``str()`` is the sentence for the operator."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def load_source(path: Path) -> Source:
+    """Read a program file: UTF-8, or else one of the 8-bit codes of DOS and Windows.
+
+    Raises SourceError where the file cannot be read or is no text.
+    """
+    try:
+        if path.stat().st_size > _LARGEST_FILE:
+            raise _refused("file-too-large", f"{path.name} is over 64 MB.", "Split the program.")
+        data = path.read_bytes()
+    except OSError as problem:
+        reason = problem.strerror or "reading failed"
+        raise _refused(
+            "file-unreadable", f"{path.name} cannot be read: {reason}.", "Look at the name and the disk."
+        ) from problem
+    return Source(path.name, _decoded(path.name, data))
+
+
+def _decoded(name: str, data: bytes) -> str:
+    if data.startswith(_UTF_16):
+        raise _refused("file-utf16", f"{name} is stored as UTF-16.", "Save it as UTF-8 or plain text.")
+    if b"\0" in data:
+        raise _refused(
+            "file-binary", f"{name} holds zero bytes: it is no program text.", "Choose a text file."
+        )
+    text = _characters(data.removeprefix(codecs.BOM_UTF8)).rstrip(_DOS_END_OF_FILE)
+    if not text.strip():
+        raise _refused("file-empty", f"{name} is empty.", "Choose a file that holds a program.")
+    _check_line_lengths(name, text)
+    return text
+
+
+def _characters(data: bytes) -> str:
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        # Letters stand at 80…9F in DOS code page 437, where Latin-1 has only unprintable controls.
+        dos = any(0x80 <= byte <= 0x9F for byte in data)
+        return data.decode("cp437" if dos else "latin-1")
+
+
+def _check_line_lengths(name: str, text: str) -> None:
+    for number, line in enumerate(_LINE_END.split(text), start=1):
+        if len(line) > _LONGEST_LINE:
+            raise _refused(
+                "line-too-long",
+                f"Line {number} of {name} has {len(line)} characters; {_LONGEST_LINE} are the most.",
+                "Choose a program file with line ends.",
+                number,
+            )
+
+
+def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:
+    return SourceError(Diagnostic(line, 0, Severity.ERROR, code, message, hint))

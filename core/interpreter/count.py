@@ -1,0 +1,132 @@
+"""How much a program would execute, worked out before it runs: loops of loops are refused, not tried."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from core.interpreter import codes
+from core.interpreter.log import refusal
+from core.interpreter.program import Program
+from core.interpreter.statement import Statement
+from core.interpreter.structure import call_target
+from core.language.diagnostics import Diagnostic
+
+MOST_BLOCKS = 5_000_000
+MOST_LINES = 20_000_000
+DEEPEST_CALL = 16
+
+
+class Count(NamedTuple):
+    """Elementary blocks and executed lines, and the line of the loop that is to blame (0: none)."""
+
+    blocks: int = 0
+    lines: int = 0
+    worst: int = 0
+
+    @property
+    def too_many(self) -> bool:
+        """Whether a program of this size is refused."""
+        return self.blocks > MOST_BLOCKS or self.lines > MOST_LINES
+
+
+def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
+    """The error for a program that would execute too much, or None.
+
+    Loops multiply, subroutines count where they are called, conditional calls as the inputs stand now.
+    """
+    if not program.structure.loop_ends and not program.structure.subroutines:
+        return _refusal(Count(len(program.steps), len(program.steps)))
+    counter = _Counter(program, inputs)
+    return _refusal(counter.region(0, program.structure.main_end, 0))
+
+
+def _refusal(count: Count) -> Diagnostic | None:
+    hint = "Lower the counts of the loops."
+    if count.blocks > MOST_BLOCKS:
+        text = f"The program makes {count.blocks:,} blocks; {MOST_BLOCKS:,} are the most."
+        return refusal(count.worst or 1, 0, "too-many-blocks", text, hint)
+    if count.lines > MOST_LINES:
+        text = f"The program executes {count.lines:,} lines; {MOST_LINES:,} are the most."
+        return refusal(count.worst or 1, 0, "too-many-lines", text, hint)
+    return None
+
+
+class _Counter:
+    def __init__(self, program: Program, inputs: Callable[[str], bool]) -> None:
+        self._program = program
+        self._inputs = inputs
+        self._known: dict[tuple[int, int], Count] = {}
+
+    def region(self, start: int, end: int, depth: int) -> Count:
+        """What the lines from ``start`` to before ``end`` execute, called ``depth`` deep."""
+        open_loops: list[tuple[int, int, Count]] = []  # where it ends, how often it runs, what came before
+        total = Count()
+        loop_ends, steps = self._program.structure.loop_ends, self._program.steps
+        at = start
+        while at < end:
+            step = steps[at]
+            if isinstance(step, tuple):
+                total = Count(total.blocks + 1, total.lines + 1, total.worst)
+            elif step is not None:
+                if step.flow == "LS" and at in loop_ends:
+                    open_loops.append((loop_ends[at], int(step.value("LS") or 1), total))
+                    total = Count()
+                elif open_loops and at == open_loops[-1][0]:
+                    total = self._close(*open_loops.pop(), total)
+                else:
+                    total = _sum(total, self._line(step, depth))
+            at += 1
+        return total
+
+    def _close(self, end: int, times: int, before: Count, body: Count) -> Count:
+        blocks, lines = body.blocks * times, (body.lines + 1) * times
+        worst = body.worst
+        if not worst and (blocks > MOST_BLOCKS or lines > MOST_LINES):
+            worst = self._program.structure.loop_starts[end] + 1
+        return _sum(before, Count(blocks, lines, worst))
+
+    def _line(self, made: Statement, depth: int) -> Count:
+        if made.flow not in codes.CALLS:
+            return Count(blocks_of(made), 1)
+        asks = made.flow in {"M95", "M97"}
+        if depth >= DEEPEST_CALL or (asks and not takes_call(made, self._inputs)):
+            return Count(int(asks), 1)
+        return _sum(Count(int(asks), 1), self._subroutine(call_target(made), depth + 1))
+
+    def _subroutine(self, number: int, depth: int) -> Count:
+        structure = self._program.structure
+        if number not in structure.subroutines:
+            return Count()
+        key = number, depth
+        if key not in self._known:
+            start = structure.subroutines[number] + 1
+            end = structure.subroutine_ends.get(number, start)
+            self._known[key] = self.region(start, end, depth)
+        return self._known[key]
+
+
+def _sum(a: Count, b: Count) -> Count:
+    blocks, lines = a.blocks + b.blocks, a.lines + b.lines
+    worst = a.worst or b.worst
+    return Count(blocks, lines, worst)
+
+
+def blocks_of(made: Statement) -> int:
+    """Elementary blocks that a line makes at most."""
+    if made.flow:
+        return 0
+    acts = ("T" in made.words) + (made.one_shot in codes.FRAME) + (made.m is not None)
+    speaks = "S" in made.words and made.m not in {3, 4} and not {76, 77}.intersection(made.modal)
+    return acts + speaks + (made.moves or made.one_shot == 4)
+
+
+def terminal(made: Statement) -> str:
+    """The input that a conditional call asks."""
+    return "TB2-9" if made.flow == "M95" else f"{made.value('I'):.0f}"
+
+
+def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:
+    """Whether a conditional call is made as the inputs stand."""
+    wanted = made.flow == "M95" or made.value("C") == 1
+    return inputs(terminal(made)) == wanted

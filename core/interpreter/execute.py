@@ -1,0 +1,91 @@
+"""One line → its blocks, in the order in which the control acts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from core.interpreter import codes
+from core.interpreter.actions import Dwell
+from core.interpreter.arcs import arc_move
+from core.interpreter.blocks import Block
+from core.interpreter.feeds import feed_words, warn_of_crash_feed
+from core.interpreter.log import refusal
+from core.interpreter.mcodes import after_motion, before_motion
+from core.interpreter.moves import statement_move
+from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
+from core.interpreter.state import State
+from core.interpreter.statement import PlainMove, Statement
+from core.interpreter.tools import ToolUse, frame, secondary, tool_change
+from core.language.diagnostics import ProgramError
+
+_SHORTEST_DWELL = 0.1  # s
+_LONGEST_DWELL = 3600.0
+
+Ahead = Sequence[PlainMove | Statement | None]
+
+
+def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first: bool) -> Iterator[Block]:
+    """Modes, then T, G10 or G92, spindle, M functions that start, motion, M functions that stop.
+
+    ``ahead``: the next few lines. Raises ProgramError at the first word that cannot be executed.
+    """
+    _modes(state, made)
+    if made.comment is not None:
+        state.adopt(state.modal._replace(comment=made.comment))
+    feed_words(state, made, first=first)
+    spindle_modes(state, made)
+    speed_word(state, made)
+    tool = made.words.get("T")
+    if tool is not None:
+        yield tool_change(state, made, tool, use)
+    else:
+        secondary(state, made)
+    if made.one_shot in codes.FRAME:
+        yield frame(state, made)
+    spindle = run_block(state, made)
+    if spindle is not None:
+        yield spindle
+    warn_of_crash_feed(state, made, ahead)
+    if made.m is not None:
+        block = before_motion(state, made)
+        if block is not None:
+            yield block
+    yield from _motion(state, made)
+    if made.m is not None:
+        block = after_motion(state, made)
+        if block is not None:
+            yield block
+
+
+def _motion(state: State, made: Statement) -> Iterator[Block]:
+    if made.one_shot in codes.ARCS:
+        yield arc_move(state, made)
+    elif made.one_shot == 4:
+        yield _dwell(state, made)
+    elif made.moves:
+        yield statement_move(state, made)
+
+
+def _modes(state: State, made: Statement) -> None:
+    """Distance, units and X words; the other groups belong to feed and spindle."""
+    modal = state.modal
+    for code in made.modal:
+        if code in {90, 91}:
+            modal = modal._replace(absolute=code == 90)
+        elif code in {70, 71}:
+            modal = modal._replace(metric=code == 71)
+        elif code in {72, 73}:
+            modal = modal._replace(diameter=code == 72)
+    state.adopt(modal)
+
+
+def _dwell(state: State, made: Statement) -> Block:
+    seconds = made.value("F")
+    if seconds is None:
+        column = made.code.column if made.code else 0
+        text = "G04 does not say how long."
+        raise ProgramError(refusal(made.line, column, "word-missing", text, "Write G04Fn, n in seconds."))
+    if not _SHORTEST_DWELL <= seconds <= _LONGEST_DWELL:
+        text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
+        raise ProgramError(refusal(made.line, made.column("F"), "dwell-range", text, "Correct F."))
+    return state.action(made.line, made.part("move"), Dwell(seconds), rpm_at(state, state.x))

@@ -1,0 +1,64 @@
+"""Where a program goes next: loops, subroutine calls, the end."""
+
+from __future__ import annotations
+
+from core.interpreter.count import DEEPEST_CALL
+from core.interpreter.log import refusal
+from core.interpreter.program import Program
+from core.interpreter.statement import Statement
+from core.interpreter.structure import call_target
+from core.language.diagnostics import ProgramError
+
+
+class Flow:
+    """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
+
+    def __init__(self, program: Program) -> None:
+        self.at = 0
+        self.end = program.structure.main_end
+        self._structure = program.structure
+        self._loops: list[list[int]] = []  # index of LS, passes left
+        self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
+
+    def steer(self, made: Statement) -> None:
+        """Follow a line that steers. Raises ProgramError for calls nested too deep."""
+        flow = made.flow
+        here = made.line - 1
+        self.at = here + 1
+        if flow == "LS" and here in self._structure.loop_ends:
+            self._loops.append([here, int(made.value("LS") or 1) - 1])
+        elif flow == "LF":
+            self._loop_end(here)
+        elif flow == "M99":
+            self._return()
+
+    def call(self, made: Statement) -> None:
+        """Go to the subroutine that the line names."""
+        number = call_target(made)
+        self.at = made.line
+        if number not in self._structure.subroutines:
+            return  # told when the program was read
+        if len(self._calls) >= DEEPEST_CALL:
+            text = f"Subroutines call each other more than {DEEPEST_CALL} deep."
+            raise ProgramError(
+                refusal(made.line, made.column("P"), "recursion", text, "A subroutine must not call itself.")
+            )
+        self._calls.append((made.line, self.end, self._loops))
+        self._loops = []
+        self.at = self._structure.subroutines[number] + 1
+        self.end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+
+    def _loop_end(self, here: int) -> None:
+        start = self._structure.loop_starts.get(here)
+        if start is None or not self._loops or self._loops[-1][0] != start:
+            return
+        loop = self._loops[-1]
+        if loop[1] > 0:
+            loop[1] -= 1
+            self.at = start + 1
+        else:
+            self._loops.pop()
+
+    def _return(self) -> None:
+        if self._calls:
+            self.at, self.end, self._loops = self._calls.pop()

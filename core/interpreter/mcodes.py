@@ -1,0 +1,117 @@
+"""M codes: which block each makes, before or after the motion of its line."""
+
+from __future__ import annotations
+
+from core.interpreter import codes
+from core.interpreter.actions import (
+    Action,
+    Collet,
+    Coolant,
+    Output,
+    ProgramEnd,
+    ProgramStop,
+    RepeatOff,
+    WaitInput,
+)
+from core.interpreter.blocks import Block
+from core.interpreter.log import refusal
+from core.interpreter.modal import Modal
+from core.interpreter.spindle import rpm_at, stop_block
+from core.interpreter.state import State
+from core.interpreter.statement import Statement
+from core.language.diagnostics import ProgramError
+
+_WAITS = {91: ("TB2-5", False), 92: ("TB2-5", True), 93: ("TB2-7", False), 94: ("TB2-7", True)}
+
+
+def before_motion(state: State, made: Statement) -> Block | None:
+    """The block of an M code that acts before the motion; M03 and M04 are the spindle's."""
+    m = made.m
+    if m is None or m in {3, 4} or m in codes.M_AFTER:
+        return None
+    if m in {8, 12, 13}:
+        return _done(state, made, _switch(state, made, m))
+    if m in _WAITS:
+        return _done(state, made, WaitInput(*_WAITS[m]))
+    output = state.setup.limits.m_outputs.get(m)
+    return _output(state, made, *output) if output is not None and output[1] else None
+
+
+def after_motion(state: State, made: Statement) -> Block | None:
+    """The block of an M code that acts after the motion."""
+    m = made.m
+    if m is None:
+        return None
+    if m == 5:
+        return stop_block(state, made)
+    if m in codes.ENDS:
+        return _end(state, made, reset=m == 30)
+    action = _stops(state, made, m)
+    if action is not None:
+        return _done(state, made, action)
+    output = state.setup.limits.m_outputs.get(m)
+    if m in codes.M_BEFORE or output is None or output[1]:
+        return None
+    return _output(state, made, *output)
+
+
+def _stops(state: State, made: Statement, m: int) -> Action | None:
+    if m == 9:
+        return _switch(state, made, m)
+    if m in {0, 1}:
+        return ProgramStop(optional=m == 1, message=(made.comment or "").strip())
+    return RepeatOff() if m == 31 else None
+
+
+def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
+    """Report the M codes that neither the control nor the machine file knows."""
+    for made in lines:
+        if made.m_word is not None and made.m not in state.setup.limits.m_outputs:
+            text = f"{made.m_word.text} is no code of this machine."
+            hint = "The machine file assigns the outputs."
+            state.log.add(refusal(made.line, made.m_word.column, "m-unknown", text, hint))
+
+
+def _done(state: State, made: Statement, action: Action) -> Block:
+    return state.action(made.line, made.part("m"), action, rpm_at(state, state.x))
+
+
+def _switch(state: State, made: Statement, m: int) -> Action:
+    if m in {8, 9}:
+        state.adopt(state.modal._replace(coolant=m == 8))
+        return Coolant(on=m == 8)
+    if m == 13 and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
+        column = made.m_word.column if made.m_word else 0
+        text = "M13 opens the collet while the spindle turns."
+        raise ProgramError(refusal(made.line, column, "unclamp-turning", text, "Stop it with M05 first."))
+    state.adopt(state.modal._replace(collet_closed=m == 12))
+    return Collet(closed=m == 12)
+
+
+def _output(state: State, made: Statement, name: str, on: bool) -> Block:
+    outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+    state.adopt(state.modal._replace(outputs=outputs))
+    return _done(state, made, Output(name, on))
+
+
+def _end(state: State, made: Statement, *, reset: bool) -> Block:
+    """The state of power-up, but for units, the tool's frame and, after M02, the M functions."""
+    old = state.modal
+    state.stay(
+        Modal(
+            metric=old.metric,
+            rapid_rate=old.rapid_rate,
+            tool=old.tool,
+            tool_x=old.tool_x,
+            tool_z=old.tool_z,
+            preset_x=old.preset_x,
+            preset_z=old.preset_z,
+            collet_closed=old.collet_closed,
+            spindle=0 if reset else old.spindle,
+            rpm=abs(rpm_at(state, state.x)) if old.spindle and not reset else old.rpm,
+            coolant=old.coolant and not reset,
+            outputs=frozenset() if reset else old.outputs,
+            comment=old.comment,
+        )
+    )
+    return _done(state, made, ProgramEnd(reset=reset))

@@ -1,0 +1,126 @@
+"""Straight moves, and what every move shares: where it ends and what it needs."""
+
+from __future__ import annotations
+
+from math import hypot, isfinite
+
+from core.interpreter import units
+from core.interpreter.blocks import Block
+from core.interpreter.feeds import check_move
+from core.interpreter.log import refusal
+from core.interpreter.spindle import rpm_at
+from core.interpreter.state import State
+from core.interpreter.statement import PlainMove, Statement
+from core.language.diagnostics import ProgramError
+
+_COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
+_DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
+_WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
+
+
+def fast_move(state: State, line: int, text: str, step: PlainMove) -> Block:
+    """A straight move under a state that has passed all checks; X and Z as written, finer than no step."""
+    x, z = step
+    x0, z0 = state.x, state.z
+    if state.absolute:
+        if x is not None:
+            state.px = x * state.scale_x
+        if z is not None:
+            state.pz = z * state.scale_z
+    else:
+        state.px += (x or 0.0) * state.scale_x
+        state.pz += (z or 0.0) * state.scale_z
+    state.x = x1 = state.px + state.dx
+    state.z = z1 = state.pz + state.dz
+    if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
+        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+    state.blocks = n = state.blocks + 1
+    c = state.c
+    return Block(
+        n, line, state.kind, text, x0, z0, c, x1, z1, c, state.offset_x, state.offset_z,
+        state.modal, state.feed, state.per_rev, state.rpm,
+    )  # fmt: skip
+
+
+def plain_move(state: State, line: int, text: str, step: PlainMove) -> Block:
+    """A line of X and Z alone, with every check."""
+    x, z = step
+    return line_to(
+        state,
+        line,
+        text,
+        None if x is None else x * state.scale_x,
+        None if z is None else z * state.scale_z,
+    )
+
+
+def statement_move(state: State, made: Statement) -> Block:
+    """The straight move of a line."""
+    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    return line_to(state, made.line, made.part("move"), x, z)
+
+
+def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
+    """A straight move to words X and Z in mm, None where there is none."""
+    x0, z0 = state.x, state.z
+    go(state, x, z)
+    check_tool(state, line, x, z)
+    check_move(state, line, x0, state.x, hypot(state.x - x0, state.z - z0))
+    warn_of_title_rapid(state, line)
+    modal = state.modal
+    state.blocks += 1
+    # G95's limit depends on a speed that only constant surface speed changes from move to move.
+    state.fast = not modal.css and not modal.coarse and not state.told
+    return Block(
+        state.blocks, line, state.kind, text, x0, z0, state.c, state.x, state.z, state.c,
+        state.offset_x, state.offset_z, modal, state.feed, state.per_rev, rpm_at(state, state.x),
+        modal.surface_speed if modal.css else None,
+    )  # fmt: skip
+
+
+def go(state: State, x: float | None, z: float | None) -> None:
+    """Move the position to words X and Z (mm), by G90 or G91, with the secondary offset in it."""
+    if state.absolute:
+        state.px = state.px if x is None else x
+        state.pz = state.pz if z is None else z
+    else:
+        state.px += x or 0.0
+        state.pz += z or 0.0
+    state.x, state.z = state.px + state.dx, state.pz + state.dz
+
+
+def check_tool(state: State, line: int, x: float | None, z: float | None) -> None:
+    """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
+    tool_line, state.tool_line = state.tool_line, 0
+    if tool_line and (x is None or z is None):
+        text = f"The first move after the T on line {tool_line} lacks {'X' if x is None else 'Z'}."
+        raise ProgramError(refusal(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it."))
+
+
+def warn_of_title_rapid(state: State, line: int) -> None:
+    """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
+    if state.title_rapid and state.modal.rapid:
+        text = f"This move is a rapid because of the G00 beside the comment on line {state.title_rapid}."
+        state.log.warn(line, 0, "title-rapid", text, "Write G01 if it is meant to cut.")
+    state.title_rapid = 0
+
+
+def on_step(state: State, made: Statement, letter: str) -> float | None:
+    """A length word in mm, X as a radius by G72/G73, rounded to the control's step with a warning."""
+    word = made.words.get(letter)
+    if word is None or word.value is None or not isfinite(word.value):
+        return None
+    modal = state.modal
+    if modal.metric:
+        step = units.METRIC_STEP
+    else:
+        step = _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
+    scale = state.scale_x if letter in _DIAMETERS else state.scale_z
+    count = word.value / step
+    whole = round(count)
+    if abs(count - whole) <= max(_WHOLE, abs(count) * 1e-12):
+        return word.value * scale
+    name = "mm" if modal.metric else "in"
+    text = f"{word.text} is finer than the step of {step:.7g} {name}; {whole * step:.5f} is used."
+    state.log.warn(made.line, word.column, "finer-than-step", text, "Round the number.")
+    return whole * step * scale

@@ -1,0 +1,144 @@
+"""A program read once: its lines ready to run, its structure, and what is wrong with it as text."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from core.interpreter import codes
+from core.interpreter.statement import PlainMove, Statement, statement
+from core.interpreter.structure import Structure, find_structure
+from core.interpreter.style import Style
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Line, lex_line
+from core.language.source import Source
+
+_NUMBER = r"([-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,4})?|\.[0-9]{1,4}))"
+_PLAIN = re.compile(f"(?:[Xx]{_NUMBER})?(?:[Zz]{_NUMBER})?")
+_MOST_PROBLEMS = 100
+_PLANE_END = re.compile(r"\s*\(\s*END\s*\)\s*", re.IGNORECASE)
+
+Step = PlainMove | Statement | None
+"""A line to run: X and Z alone, anything else, or nothing at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program ready to run. ``steps`` has one entry a line; ``m_codes`` are those of the machine file."""
+
+    source: Source
+    steps: list[Step]
+    structure: Structure
+    diagnostics: tuple[Diagnostic, ...]
+    blocks: int  # lines that hold more than a comment
+    names_units: bool  # G70 or G71 stands somewhere
+    m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
+
+    def line(self, number: int) -> Line:
+        """The words of a line, counted from 1."""
+        return lex_line(number, self.source.lines[number - 1])
+
+    def statement(self, number: int) -> Statement | None:
+        """A line ready to run, counted from 1; None where there is nothing on it."""
+        step = self.steps[number - 1]
+        return statement(self.line(number)) if isinstance(step, tuple) else step
+
+
+class _Reader:
+    def __init__(self, source: Source, *, strict: bool) -> None:
+        self.source = source
+        self.style = Style(strict=strict)
+        self.steps: list[Step] = []
+        self.statements: list[Statement] = []
+        self.problems: list[Diagnostic] = []
+        self._in_plane = False
+
+    def read(self) -> None:
+        plain = _PLAIN.fullmatch
+        append = self.steps.append
+        for text in self.source.lines:
+            match = plain(text)
+            if match is None or not text:
+                append(self._statement(text))
+                continue
+            x, z = match.groups()
+            append((None if x is None else float(x), None if z is None else float(z)))
+
+    def _statement(self, text: str) -> Statement | None:
+        number = len(self.steps) + 1
+        if not text or text.isspace():
+            self.style.tell("blank-line", number)
+            return None
+        line = lex_line(number, text)
+        if self._in_plane:
+            self._in_plane = _PLANE_END.fullmatch(text) is None
+            return None
+        self.problems.extend(line.errors)
+        try:
+            made = statement(line)
+        except ProgramError as problem:
+            self.problems.append(problem.diagnostic)
+            self._in_plane = problem.diagnostic.code == "not-yet" and not line.words
+            made = Statement(number, line.text, flow="unreadable")
+        self.style.look_at(line, made)
+        self.statements.append(made)
+        return made
+
+
+def read_program(source: Source, strict: bool = False) -> Program:
+    """Lex all lines, find loops, subroutines and ends, and say what is wrong. Raises nothing.
+
+    ``strict`` makes errors of what the original control's book forbids and real shops write.
+    """
+    reader = _Reader(source, strict=strict)
+    reader.read()
+    length = len(reader.steps)
+    structure, faults = find_structure(reader.statements, length)
+    reader.style.look_at_file(source)
+    problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
+    problems.sort(key=lambda problem: (problem.line, problem.column))
+    return Program(
+        source=source,
+        steps=reader.steps,
+        structure=structure,
+        diagnostics=(*_capped(problems), *_capped(reader.style.found)),
+        blocks=_executable(reader),
+        names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
+        m_codes=tuple(made for made in reader.statements if made.m not in {None, *codes.M_KNOWN}),
+    )
+
+
+def _executable(reader: _Reader) -> int:
+    comments = sum(1 for made in reader.statements if not made.executable)
+    return sum(1 for step in reader.steps if step is not None) - comments
+
+
+def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
+    inside: set[int] = set()
+    if structure.loop_ends:
+        for start, end in structure.loop_ends.items():
+            inside.update(range(start + 1, end + 2))
+    return [
+        Diagnostic(
+            made.line,
+            0,
+            Severity.WARNING,
+            "comment-in-loop",
+            "A comment stands inside a loop.",
+            "Move it before LS.",
+        )
+        for made in statements
+        if made.comment is not None and made.line in inside
+    ]
+
+
+def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
+    """Errors first in the count: no flood of warnings may hide one."""
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    if len(problems) <= _MOST_PROBLEMS:
+        return problems
+    if len(errors) >= _MOST_PROBLEMS:
+        return errors[:_MOST_PROBLEMS]
+    others = [problem for problem in problems if problem.severity is not Severity.ERROR]
+    kept = errors + others[: _MOST_PROBLEMS - len(errors)]
+    return sorted(kept, key=lambda problem: (problem.line, problem.column))

@@ -1,0 +1,163 @@
+"""The interpreter: a program and its circumstances → elementary blocks, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter import codes
+from core.interpreter.actions import AskInput, ProgramEnd
+from core.interpreter.blocks import Block
+from core.interpreter.count import MOST_BLOCKS, MOST_LINES, refuse_too_large, takes_call, terminal
+from core.interpreter.execute import execute
+from core.interpreter.flow import Flow
+from core.interpreter.log import Log, refusal
+from core.interpreter.mcodes import check_m_codes
+from core.interpreter.modal import Modal
+from core.interpreter.moves import fast_move, go, on_step, plain_move
+from core.interpreter.program import Program
+from core.interpreter.setup import Setup
+from core.interpreter.spindle import rpm_at
+from core.interpreter.state import State
+from core.interpreter.statement import UNREADABLE, PlainMove, Statement
+from core.interpreter.tools import ToolUse, warn_of_idle_shifts
+from core.language.diagnostics import Diagnostic, ProgramError
+
+_AHEAD = 8
+
+
+class Interpreter:
+    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    After an error the pass goes on as well as it can, so that a prover sees all of them; what executes
+    blocks must look at ``failed`` after each and stop there.
+    """
+
+    def __init__(self, program: Program, setup: Setup) -> None:
+        self._program = program
+        self._log = Log(program.diagnostics)
+        self._state = State(setup, self._log)
+        self._tools = ToolUse()
+        self._flow = Flow(program)
+        self._refused = False
+        self._check()
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All findings so far, those of reading the program first; grows while blocks are taken."""
+        return self._log.found
+
+    @property
+    def failed(self) -> bool:
+        """Whether there is an error among the findings so far."""
+        return bool(self._log.errors)
+
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
+
+    @property
+    def used_tools(self) -> list[int]:
+        """Tool numbers asked for so far, in the order of first use."""
+        return self._tools.used
+
+    @property
+    def missing_tools(self) -> list[int]:
+        """Those of them whose offset has never been set."""
+        return self._tools.missing
+
+    def blocks(self) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once."""
+        if self._refused:
+            return
+        steps, flow, state, log = self._program.steps, self._flow, self._state, self._log
+        lines = self._program.source.lines
+        left = MOST_LINES
+        while flow.at < flow.end:
+            at = flow.at
+            flow.at = at + 1
+            step = steps[at]
+            left -= 1
+            if left < 0 or state.blocks >= MOST_BLOCKS or log.full:
+                self._too_much(at + 1)
+                return
+            try:
+                if isinstance(step, tuple):
+                    if state.fast:
+                        yield fast_move(state, at + 1, lines[at], step)
+                    else:
+                        yield plain_move(state, at + 1, lines[at], step)
+                elif step is not None:
+                    yield from self._statement(step)
+            except ProgramError as problem:
+                self._recover(problem, step)
+        warn_of_idle_shifts(state)
+
+    def _statement(self, made: Statement) -> Iterator[Block]:
+        if made.flow == UNREADABLE or (made.block_delete and self._state.setup.block_delete):
+            return
+        if made.flow in codes.CALLS:
+            yield from self._call(made)
+        elif made.flow:
+            self._flow.steer(made)
+        else:
+            first = made.line == self._first
+            ahead = self._program.steps[made.line : made.line + _AHEAD] if "F" in made.words else ()
+            for block in execute(self._state, made, self._tools, ahead, first=first):
+                yield block
+                if isinstance(block.action, ProgramEnd):
+                    self._flow.at = self._flow.end
+
+    def _call(self, made: Statement) -> Iterator[Block]:
+        state = self._state
+        if made.flow in {"M95", "M97"}:
+            yield state.action(made.line, made.text, AskInput(terminal(made)), rpm_at(state, state.x))
+            if not takes_call(made, state.setup.inputs):
+                return
+        self._flow.call(made)
+
+    def _recover(self, problem: ProgramError, step: PlainMove | Statement | None) -> None:
+        """Keep the error, and stand where its line would have ended, so that the next is judged well."""
+        self._log.add(problem.diagnostic)
+        state = self._state
+        state.fast = False
+        if problem.diagnostic.code == "recursion":
+            self._flow.at = self._flow.end = 0
+        if isinstance(step, Statement) and step.moves and state.absolute:
+            go(state, on_step(state, step, "X"), on_step(state, step, "Z"))
+            state.tool_line = 0
+
+    def _too_much(self, line: int) -> None:
+        if self._log.full:
+            return
+        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the loops."))
+
+    def _check(self) -> None:
+        """What can be said before the first block."""
+        state, program = self._state, self._program
+        check_m_codes(state, program.m_codes)
+        self._first = self._first_line()
+        large = refuse_too_large(program, state.setup.inputs)
+        if large is not None:
+            self._refused = True
+            self._log.add(large)
+        if state.setup.metric and not program.names_units and self._first:
+            text = "The program names neither G70 nor G71; it runs in millimetres, as the job before it."
+            self._log.warn(self._first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
+
+    def _first_line(self) -> int:
+        """Number of the first line to execute, 0 where there is none; it must say G90 or G91."""
+        delete = self._state.setup.block_delete
+        for number, step in enumerate(self._program.steps, start=1):
+            if step is None:
+                continue
+            if isinstance(step, Statement):
+                if not step.executable or (delete and step.block_delete):
+                    continue
+                if step.flow == UNREADABLE or {90, 91}.intersection(step.modal):
+                    return number
+            text = "The first line must say G90 (absolute) or G91 (incremental)."
+            self._log.add(refusal(number, 1, "first-line", text, "Begin with G90G94F300."))
+            return number
+        return 0

@@ -1,0 +1,145 @@
+"""Loops, subroutines and the end of a program, found once before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from core.interpreter import codes
+from core.interpreter.statement import Statement
+from core.language.diagnostics import Diagnostic, Severity
+
+
+class Structure(NamedTuple):
+    """Where the flow of a program goes; all positions are indices of lines, from 0."""
+
+    loop_ends: dict[int, int]  # index of LS → index of its LF
+    loop_starts: dict[int, int]
+    subroutines: dict[int, int]  # number → index of its }n
+    subroutine_ends: dict[int, int]  # number → index of its M99
+    main_end: int  # one past the last line of the main program
+
+
+class _Finder:
+    """Goes once through the statements that matter for structure."""
+
+    def __init__(self, length: int) -> None:
+        self.found = Structure({}, {}, {}, {}, length)
+        self.problems: list[Diagnostic] = []
+        self._loops: list[Statement] = []
+        self._inside: int | None = None  # subroutine being read
+        self._ended = False
+        self._stray = False  # a line that nothing reaches has been told
+
+    def take(self, made: Statement) -> None:
+        if made.flow == "}":
+            self._open_subroutine(made)
+        elif made.flow == "M99":
+            self._close_subroutine(made)
+        elif self._ended and self._inside is None:
+            self._unreachable(made)
+        elif made.flow == "LS":
+            self._loops.append(made)
+        elif made.flow == "LF":
+            self._close_loop(made)
+        elif self._inside is None and made.m in codes.ENDS and not made.block_delete:
+            self._end_main(made.line)
+
+    def _end_main(self, line: int) -> None:
+        self._ended = True
+        self._unclosed_loops()
+        self.found = self.found._replace(main_end=min(line, self.found.main_end))
+
+    def _open_subroutine(self, made: Statement) -> None:
+        if self._inside is not None:
+            self._refuse(
+                made, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
+            )
+        elif not self._ended:
+            self._no_end(made.line - 1)
+        self._unclosed_loops()
+        number = int(made.value("}") or 0)
+        if number in self.found.subroutines:
+            first = self.found.subroutines[number] + 1
+            text = f"Subroutine {number} begins on line {first} already."
+            self._refuse(made, "subroutine-twice", text, "Give it another number.")
+        else:
+            self.found.subroutines[number] = made.line - 1
+        self._inside, self._stray = number, False
+
+    def _close_subroutine(self, made: Statement) -> None:
+        if self._inside is None:
+            self._refuse(made, "m99-outside", "M99 ends no subroutine here.", "Take it out.")
+            return
+        self._unclosed_loops()
+        self.found.subroutine_ends.setdefault(self._inside, made.line - 1)
+        self._inside = None
+
+    def _close_loop(self, made: Statement) -> None:
+        if not self._loops:
+            self._refuse(made, "loop-unopened", "LF ends no loop.", "Add LS with a count, or take it out.")
+            return
+        start = self._loops.pop().line - 1
+        self.found.loop_ends[start] = made.line - 1
+        self.found.loop_starts[made.line - 1] = start
+
+    def _unclosed_loops(self) -> None:
+        for made in self._loops:
+            self._refuse(made, "loop-open", f"{made.text} has no LF.", "Add LF where the loop ends.")
+        self._loops.clear()
+
+    def _unreachable(self, made: Statement) -> None:
+        if not self._stray:
+            self._stray = True
+            text = "This line stands after the end of the program and is in no subroutine."
+            self._refuse(made, "after-end", text, "Move it before M30, or start a subroutine with }n.")
+
+    def _no_end(self, line: int) -> None:
+        self._ended = True
+        text = "The main program ends without M30 or M02."
+        self.problems.append(Diagnostic(line, 0, Severity.ERROR, "no-end", text, "Add M30."))
+        self.found = self.found._replace(main_end=line)
+
+    def finish(self, length: int) -> None:
+        self._unclosed_loops()
+        if not self._ended:
+            self._no_end(length)
+        elif self._inside is not None:
+            text = f"Subroutine {self._inside} has no M99."
+            line = self.found.subroutines[self._inside] + 1
+            self.problems.append(
+                Diagnostic(line, 1, Severity.ERROR, "subroutine-open", text, "Add M99 at its end.")
+            )
+
+    def _refuse(self, made: Statement, code: str, text: str, hint: str) -> None:
+        self.problems.append(Diagnostic(made.line, 1, Severity.ERROR, code, text, hint))
+
+
+def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
+    """The structure of a program of ``length`` lines, and what is wrong with it.
+
+    ``statements``: its lines that are more than X and Z, in order.
+    """
+    finder = _Finder(length)
+    calls: list[Statement] = []
+    for made in statements:
+        finder.take(made)
+        if made.flow in codes.CALLS:
+            calls.append(made)
+    finder.finish(length)
+    for made in calls:
+        number = call_target(made)
+        if number not in finder.found.subroutines:
+            column = made.column("P") or 1
+            text = f"Subroutine {number} is called, and no }}{number} begins it."
+            finder.problems.append(
+                Diagnostic(
+                    made.line, column, Severity.ERROR, "subroutine-missing", text, "Write it after M30."
+                )
+            )
+    return finder.found, finder.problems
+
+
+def call_target(made: Statement) -> int:
+    """Number of the subroutine that a call names; M95 always means 1."""
+    return 1 if made.flow == "M95" else int(made.value("P") or 0)

@@ -1,0 +1,24 @@
+"""From the program's numbers to millimetres and back to what a message says."""
+
+from __future__ import annotations
+
+MM_PER_INCH = 25.4
+FEET_PER_MINUTE = 12 * MM_PER_INCH / 60  # mm/s
+METRES_PER_MINUTE = 1000 / 60  # mm/s
+METRIC_STEP = 0.0001  # mm; the last place that the metric display shows
+
+
+def per_unit(*, metric: bool) -> float:
+    """Millimetres in one unit of the program."""
+    return 1.0 if metric else MM_PER_INCH
+
+
+def length(mm: float, *, metric: bool) -> str:
+    """A length as the program's reader knows it: five places in inch, four in metric."""
+    return f"{mm:.4f} mm" if metric else f"{mm / MM_PER_INCH:.5f} in"
+
+
+def feed(value: float, *, per_rev: bool, metric: bool) -> str:
+    """A feed in mm/s or mm/rev as the program's reader knows it."""
+    number = value / per_unit(metric=metric) * (1 if per_rev else 60)
+    return f"{number:.7g} {'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"

@@ -1,0 +1,157 @@
+"""Source text of one line → words. Numbers follow a strict grammar; whatever is left over is an error."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.omniturn import faults
+from core.language.omniturn.words import BARE, Line, Word
+
+LONGEST_LINE = 8192
+
+_WORD = re.compile(r"(LS|LF|RF|CA|CI|[A-Z}])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))?")
+_THREAD = re.compile(r"G3[34](?![0-9.])")
+_TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
+_ZERO_LETTER = re.compile(r"O[0-9.]*")
+_EXPONENT = re.compile(r"E[+-]?[0-9]+")
+_NUMBER_SIGNS = frozenset("0123456789.")
+_SPACE = re.compile(r"\s")
+
+
+class _Code(NamedTuple):
+    """The code of a line: upper case, no blanks, no comment, and the column that each character came from."""
+
+    text: str
+    written: str
+    columns: range | list[int]
+
+
+def lex_line(number: int, text: str) -> Line:
+    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+    if len(text) > LONGEST_LINE:
+        return Line(number, errors=(faults.too_long(number, len(text)),))
+    errors: list[Diagnostic] = []
+    written, columns, comment, comment_column = _without_comment(number, text, errors)
+    code = _Code(written.upper() if written.isascii() else _upper(written), written, columns)
+    block_delete = code.text.startswith("/")
+    words = _Scanner(number, code, errors).words(1 if block_delete else 0)
+    return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+
+
+def _upper(text: str) -> str:
+    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
+
+
+def _without_comment(
+    number: int, text: str, errors: list[Diagnostic]
+) -> tuple[str, range | list[int], str | None, int]:
+    if "(" not in text:
+        written, columns = _without_blanks(text, 1)
+        return written, columns, None, 0
+    written, kept, comments, first, at = "", list[int](), list[str](), 0, 0
+    while (start := text.find("(", at)) >= 0:
+        piece, columns = _without_blanks(text[at:start], at + 1)
+        written, kept = written + piece, kept + list(columns)
+        first = first or start + 1
+        end = text.find(")", start)
+        if end < 0:
+            errors.append(faults.open_comment(number, start + 1))
+            end = len(text)
+        comments.append(text[start + 1 : end])
+        at = end + 1
+    piece, columns = _without_blanks(text[at:], at + 1)
+    return written + piece, kept + list(columns), " ".join(comments), first
+
+
+def _without_blanks(text: str, column: int) -> tuple[str, range | list[int]]:
+    if not _SPACE.search(text):
+        return text, range(column, column + len(text))
+    kept = [(sign, column + i) for i, sign in enumerate(text) if not sign.isspace()]
+    return "".join(sign for sign, _ in kept), [at for _, at in kept]
+
+
+class _Scanner:
+    """Goes once through the code of a line; what it cannot read it reports and skips."""
+
+    def __init__(self, number: int, code: _Code, errors: list[Diagnostic]) -> None:
+        self._number = number
+        self._code = code
+        self._errors = errors
+        self._thread = _THREAD.search(code.text) is not None
+
+    def words(self, at: int) -> tuple[Word, ...]:
+        found: list[Word] = []
+        text = self._code.text
+        while at < len(text):
+            match = _WORD.match(text, at)
+            if match is None:
+                at = self._skip(at, after_number=bool(found) and text[at - 1].isdigit())
+                continue
+            if self._thread and match[1] in {"CA", "CI"}:
+                found.append(Word("C", None, self._column(at), self._code.written[at : at + 1]))
+                at += 1
+                continue
+            at = self._read(match, found)
+        return tuple(found)
+
+    def _read(self, match: re.Match[str], found: list[Word]) -> int:
+        """One word and the fault that may follow it; returns where to go on."""
+        letter, digits, end = match[1], match[2], match.end()
+        text = self._code.text
+        if letter == "O" and not self._thread:
+            return self._letter_o(match.start())
+        if digits is None and letter not in BARE:
+            return self._without_number(letter, match)
+        if digits is None and text[end : end + 1] in {"+", "-", "."}:
+            return self._without_number(letter, match)
+        value = None if digits is None else float(digits) if len(digits) < 32 else float("inf")
+        written = self._code.written[match.start() : end]
+        word = Word(letter, value, self._column(match.start()), written)
+        fault = faults.of_word(self._number, word, digits)
+        if fault is not None:
+            self._errors.append(fault)
+        found.append(word)
+        return self._after_number(end) if digits is not None else end
+
+    def _without_number(self, letter: str, match: re.Match[str]) -> int:
+        text, end = self._code.text, match.end()
+        follower = text[end : end + 1]
+        if follower == "O":
+            return self._letter_o(end)
+        column = self._column(match.start())
+        self._errors.append(faults.no_number(self._number, column, letter, follower))
+        skipped = _TO_NEXT_LETTER.match(text, end)
+        return skipped.end() if skipped else end
+
+    def _after_number(self, at: int) -> int:
+        text = self._code.text
+        exponent = _EXPONENT.match(text, at)
+        if exponent is not None:
+            self._errors.append(faults.exponent(self._number, self._column(at)))
+            return exponent.end()
+        if text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS):
+            return self._letter_o(at)
+        return at
+
+    def _letter_o(self, at: int) -> int:
+        self._errors.append(faults.letter_o(self._number, self._column(at)))
+        match = _ZERO_LETTER.match(self._code.text, at)
+        return match.end() if match else at + 1
+
+    def _skip(self, at: int, *, after_number: bool) -> int:
+        sign = self._code.written[at]
+        after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
+        self._errors.append(faults.of_sign(self._number, self._column(at), sign, after_number=after_number))
+        match = _TO_NEXT_LETTER.match(self._code.text, at)
+        return match.end() if match else at + 1
+
+    def _column(self, at: int) -> int:
+        return self._code.columns[at]
+
+
+def is_error(line: Line) -> bool:
+    """Whether the line could not be read."""
+    return any(error.severity is Severity.ERROR for error in line.errors)
