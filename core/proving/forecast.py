@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.machine.model import Machine
+from core.motion.limits import MotionLimits
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08
@@ -30,6 +31,19 @@ class SpindleForecast:
         if rpm == self._to:
             return
         self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
+
+    def follow(self, t: float, rpm: float, dt: float) -> None:
+        """Constant surface speed: go towards ``rpm`` as far as the drive can within ``dt``."""
+        now = self.speed(t)
+        rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
+        step = max(-rate * dt, min(rate * dt, rpm - now))
+        self._from = self._to = now + step
+        self._since = t
+
+    @property
+    def rpm_max(self) -> float:
+        """The fastest the machine allows, rpm."""
+        return self._model.rpm_max
 
     def speed(self, t: float) -> float:
         """Signed rpm at ``t``."""
@@ -59,3 +73,11 @@ class SpindleForecast:
             t += max(0.0, abs(goal - rpm) - inside) / rate
             rpm = goal
         return t + self._model.at_speed_time
+
+
+def motion_limits(machine: Machine) -> MotionLimits:
+    """What the time law must know of a machine."""
+    x, z, c = machine.axes
+    return MotionLimits(
+        vmax=(x.vmax, z.vmax, c.vmax), amax=(x.amax, z.amax, c.amax), interval=machine.timing.setpoint
+    )

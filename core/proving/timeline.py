@@ -1,3 +1,176 @@
 """A program laid out in time: every elementary block with its start and end, by the law that a run obeys."""
 
 from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleRun, SpindleStop
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.program import Program, read_program
+from core.interpreter.run import Interpreter
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Source
+from core.machine.model import Machine
+from core.motion.errors import MotionError
+from core.motion.timeline import Chunk, ChunkPlanner
+from core.proving.forecast import SpindleForecast, motion_limits
+
+
+class Moved(NamedTuple):
+    """A stretch of motion from ``t0`` on, and the blocks that end in it with when they start and end."""
+
+    t0: float
+    chunk: Chunk
+    blocks: list[Block]
+
+    @property
+    def t1(self) -> float:
+        """When the stretch ends; the next one may go on without a stop."""
+        return self.t0 + self.chunk.profile.duration
+
+    def times(self) -> Iterator[tuple[Block, float, float]]:
+        """Each block with its start and end on the program's clock."""
+        shift = self.t0 - self.chunk.t
+        for block, t0, t1 in zip(self.blocks, self.chunk.t0.tolist(), self.chunk.t1.tolist(), strict=True):
+            yield block, t0 + shift, t1 + shift
+
+
+class Rested(NamedTuple):
+    """At rest from ``t0`` to ``t1``: a block that does not move, or (None) a wait before the next motion."""
+
+    t0: float
+    t1: float
+    block: Block | None
+
+
+class Timeline:
+    """One pass through a program, once. Constant memory: stretches are handed out as they are settled.
+
+    Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``.
+    """
+
+    def __init__(self, program: Program, setup: Setup, machine: Machine) -> None:
+        self.program = program
+        self.interpreter = Interpreter(program, setup)
+        self.spindle = SpindleForecast(machine)
+        self.t = 0.0
+        self.start = setup.start
+        self._machine = machine
+        self._planner = ChunkPlanner(motion_limits(machine), rpm_max=machine.spindle.rpm_max)
+        self._source = self.interpreter.blocks()
+        self._back: Block | None = None  # the block that ended a motion and is still to come
+        self._moving: deque[Block] = deque()
+        self._speed_wanted = False  # a speed was commanded that no feed has waited for yet
+        self._refused: list[Diagnostic] = []
+
+    @classmethod
+    def of(cls, source: Source, setup: Setup, machine: Machine) -> Timeline:
+        """The timeline of a program's text."""
+        return cls(read_program(source, setup.strict), setup, machine)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What reading and interpreting have found so far, in the order of lines."""
+        found = [*self.interpreter.diagnostics, *self._refused]
+        return tuple(sorted(found, key=lambda d: (d.line, d.column)))
+
+    @property
+    def errors(self) -> bool:
+        """Whether the program will be refused."""
+        return any(d.severity is Severity.ERROR for d in self.diagnostics)
+
+    def spans(self) -> Iterator[Moved | Rested]:
+        """The program in time order, without gaps."""
+        while (block := self._next()) is not None:
+            if block.moves:
+                yield from self._motion(block)
+            else:
+                yield self._action(block)
+
+    def _next(self) -> Block | None:
+        if self._back is not None:
+            block, self._back = self._back, None
+            return block
+        return next(self._source, None)
+
+    def _motion(self, first: Block) -> Iterator[Moved | Rested]:
+        """Everything up to the next block that does not move, as one motion from rest to rest."""
+        if first.kind is not Kind.RAPID:
+            yield from self._at_speed()
+        yield self._rest(self._machine.timing.commit)
+        start = self.t - self._planner.t
+        try:
+            for chunk in self._planner.add(self._moves(first)):
+                yield self._moved(start, chunk)
+            for chunk in self._planner.finish():
+                yield self._moved(start, chunk)
+        except MotionError as error:
+            self._refuse(str(error))
+
+    def _moves(self, first: Block) -> Iterator[Block]:
+        """Moving blocks; ends before one that must wait for the spindle, or that does not move."""
+        block: Block | None = first
+        while block is not None and block.moves:
+            if block is not first and self._speed_wanted and block.kind is not Kind.RAPID:
+                break
+            self._moving.append(block)
+            yield block
+            block = self._next()
+        self._back = block
+
+    def _moved(self, start: float, chunk: Chunk) -> Moved:
+        blocks = [self._moving.popleft() for _ in range(len(chunk.n))]
+        stretch = Moved(start + chunk.t, chunk, blocks)
+        self.t = stretch.t1
+        return stretch
+
+    def _at_speed(self) -> Iterator[Rested]:
+        """Before a feed the spindle must have been at speed for as long as the machine file says."""
+        if self._speed_wanted:
+            self._speed_wanted = False
+            yield self._rest(max(0.0, self.spindle.ready_at() - self.t))
+
+    def _rest(self, seconds: float, block: Block | None = None) -> Rested:
+        stretch = Rested(self.t, self.t + seconds, block)
+        self.t = stretch.t1
+        return stretch
+
+    def _action(self, block: Block) -> Rested:
+        assert block.action is not None
+        self._turn(block)
+        return self._rest(self._seconds(block.action), block)
+
+    def _turn(self, block: Block) -> None:
+        action = block.action
+        if isinstance(action, SpindleRun):
+            self.spindle.command(self.t, block.rpm)
+            self._speed_wanted = True
+        elif isinstance(action, SpindleStop) or (isinstance(action, ProgramEnd) and action.reset):
+            self.spindle.command(self.t, 0.0)
+            self._speed_wanted = False
+
+    def _seconds(self, action: Action) -> float:
+        timing = self._machine.timing
+        if isinstance(action, Dwell):
+            return action.seconds
+        if isinstance(action, Collet):
+            return timing.collet_close if action.closed else timing.collet_open
+        return 0.0
+
+    def _refuse(self, why: str) -> None:
+        line = self._moving[0].line if self._moving else 0
+        hint = "change the move that the message names"
+        self._refused.append(Diagnostic(line, 0, Severity.ERROR, "impossible-motion", why, hint))
+        self._source, self._back = iter(()), None
+
+
+def timed_blocks(timeline: Timeline) -> Iterator[tuple[Block, float, float]]:
+    """Every elementary block with its start and end, s; waits belong to no block."""
+    for stretch in timeline.spans():
+        if isinstance(stretch, Moved):
+            yield from stretch.times()
+        elif stretch.block is not None:
+            yield stretch.block, stretch.t0, stretch.t1

@@ -1,0 +1,95 @@
+"""Proving: the same program, given to a checker instead of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.interpreter.actions import Dwell
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Diagnostic
+from core.language.source import Source
+from core.machine.model import Machine
+from core.proving.report import Report, Times
+from core.proving.tally import Tally
+from core.proving.timeline import Moved, Rested, Timeline
+from core.proving.travel import travel_findings
+
+MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the travel; nobody reads more
+
+
+def prove(
+    source: Source, setup: Setup, machine: Machine, progress: Callable[[float], None] | None = None
+) -> Report:
+    """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed."""
+    timeline = Timeline.of(source, setup, machine)
+    proof = _Proof(machine)
+    for stretch in timeline.spans():
+        proof.add(stretch)
+        if progress is not None and proof.last is not None:
+            progress(proof.last.n)
+    return proof.report(timeline, source)
+
+
+class _Proof:
+    """What adds up while the program passes by."""
+
+    def __init__(self, machine: Machine) -> None:
+        self._machine = machine
+        self._tally = Tally()
+        self._cutting = self._rapid = self._dwell = self._wait = 0.0
+        self._beyond: dict[tuple[int, str], Diagnostic] = {}
+        self.last: Block | None = None
+        self._last_move: Block | None = None
+        self.elementary = 0
+
+    def add(self, stretch: Moved | Rested) -> None:
+        if isinstance(stretch, Moved):
+            self._moved(stretch)
+        else:
+            self._rested(stretch)
+
+    def _moved(self, stretch: Moved) -> None:
+        blocks, spent = stretch.blocks, (stretch.chunk.t1 - stretch.chunk.t0).tolist()
+        self._tally.add(blocks)
+        rapid = sum(t for block, t in zip(blocks, spent, strict=True) if block.kind is Kind.RAPID)
+        self._rapid += rapid
+        self._cutting += sum(spent) - rapid
+        self.elementary += len(blocks)
+        if blocks:
+            self.last = self._last_move = blocks[-1]
+        if len(self._beyond) < MAX_FINDINGS:
+            for finding in travel_findings(blocks, self._machine):
+                self._beyond.setdefault((finding.line, finding.message[:1]), finding)
+
+    def _rested(self, stretch: Rested) -> None:
+        spent = stretch.t1 - stretch.t0
+        if stretch.block is None:
+            self._wait += spent
+            return
+        self.elementary += 1
+        self.last = stretch.block
+        if isinstance(stretch.block.action, Dwell):
+            self._dwell += spent
+        else:
+            self._wait += spent
+
+    def report(self, timeline: Timeline, source: Source) -> Report:
+        found = [*timeline.diagnostics, *list(self._beyond.values())[:MAX_FINDINGS]]
+        interpreter, last, tally = timeline.interpreter, self.last, self._tally
+        end = self._last_move  # in its own frame: M30 takes the work shift away, and moves nothing
+        return Report(
+            name=source.name,
+            metric=bool(last and last.modal.metric),
+            blocks=timeline.program.blocks,
+            elementary=self.elementary,
+            diagnostics=tuple(sorted(found, key=lambda d: (d.line, d.column))),
+            times=Times(self._cutting, self._rapid, self._dwell, self._wait),
+            cutting_length=tally.cutting_length,
+            rapid_length=tally.rapid_length,
+            tools=tuple(sorted(interpreter.used_tools)),
+            missing_tools=tuple(sorted(interpreter.missing_tools)),
+            reach=tally.reach,
+            final=(end.x, end.z, end.c) if end else timeline.start,
+            machine_final=(end.mx, end.mz, end.c) if end else timeline.start,
+        )
