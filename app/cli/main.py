@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from app.cli.crash import report_crash
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
@@ -56,6 +57,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
+    sys.excepthook = report_crash
     argv = sys.argv[1:] if argv is None else argv
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:

@@ -49,7 +49,7 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
 
     machine = read_machine(args.machine)
     tools, secondary = _offsets(args.offsets)
-    inputs = _inputs(args.inputs)
+    inputs = input_states(args.inputs)
     setup = setup_for(
         machine,
         tools=tools,
@@ -71,7 +71,8 @@ def _offsets(path: str | None) -> Offsets:
     return read_offsets(Path(path))
 
 
-def _inputs(path: str | None) -> dict[str, bool]:
+def input_states(path: str | None) -> dict[str, bool]:
+    """The inputs file of the options, empty without one; raises CommandError."""
     if path is None:
         return {}
     from app.cli.inputs_file import read_inputs

@@ -1,0 +1,124 @@
+"""A run without a screen: somebody to press the buttons, and a clock that need not wait for the day."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, LoadJob, SetSwitch
+from core.executor.job import Job, Proof
+from core.executor.snapshot import Snapshot, State
+
+TICK = 0.01  # s between two looks at the machine
+PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
+UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
+
+
+class Runner(Protocol):
+    """The executor, as far as a run without a screen needs it."""
+
+    @property
+    def snapshot(self) -> Snapshot: ...
+
+    def post(self, command: Command) -> None: ...
+
+    def tick(self) -> None: ...
+
+
+class Ticks(Protocol):
+    """The clock that the run moves on, or waits for."""
+
+    def now(self) -> float: ...
+
+    def sleep_until(self, t: float) -> None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a run ended: ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``; ``why`` in words."""
+
+    state: str
+    why: str
+    snapshot: Snapshot
+    elapsed: float
+
+
+class HeadlessRun:
+    """Loads a job, starts it, presses Cycle Start at M00 and M01, and tells how it ended."""
+
+    def __init__(
+        self,
+        executor: Runner,
+        clock: Ticks,
+        say: Callable[[str], None],
+        progress: Callable[[float], None],
+    ) -> None:
+        self._executor = executor
+        self._clock = clock
+        self._say = say
+        self._progress = progress
+        self._last_move = 0.0
+
+    def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
+        """The whole run of one cycle."""
+        self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
+        self._executor.post(SetSwitch("optional_stop", optional_stop))
+        self._executor.post(LoadJob(job, proof))
+        self._until(lambda s: s.state is not State.IDLE or bool(s.start_refused), CycleStart(), tries=20)
+        if self._executor.snapshot.state in UNDER_WAY:
+            return self._watch()
+        return self._ended()
+
+    def _until(self, reached: Callable[[Snapshot], bool], command: Command, tries: int) -> None:
+        self._executor.post(command)
+        for _ in range(tries):
+            self._step()
+            if reached(self._executor.snapshot):
+                return
+
+    def _watch(self) -> Outcome:
+        self._last_move = self._clock.now()
+        while True:
+            snapshot = self._executor.snapshot
+            if snapshot.state not in UNDER_WAY:
+                return self._ended()
+            if snapshot.state is State.PROGRAM_STOP:
+                self._say(f"line {snapshot.line}: stop {snapshot.message!r}: Cycle Start pressed")
+                self._until(lambda s: s.state is not State.PROGRAM_STOP, CycleStart(), tries=20)
+            elif snapshot.state is State.HOLD:
+                return self._outcome("hold", snapshot.waiting_for or "feed hold")
+            elif self._stuck(snapshot):
+                self._executor.post(FeedHold())
+                self._step()
+                hint = f"line {snapshot.line} waits for {snapshot.waiting_for}: give its state in --inputs"
+                return self._outcome("waiting", hint)
+            self._progress(snapshot.cycle_elapsed)
+            self._step()
+
+    def _stuck(self, snapshot: Snapshot) -> bool:
+        """Whether it has waited too long for an input, which nobody will ever change here."""
+        now = self._clock.now()
+        if snapshot.state is not State.WAIT or snapshot.waiting_for.startswith("DWELL"):
+            self._last_move = now
+        return now - self._last_move > PATIENCE
+
+    def _ended(self) -> Outcome:
+        snapshot = self._executor.snapshot
+        if snapshot.alarms:
+            alarm = snapshot.alarms[-1]
+            return self._outcome("alarm", f"{alarm.text}: {alarm.cause}; {alarm.remedy}")
+        if snapshot.start_refused:
+            return self._outcome("refused", snapshot.start_refused)
+        if snapshot.state is not State.IDLE:
+            return self._outcome("refused", f"the machine is in state {snapshot.state}")
+        return self._outcome("complete", "")
+
+    def _outcome(self, state: str, why: str) -> Outcome:
+        snapshot = self._executor.snapshot
+        elapsed = snapshot.cycle_elapsed or snapshot.last_cycle
+        return Outcome(state, why, snapshot, elapsed)
+
+    def _step(self) -> None:
+        self._executor.tick()
+        self._clock.sleep_until(self._clock.now() + TICK)
