@@ -1,0 +1,78 @@
+"""Corners: a velocity step per setpoint interval, and chords that stand for a curve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.motion.path import build_path
+from core.motion.plan import plan
+from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline
+
+
+def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> float:
+    path = build_path(polyline(points, feed), LIMITS)
+    profile = plan(path)
+    return float(profile.at(profile.time_at(path.s[1:2]))[1][0])
+
+
+def test_a_right_angle_steps_each_axis_by_one_interval() -> None:
+    assert corner_speed([(0, 0), (0, 50), (50, 50)]) == pytest.approx(A * T)
+
+
+def test_a_reversal_takes_half_of_that() -> None:
+    assert corner_speed([(0, 0), (0, 50), (0, 0)]) == pytest.approx(A * T / 2)
+
+
+def test_a_slight_bend_is_slowed_in_proportion() -> None:
+    bend = math.radians(4.0)
+    points = [(0.0, 0.0), (0.0, 50.0), (50 * math.sin(bend), 50 + 50 * math.cos(bend))]
+    assert corner_speed(points) == pytest.approx(A * T / math.sin(bend))
+
+
+def test_going_straight_on_costs_nothing() -> None:
+    assert corner_speed([(0, 0), (0, 50), (0, 100)]) == pytest.approx(100.0)
+
+
+def test_a_tangential_joint_costs_nothing() -> None:
+    blocks = [
+        line((0, 0), (0, 30), 60.0, n=1),
+        arc((0, 30), (10, 40), (10, 30), 60.0, n=2),  # from +Z to +X, which is clockwise
+        line((10, 40), (40, 40), 60.0, n=3),
+    ]
+    profile = plan(build_path(blocks, LIMITS))
+    assert profile.duration == pytest.approx((60.0 + 5.0 * math.pi) / 60.0 + 60.0 / A, rel=1e-9)
+
+
+def test_half_a_circle_in_short_chords_takes_no_longer_than_the_circle() -> None:
+    """R 50 mm in 0.02 mm chords at 100 mm/s: the way at full feed plus one ramp."""
+    profile = plan(build_path(chords(50.0, math.pi, 7854, 100.0), LIMITS))
+    ideal = math.pi * 50.0 / 100.0 + 100.0 / A
+    assert ideal * (1.0 - 1e-4) < profile.duration < 1.01 * ideal
+
+
+@pytest.mark.parametrize("chord", [0.002, 0.01, 0.05])
+def test_chords_run_at_the_centripetal_limit_however_short(chord: float) -> None:
+    """Axis by axis: at 45 degrees the acceleration is shared, so v² may be sqrt(2) of what an arc takes."""
+    count = round(5.0 * math.pi / chord)
+    profile = plan(build_path(chords(5.0, math.pi, count, 127.0), LIMITS))
+    limit = math.sqrt(0.8 * A * 5.0)
+    on_axis = profile.at(profile.duration / 2)[1][0]
+    assert on_axis == pytest.approx(limit, rel=0.02)
+    assert profile.phases.v.max() <= limit * 2**0.25
+
+
+def test_chords_do_not_ask_more_of_an_axis_than_it_has() -> None:
+    """What a drive sees: second differences of setpoints, away from the start and the end."""
+    profile = plan(build_path(chords(5.0, math.pi, 3000, 127.0), LIMITS))
+    t = np.arange(0.0, profile.duration, T)
+    felt = np.abs(np.diff(profile.position(t), 2, axis=0)) / T**2
+    assert felt.max() < 1.02 * A
+
+
+def test_a_block_without_length_makes_no_corner() -> None:
+    straight = corner_speed([(0, 0), (0, 50), (0, 100)])
+    path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS)
+    assert plan(path).at(plan(path).time_at(path.s[1:2]))[1][0] == pytest.approx(straight)

@@ -1,0 +1,126 @@
+"""Times of straight moves that can be worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.interpreter.blocks import Kind
+from core.motion.errors import MotionError
+from core.motion.limits import MotionLimits
+from core.motion.path import build_path
+from core.motion.plan import plan
+from tests.motion.moves import LIMITS, A, V, line, polyline
+
+
+def test_a_long_line_is_a_trapezoid() -> None:
+    profile = plan(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
+    assert profile.duration == pytest.approx(100.0 / 100.0 + 100.0 / A, rel=1e-12)
+    assert profile.phases.v.max() == pytest.approx(100.0)
+
+
+def test_a_short_line_is_a_triangle() -> None:
+    profile = plan(build_path([line((0, 0), (1, 0), 100.0)], LIMITS))
+    assert profile.duration == pytest.approx(2.0 * math.sqrt(1.0 / A), rel=1e-12)
+    assert profile.at(profile.duration / 2)[1][0] == pytest.approx(math.sqrt(A))
+
+
+def test_a_diagonal_uses_both_slides() -> None:
+    """At 45 degrees the path may run and accelerate sqrt(2) faster than each slide."""
+    rapid = line((0, 0), (200, 200), 10 * V, kind=Kind.RAPID)
+    v, a = math.sqrt(2) * V, math.sqrt(2) * A
+    profile = plan(build_path([rapid], LIMITS))
+    assert profile.duration == pytest.approx(200 * math.sqrt(2) / v + v / a, rel=1e-12)
+
+
+def test_the_slower_axis_rules() -> None:
+    limits = MotionLimits(vmax=(10.0, 127.0, 1.0), amax=(100.0, 3048.0, 1.0))
+    profile = plan(build_path([line((0, 0), (30, 40), 127.0)], limits))
+    v, a = 10.0 / 0.6, 100.0 / 0.6
+    assert profile.duration == pytest.approx(50.0 / v + v / a, rel=1e-12)
+
+
+def test_offsets_lead_to_machine_coordinates() -> None:
+    block = replace(line((1, 2), (3, 4)), offset_x=10.0, offset_z=-20.0)
+    profile = plan(build_path([block], LIMITS))
+    assert profile.position([0.0, profile.duration]) == pytest.approx(
+        np.array([[11.0, -18.0, 0.0], [13.0, -16.0, 0.0]]), abs=1e-12
+    )
+
+
+def test_c_alone_turns_in_degrees() -> None:
+    block = replace(line((5, 5), (5, 5), 600.0), c=360.0)
+    profile = plan(build_path([block], LIMITS))
+    assert profile.duration == pytest.approx(360.0 / 600.0 + 600.0 / 12000.0, rel=1e-12)
+
+
+def test_c_holds_back_the_slide_that_moves_with_it() -> None:
+    """10 degrees per mm: 1200 degrees/s allow 120 mm/s, 12000 degrees/s² allow 1200 mm/s²."""
+    block = replace(line((0, 0), (0, 100), 127.0), c=1000.0)
+    profile = plan(build_path([block], LIMITS))
+    assert profile.duration == pytest.approx(100.0 / 120.0 + 120.0 / 1200.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("parts", [2, 7, 100])
+def test_cutting_a_line_in_pieces_changes_nothing(parts: int) -> None:
+    whole = plan(build_path([line((0, 0), (30, 40), 80.0)], LIMITS))
+    points = [(30.0 * i / parts, 40.0 * i / parts) for i in range(parts + 1)]
+    cut = plan(build_path(polyline(points, 80.0), LIMITS))
+    assert cut.duration == pytest.approx(whole.duration, rel=1e-9)
+    t = np.linspace(0.0, whole.duration, 50)
+    assert cut.position(t) == pytest.approx(whole.position(t), abs=1e-9)
+
+
+def test_half_the_feed_takes_twice_the_time() -> None:
+    path = build_path([line((0, 0), (0, 300), 20.0)], LIMITS)
+    half = plan(path, feed_scale=0.5)
+    assert half.duration == pytest.approx(300.0 / 10.0 + 10.0 / A, rel=1e-12)
+
+
+def test_rapid_override_leaves_feeds_alone() -> None:
+    path = build_path([line((0, 0), (0, 50), 100.0, kind=Kind.RAPID)], LIMITS)
+    assert plan(path, feed_scale=0.1).duration == plan(path).duration
+    assert plan(path, rapid_scale=0.5).duration == pytest.approx(50.0 / 50.0 + 50.0 / A, rel=1e-12)
+
+
+@pytest.mark.parametrize("feed", [0.0, -1.0, math.nan, math.inf])
+def test_a_feed_must_be_a_positive_number(feed: float) -> None:
+    with pytest.raises(MotionError, match=r"Block 7: .*feed"):
+        build_path([line((0, 0), (0, 1), feed, n=7)], LIMITS)
+
+
+@pytest.mark.parametrize("word", ["x", "z0", "c", "offset_x"])
+def test_a_coordinate_must_be_a_number(word: str) -> None:
+    with pytest.raises(MotionError, match=f"Block 3: {word} is not a number"):
+        build_path([replace(line((0, 0), (0, 1), n=3), **{word: math.nan})], LIMITS)
+
+
+def test_a_kind_without_a_law_is_refused() -> None:
+    with pytest.raises(MotionError, match="Block 1: a thread block"):
+        build_path([line((0, 0), (0, 1), kind=Kind.THREAD)], LIMITS)
+
+
+@pytest.mark.parametrize(
+    ("figures", "named"),
+    [
+        ({"vmax": (0.0, 1.0, 1.0)}, "vmax of X"),
+        ({"amax": (1.0, -1.0, 1.0)}, "amax of Z"),
+        ({"amax": (1.0, 1.0, math.nan)}, "amax of C"),
+        ({"interval": 0.0}, "interval"),
+    ],
+)
+def test_limits_must_be_positive(figures: dict[str, float], named: str) -> None:
+    with pytest.raises(MotionError, match=named):
+        MotionLimits(**figures)
+
+
+@pytest.mark.parametrize("scale", [-0.1, 1.6, math.nan])
+def test_an_override_outside_its_range_is_refused(scale: float) -> None:
+    path = build_path([line((0, 0), (0, 1))], LIMITS)
+    with pytest.raises(MotionError, match="feed override"):
+        plan(path, feed_scale=scale)
+    with pytest.raises(MotionError, match="rapid override"):
+        plan(path, rapid_scale=scale)
