@@ -83,24 +83,16 @@ M_CODE = (
     Field("on", _FLAG),
     Field("enabled", _FLAG, default=True),
 )
-SIM = (
-    Field("seed", _WHOLE, low=0, high=2**31, default=1),
-    Field("realtime", _FLAG, default=True),
-)
-FAULT = (
-    Field("at", _NUMBER, Unit.SECONDS, 0.0, 1e6),
-    Field("what", _TEXT),
-    Field("axis", _CHOICE, choices=AXES, default=""),
-    Field("value", _NUMBER, low=-1e9, high=1e9, default=0.0),
-)
+SIM = (Field("seed", _WHOLE, low=0, high=2**31, default=1),)
 
-# Plain tables: path and keys. axis, io, m_codes and sim.faults have names or numbers of the owner's in them.
+# Plain tables: path and keys. axis, io and m_codes hold tables, some under names of the owner's choice.
 TABLES = (
     ("limits", LIMITS),
     ("c_axis", C_OPTION),
     ("spindle", SPINDLE),
     ("collet", COLLET),
     ("interlocks", INTERLOCKS),
+    ("sim", SIM),
 )
 TOP = ("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim")
 MAY_BE_MISSING = ("c_axis", "interlocks", "m_codes", "sim")

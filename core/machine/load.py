@@ -79,7 +79,7 @@ def _machine(reading: Reading, source: str) -> Machine:
         outputs={name: _output(reading, name) for name in reading.outputs},
         inputs={name: _input(reading, name) for name in reading.inputs},
         m_codes={code: (output, on) for code, output, on in signals.enabled_codes(reading)},
-        sim=_sim(reading),
+        sim={"seed": int(values.number("sim.seed"))},
         source=source,
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),
@@ -142,12 +142,3 @@ def _output(reading: Reading, name: str) -> OutputModel:
 def _input(reading: Reading, name: str) -> InputModel:
     values, path = reading.values, f"io.in.{name}"
     return InputModel(name, values.text(f"{path}.at"), values.text(f"{path}.active") == "low")
-
-
-def _sim(reading: Reading) -> dict[str, object]:
-    values = reading.values
-    keys = ("at", "what", "axis", "value")
-    faults = [
-        {key: values.found[f"sim.faults.{index}.{key}"] for key in keys} for index in range(reading.faults)
-    ]
-    return {"seed": int(values.number("sim.seed")), "realtime": values.flag("sim.realtime"), "faults": faults}

@@ -18,7 +18,6 @@ class Reading:
         self.outputs: list[str] = []
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
-        self.faults = 0
         self.findings = _unknown_tables(data)
         self._read()
 
@@ -31,11 +30,9 @@ class Reading:
         self.outputs = self._named(io.get("out"), "io.out", fields.OUTPUT)
         self.inputs = self._named(io.get("in"), "io.in", fields.INPUT)
         self.m_codes = self._named(self.data.get("m_codes", {}), "m_codes", fields.M_CODE)
-        self._sim()
 
-    def _table(self, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()) -> None:
-        table = self.data.get(path, {} if path in fields.MAY_BE_MISSING else None)
-        self._keys(table, path, keys, children)
+    def _table(self, path: str, keys: tuple[Field, ...]) -> None:
+        self._keys(self.data.get(path, {} if path in fields.MAY_BE_MISSING else None), path, keys)
 
     def _keys(
         self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()
@@ -74,17 +71,6 @@ class Reading:
         for name, entry in table.items():
             self._keys(entry, joined(path, name), keys)
         return list(table)
-
-    def _sim(self) -> None:
-        self._table("sim", fields.SIM, ("faults",))
-        sim = self.data.get("sim")
-        faults = sim.get("faults", []) if isinstance(sim, dict) else []
-        if not isinstance(faults, list):
-            self.findings.append(Finding("sim.faults", written(faults), "expected a list of tables"))
-            return
-        self.faults = len(faults)
-        for index, fault in enumerate(faults):
-            self._keys(fault, f"sim.faults.{index}", fields.FAULT)
 
 
 def _inch(data: Mapping[str, object]) -> bool | None:

@@ -157,11 +157,10 @@ def _problem(raw: object, field: Field, inch: bool | None) -> str:
         return _expected(field, inch)
     if field.kind not in _NUMERIC or inch is None:
         return ""
-    slack = 1e-9 * max(abs(field.low), abs(field.high))  # a bound written in inches is no binary number
+    # A bound written in inches is no binary number.
+    low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
     parts = _parts(raw)
-    inside = all(
-        field.low - slack <= to_model(part, field.unit, inch) <= field.high + slack for part in parts
-    )
+    inside = all(low <= to_model(part, field.unit, inch) <= high for part in parts)
     return "" if inside and parts == sorted(set(parts)) else _expected(field, inch)
 
 

@@ -120,7 +120,7 @@ def test_unknown_table_says_which_are_known() -> None:
         ("two_hand_start = true", "two_hand_start = 1", "interlocks.two_hand_start", "true or false"),
         ('active = "low"', 'active = "down"', "io.in.estop.active", '"high", "low"'),
         ('safe = "keep"', "safe = 0", "io.out.collet.safe", 'true, false, "keep"'),
-        ("faults = []", "faults = [{ at = -1, what = 'jam' }]", "sim.faults.0.at", "0…"),
+        ("seed = 1", "seed = -1", "sim.seed", "a whole number, 0…"),
         ("[c_axis]\nfeedback = false", "c_axis = 3", "axis.C.c_axis", "unknown key"),
     ],
 )

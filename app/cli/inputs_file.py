@@ -1,0 +1,29 @@
+"""The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from app.cli.toml_file import read_toml, refuse, unknown
+
+
+def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
+    """Input states by name. With ``known`` only these names are taken.
+
+    Raises CommandError naming every mistake.
+    """
+    data = read_toml(path)
+    mistakes = [unknown(key, ("inputs",)) for key in data if key != "inputs"]
+    table = data.get("inputs")
+    if not isinstance(table, dict):
+        refuse(path, [*mistakes, "the table [inputs] is missing"])
+        return {}
+    mistakes += [
+        f"inputs.{name} must be true (closed) or false (open)"
+        for name, state in table.items()
+        if not isinstance(state, bool)
+    ]
+    mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
+    refuse(path, mistakes)
+    return dict(table)

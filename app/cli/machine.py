@@ -1,0 +1,25 @@
+"""``turndesk machine check``: is a machine file good, and does everything in it answer?"""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from app.cli.options import SubParsers
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("machine", help="check a machine file")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    check = actions.add_parser("check", help="validate a machine file, connect, report each drive and input")
+    check.add_argument("file", metavar="FILE", nargs="?", help="default: the shipped simulated lathe")
+    check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
+    from app.cli.machine_check import check
+
+    return check(args.file, json_wanted=args.json)

@@ -1,0 +1,67 @@
+"""What ``turndesk machine check`` does."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE
+from core.machine.load import MachineFileError, load_machine
+from core.machine.model import Machine
+from core.ports import DriverError
+
+Row = tuple[str, str, str]
+# States that are no trouble: an E-stop that is pressed answers as it should.
+_GOOD = ("ok", "on", "off", "E-stop")
+
+
+def check(file: str | None, *, json_wanted: bool) -> int:
+    """Validates, connects and reports; answers the exit status."""
+    try:
+        machine = load_machine(Path(file) if file else None)
+    except MachineFileError as error:
+        errors = [finding._asdict() for finding in error.errors]
+        _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
+        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
+        return EXIT_USAGE
+    rows, trouble = _connected(machine)
+    ports = [dict(zip(("name", "state", "detail"), row, strict=True)) for row in rows]
+    _report(
+        json_wanted,
+        {
+            "file": machine.source,
+            "machine": machine.name,
+            "backend": machine.backend,
+            "errors": [],
+            "ports": ports,
+        },
+    )
+    if not json_wanted:
+        _write_table(machine, rows)
+    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in trouble))
+    return EXIT_ERRORS if trouble else EXIT_OK
+
+
+def _connected(machine: Machine) -> tuple[list[Row], list[str]]:
+    """What the ports answer, and what is wrong with them."""
+    from app.compose.simulated import check_ports
+
+    try:
+        rows = check_ports(machine)
+    except DriverError as error:
+        return [], [str(error)]
+    return rows, [f"{name}: {state} {detail}".rstrip() for name, state, detail in rows if state not in _GOOD]
+
+
+def _report(json_wanted: bool, report: dict[str, object]) -> None:
+    if json_wanted:
+        sys.stdout.write(json.dumps(report) + "\n")
+
+
+def _write_table(machine: Machine, rows: list[Row]) -> None:
+    width = max((len(name) for name, _, _ in rows), default=0)
+    sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
+    sys.stdout.write(
+        "".join(f"  {name:<{width}}  {state:<4} {detail}".rstrip() + "\n" for name, state, detail in rows)
+    )

@@ -1,0 +1,37 @@
+"""``turndesk offsets``: the store's tool and secondary offsets, in inches."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from app.cli.options import SubParsers
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("offsets", help="show and change tool and secondary offsets")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    show = actions.add_parser("show", help="all offsets that are set")
+    show.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    change = actions.add_parser("set", help="set T3 x=1.25 z=-.5, or D4 x=-.0005 (a radius, as it is stored)")
+    change.add_argument("offset", metavar="T3|D4")
+    change.add_argument(
+        "values", metavar="KEY=VALUE", nargs="+", help="inches; sums such as x=.5-.002 are fine"
+    )
+    clear = actions.add_parser("clear", help="clear D: all secondary offsets")
+    clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)
+    history = actions.add_parser("history", help="every change, newest first")
+    history.add_argument("--limit", type=int, default=100, metavar="N", help="default: 100")
+    history.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    undo = actions.add_parser("undo", help="take the last change back; again: the one before")
+    for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
+        action.add_argument("--why", default=why, help=f"reason, kept in the history (default: {why})")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    from app.cli.offset_actions import ACTIONS
+
+    return ACTIONS[args.action](args)

@@ -1,0 +1,102 @@
+"""Numbers as an operator types them: ``.5-.002``, ``(1.25+.03)/2``. Plain arithmetic and nothing else."""
+
+from __future__ import annotations
+
+import re
+from math import isfinite
+
+LONGEST = 80  # characters: more than any sum on the back of a drawing
+_TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
+
+
+class EntryError(ValueError):
+    """The entry is no number; the sentence says why."""
+
+
+def value_of(entry: str) -> float:
+    """The number that ``entry`` comes to. Raises EntryError with what is refused, where and why."""
+    if not entry.strip():
+        raise EntryError("nothing is entered; type a number")
+    if len(entry) > LONGEST:
+        raise EntryError(f"the entry is longer than {LONGEST} characters; type the result")
+    entry = " ".join(entry.split())
+    reader = _Reader(entry)
+    value = reader.sum()
+    reader.expect_end()
+    if not isfinite(value):
+        raise EntryError(f"{entry} is too large; type a smaller number")
+    return value
+
+
+class _Reader:
+    """One entry, read from left to right: sum, product, sign, number or bracket."""
+
+    def __init__(self, entry: str) -> None:
+        self._entry = entry
+        self._tokens = list(_tokens(entry))
+        self._next = 0
+
+    def sum(self) -> float:
+        value = self._product()
+        while sign := self._take("+", "-"):
+            part = self._product()
+            value = value + part if sign == "+" else value - part
+        return value
+
+    def _product(self) -> float:
+        value = self._signed()
+        while sign := self._take("*", "/"):
+            part = self._signed()
+            if sign == "/" and part == 0:
+                raise EntryError(f"{self._entry} divides by zero")
+            value = value * part if sign == "*" else value / part
+        return value
+
+    def _signed(self) -> float:
+        sign = self._take("+", "-")
+        if sign:
+            value = self._signed()
+            return -value if sign == "-" else value
+        if self._take("("):
+            value = self.sum()
+            if not self._take(")"):
+                raise self._refusal("a closing bracket")
+            return value
+        return self._number()
+
+    def _number(self) -> float:
+        if self._next < len(self._tokens) and self._tokens[self._next][0] not in "+-*/()":
+            self._next += 1
+            return float(self._tokens[self._next - 1][0])
+        raise self._refusal("a number")
+
+    def expect_end(self) -> None:
+        if self._next < len(self._tokens):
+            raise self._refusal("+ - * / or the end")
+
+    def _take(self, *wanted: str) -> str:
+        if self._next < len(self._tokens) and self._tokens[self._next][0] in wanted:
+            self._next += 1
+            return self._tokens[self._next - 1][0]
+        return ""
+
+    def _refusal(self, expected: str) -> EntryError:
+        if self._next >= len(self._tokens):
+            return EntryError(f"{self._entry} stops short; expected {expected} at its end")
+        found, column = self._tokens[self._next]
+        return EntryError(f"{found} at character {column} of {self._entry}; expected {expected}")
+
+
+def _tokens(entry: str) -> list[tuple[str, int]]:
+    """Numbers and signs, each with the character where it stands, counted from 1."""
+    tokens, at = [], 0
+    while at < len(entry):
+        match = _TOKEN.match(entry, at)
+        if not match:
+            bad = entry[at:].lstrip()[0]
+            hint = "the decimal sign is a point" if bad == "," else "only numbers and + - * / ( ) count"
+            raise EntryError(f"{bad} in {entry} is no number; {hint}")
+        word = match.group(1) or match.group(2)
+        tokens.append((word.replace("−", "-"), match.end() - len(word) + 1))
+        at = match.end()
+    return tokens

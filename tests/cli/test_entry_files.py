@@ -1,0 +1,92 @@
+"""Offsets and inputs files: strict, with every mistake in one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.cli.errors import CommandError
+from app.cli.inputs_file import read_inputs
+from app.cli.offset_file import read_offsets
+from core.interpreter.setup import SecondaryOffset, ToolOffset
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "file.toml"
+    path.write_text(text)
+    return path
+
+
+def test_offsets_become_millimetres(tmp_path: Path) -> None:
+    text = "[tool.1]\nx = 1\nz = -0.5\nnose_radius = 0.015\n[secondary.32]\nx = -0.015\n"
+    tools, secondary = read_offsets(written(tmp_path, text))
+    assert tools == {1: ToolOffset(25.4, -12.7, 0.015 * 25.4)}
+    assert secondary == {32: SecondaryOffset(-0.015 * 25.4, 0.0, 0.0)}
+
+
+def test_empty_file_sets_nothing(tmp_path: Path) -> None:
+    assert read_offsets(written(tmp_path, "")) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[tool.33]\nx = 1", r"\[tool.33\] does not exist"),
+        ("[tool.01]\nx = 1", "does not exist"),
+        ("[tools.1]\nx = 1", "did you mean tool"),
+        ("[tool.1]\nr = 1", "r is unknown"),
+        ("[tool.1]\nx = '1'", "must be a number of inches"),
+        ("[tool.1]\nx = true", "must be a number of inches"),
+        ("[tool.1]\nx = nan", "out of range"),
+        ("[tool.1]\nx = 50.1", "-50…50 in"),
+        ("[secondary.1]\nr = -0.1", "0…2 in"),
+        ("tool = 3", "must hold tables"),
+        ("[tool]\n1 = 2", "must be a table"),
+        ("[tool.1\n", "is no TOML"),
+    ],
+)
+def test_bad_offsets_are_refused(tmp_path: Path, text: str, told: str) -> None:
+    with pytest.raises(CommandError, match=told):
+        read_offsets(written(tmp_path, text))
+
+
+def test_all_mistakes_at_once(tmp_path: Path) -> None:
+    with pytest.raises(CommandError) as caught:
+        read_offsets(written(tmp_path, "[tool.1]\nx = 99\ny = 1\n[secondary.40]\n"))
+    for part in ("tool.1.x = 99", "y is unknown", "[secondary.40]"):
+        assert part in str(caught.value)
+
+
+def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
+    assert read_inputs(written(tmp_path, '[inputs]\n10 = true\n"TB2-5" = false\n')) == {
+        "10": True,
+        "TB2-5": False,
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", r"\[inputs\] is missing"),
+        ("inputs = 3", r"\[inputs\] is missing"),
+        ("[input]\n10 = true", "did you mean inputs"),
+        ("[inputs]\n10 = 1", r"inputs.10 must be true"),
+        ("[inputs]\n10 = 'on'", "must be true"),
+    ],
+)
+def test_bad_inputs_are_refused(tmp_path: Path, text: str, told: str) -> None:
+    with pytest.raises(CommandError, match=told):
+        read_inputs(written(tmp_path, text))
+
+
+def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
+    path = written(tmp_path, '[inputs]\n"TB25" = true\n')
+    assert read_inputs(path) == {"TB25": True}
+    with pytest.raises(CommandError, match="did you mean TB2-5"):
+        read_inputs(path, known=("TB2-5", "10"))
+
+
+def test_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CommandError, match="cannot be read"):
+        read_offsets(tmp_path / "none.toml")

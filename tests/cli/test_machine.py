@@ -1,0 +1,60 @@
+"""``turndesk machine check``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.cli.main import main
+
+Captured = pytest.CaptureFixture[str]
+
+
+def test_shipped_lathe_is_good_and_answers(capsys: Captured) -> None:
+    assert main(["machine", "check"]) == 0
+    told = capsys.readouterr()
+    assert told.err == ""
+    assert "gt75.toml is good: GT-75" in told.out
+    for name in ("X", "Z", "C", "spindle", "input TB2-5", "input 16"):
+        assert f"  {name} " in told.out
+
+
+def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(resources.machine_file("gt75.toml").replace("GT-75", "OWN", 2))
+    assert main(["machine", "check", str(path), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert (report["file"], report["errors"]) == (str(path), [])
+    states = {port["name"]: port["state"] for port in report["ports"]}
+    assert states["X"] == "ok"
+    assert states["input collet_closed"] == "on"
+
+
+def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
+    text = resources.machine_file("gt75.toml").replace("amax = 120", "amax = 0", 1)
+    path = tmp_path / "bad.toml"
+    path.write_text(text.replace("lease_ms", "leese_ms"))
+    assert main(["machine", "check", str(path)]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    lines = told.err.splitlines()
+    assert len(lines) == 3  # amax, the unknown key, the missing one
+    assert any("machine.leese_ms: unknown key; did you mean lease_ms?" in line for line in lines)
+    assert any("axis.X.amax = 0: expected a number" in line for line in lines)
+
+
+def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(resources.machine_file("gt75.toml") + "\n[dnc]\nbaud = 9600\n")
+    assert main(["machine", "check", str(path), "--json"]) == 2
+    report = json.loads(capsys.readouterr().out)
+    assert [error["path"] for error in report["errors"]] == ["[dnc]"]
+    assert report["ports"] == []
+
+
+def test_unreadable_file_is_told(capsys: Captured, tmp_path: Path) -> None:
+    assert main(["machine", "check", str(tmp_path / "none.toml")]) == 2
+    assert "No such file" in capsys.readouterr().err

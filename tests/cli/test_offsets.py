@@ -1,0 +1,150 @@
+"""``turndesk offsets``: inches at the door, the store behind, one line on stderr for what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from core.store.rows import SecondaryRow, ToolRow
+from core.store.store import Store
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TURNDESK_HOME", str(folder))
+    return folder
+
+
+def refused(capsys: Captured, *argv: str) -> str:
+    """The one line that a refused command says."""
+    assert main(["offsets", *argv]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    return told.err
+
+
+def shown(capsys: Captured) -> object:
+    capsys.readouterr()
+    assert main(["offsets", "show", "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_nothing_is_set_at_first_and_showing_makes_no_store(capsys: Captured, home: Path) -> None:
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+    assert main(["offsets", "show"]) == 0
+    assert capsys.readouterr().out == "no offsets are set\n"
+    assert not home.exists()
+
+
+def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
+    assert main(["offsets", "set", "T3", "x=1.25", "z=-.5"]) == 0
+    assert main(["offsets", "set", "D4", "x=-.0005"]) == 0
+    assert shown(capsys) == {
+        "tool": {"3": {"x": 1.25, "z": -0.5, "nose_radius": 0.0}},
+        "secondary": {"4": {"x": -0.0005, "z": 0.0, "r": 0.0}},
+    }
+    with Store.open(home, read_only=True) as store:  # millimetres inside; D's x is the radius as given
+        assert store.tools() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
+        assert store.secondary() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
+
+
+def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
+    main(["offsets", "set", "t03", "x=1", "nose_radius=.015"])
+    main(["offsets", "set", "T3", "x=.5-.002"])
+    assert shown(capsys) == {"tool": {"3": {"x": 0.498, "z": 0.0, "nose_radius": 0.015}}, "secondary": {}}
+
+
+def test_text_has_five_places(capsys: Captured) -> None:
+    main(["offsets", "set", "D4", "x=-.0005", "r=.015"])
+    capsys.readouterr()
+    main(["offsets", "show"])
+    assert capsys.readouterr().out == "D4  X -0.00050  Z +0.00000  R 0.01500\n"
+
+
+def test_clear_undo_and_history(capsys: Captured) -> None:
+    main(["offsets", "set", "D1", "z=.1", "--why", "long part"])
+    main(["offsets", "set", "T1", "x=1"])
+    assert main(["offsets", "clear", "D"]) == 0
+    assert shown(capsys) == {"tool": {"1": {"x": 1.0, "z": 0.0, "nose_radius": 0.0}}, "secondary": {}}
+    assert main(["offsets", "undo"]) == 0
+    capsys.readouterr()
+    assert main(["offsets", "history", "--json"]) == 0
+    history = json.loads(capsys.readouterr().out)
+    assert [(row["kind"], row["number"]) for row in history] == [
+        ("secondary", 1),
+        ("secondary", 1),
+        ("tool", 1),
+        ("secondary", 1),
+    ]
+    assert history[0]["undoes"] == history[1]["step"]
+    assert history[3]["why"] == "long part"
+    assert history[3]["old"] is None
+    assert history[3]["new"] == {"x": 0.0, "z": 0.1, "r": 0.0}
+
+
+def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
+    main(["offsets", "set", "D1", "z=.1"])
+    capsys.readouterr()
+    main(["offsets", "history"])
+    line = capsys.readouterr().out
+    assert "D1  not set → X +0.00000  Z +0.10000  R 0.00000  entered (command line)" in line
+
+
+@pytest.mark.parametrize(
+    ("argv", "told"),
+    [
+        (("set", "T33", "x=1"), "T33 is no offset"),
+        (("set", "T0", "x=1"), "T0 is no offset"),
+        (("set", "X1", "x=1"), "X1 is no offset"),
+        (("set", "T1", "y=1"), "y is unknown"),
+        (("set", "T1", "nose_rad=1"), "did you mean nose_radius?"),
+        (("set", "D1", "nose_radius=.1"), "known here: x, z, r"),
+        (("set", "T1", "x"), "write KEY=VALUE"),
+        (("set", "T1", "x="), "nothing is entered"),
+        (("set", "T1", "x=1", "x=2"), "given twice"),
+        (("set", "T1", "x=1,5"), "the decimal sign is a point"),
+        (("set", "T1", "x=__import__('os')"), "only numbers"),
+        (("set", "T1", "x=1/0"), "divides by zero"),
+        (("set", "T1", "x=50.1"), "-50…50 in"),
+        (("set", "D1", "x=10.1"), "-10…10 in"),
+        (("set", "D1", "r=-.001"), "0…2 in"),
+        (("undo",), "no offset change to undo"),
+        (("history", "--limit", "0"), "give 1 or more"),
+    ],
+)
+def test_refusal_is_one_line_and_changes_nothing(capsys: Captured, argv: tuple[str, ...], told: str) -> None:
+    assert told in refused(capsys, *argv)
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+
+
+@pytest.mark.parametrize("argv", [(), ("set", "T1"), ("clear",), ("clear", "T"), ("nonsense",)])
+def test_wrong_usage_is_one_line(capsys: Captured, argv: tuple[str, ...]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["offsets", *argv])
+    assert caught.value.code == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_one_bad_value_of_two_sets_neither(capsys: Captured) -> None:
+    refused(capsys, "set", "T1", "x=1", "z=99")
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+
+
+def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -> None:
+    with Store.open(home) as store:
+        store.set_tool(1, "screen", x=25.4).result()
+        assert "in use by another TurnDesk" in refused(capsys, "set", "T1", "x=2")
+        assert shown(capsys) == {"tool": {"1": {"x": 1.0, "z": 0.0, "nose_radius": 0.0}}, "secondary": {}}
+
+
+def test_damaged_store_is_told_in_one_line(capsys: Captured, home: Path) -> None:
+    home.mkdir()
+    (home / "turndesk.db").write_bytes(b"rubbish" * 100)
+    assert "is not a database" in refused(capsys, "show")

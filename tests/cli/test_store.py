@@ -1,0 +1,115 @@
+"""``turndesk store``: there and back, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from core.store.rows import SecondaryRow, ToolRow
+from core.store.store import Store
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TURNDESK_HOME", str(folder))
+    return folder
+
+
+@pytest.fixture
+def filled(home: Path) -> Path:
+    with Store.open(home) as store:
+        store.set_tool(1, "x", x=31.75, nose_radius=0.015 * 25.4)
+        store.set_secondary(4, "x", x=-0.0127)
+        store.save_program("PIN.nc", b"G90\r\n", "x").result()
+    return home
+
+
+def refused(capsys: Captured, *argv: str) -> str:
+    assert main(["store", *argv]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    return told.err
+
+
+def test_backup_and_restore(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+    target = str(tmp_path / "b.db")
+    assert main(["store", "backup", target]) == 0
+    with Store.open(filled) as store:
+        store.set_tool(1, "x", x=0.0).result()
+    assert main(["store", "restore", target]) == 0
+    assert "the replaced store is kept as" in capsys.readouterr().out
+    with Store.open(filled) as store:
+        assert store.tools()[1].x == 31.75
+
+
+def test_export_and_import_into_an_empty_home(
+    filled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = str(tmp_path / "out")
+    assert main(["store", "export", folder]) == 0
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "second"))
+    assert main(["store", "import", folder]) == 0
+    with Store.open(tmp_path / "second") as store:
+        assert store.tools() == {1: ToolRow(31.75, 0.0, 0.015 * 25.4)}
+        assert store.secondary() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        assert store.load_program("PIN.nc") == b"G90\r\n"
+        assert store.history()[0].why == "import of out"
+
+
+def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> None:
+    assert main(["store", "verify", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["problems"] == []
+    with sqlite3.connect(filled / "turndesk.db") as connection:
+        connection.execute("UPDATE program_versions SET text = X'58'")
+    connection.close()
+    assert main(["store", "verify"]) == 1
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "'PIN.nc' version 1 is not what was saved" in told.err
+
+
+def test_verify_of_no_store(capsys: Captured, home: Path) -> None:
+    assert main(["store", "verify"]) == 0
+    assert "there is no store" in capsys.readouterr().out
+    assert not home.exists()
+
+
+def test_refusals(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_bytes(b"G90")
+    assert "not a database" in refused(capsys, "backup", str(tmp_path / "part.nc"))
+    assert "cannot be read" in refused(capsys, "restore", str(tmp_path / "none.db"))
+    assert "not a database" in refused(capsys, "restore", str(tmp_path / "part.nc"))
+    assert "not empty" in refused(capsys, "export", str(filled))
+    assert "no exported folder" in refused(capsys, "import", str(tmp_path / "none"))
+    assert (tmp_path / "part.nc").read_bytes() == b"G90"
+
+
+def test_restore_into_a_store_in_use_is_refused(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+    target = str(tmp_path / "b.db")
+    main(["store", "backup", target])
+    capsys.readouterr()
+    with Store.open(filled):
+        assert "in use" in refused(capsys, "restore", target)
+
+
+def test_import_of_a_bad_offsets_file_takes_nothing(capsys: Captured, filled: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    main(["store", "export", str(folder)])
+    capsys.readouterr()
+    (folder / "offsets.toml").write_text("[tool.1]\nx = 999\n")
+    (folder / "programs" / "NEW.nc").write_bytes(b"G91")
+    assert "tool.1.x = 999 is out of range" in refused(capsys, "import", str(folder))
+    with Store.open(filled, read_only=True) as store:
+        assert [row.name for row in store.programs()] == ["PIN.nc"]
+
+
+def test_backup_without_a_store_is_refused(capsys: Captured, tmp_path: Path) -> None:
+    assert "nothing to back up" in refused(capsys, "backup", str(tmp_path / "b.db"))

@@ -1,0 +1,81 @@
+"""What an operator types into a number field."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.desk.arithmetic import EntryError, value_of
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [
+        (".5-.002", 0.498),
+        ("1.", 1.0),
+        (" 1.25 ", 1.25),
+        ("-.0005", -0.0005),
+        ("−.0005", -0.0005),  # the minus sign that the screen shows
+        ("--1", 1.0),
+        ("2-3-4", -5.0),
+        ("8/4/2", 1.0),
+        ("1+2*3", 7.0),
+        ("(1+2)*3", 9.0),
+        ("-(1+2)", -3.0),
+        ("3*-2", -6.0),
+    ],
+)
+def test_entries(entry: str, value: float) -> None:
+    assert value_of(entry) == pytest.approx(value, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ("", "nothing is entered"),
+        ("   ", "nothing is entered"),
+        ("1,5", "the decimal sign is a point"),
+        ("1e5", "only numbers"),
+        ("٣", "only numbers"),  # a digit, but none of ours
+        ("1\n+", "^1 [+] stops short"),  # one line, whatever was pasted
+        ("nan", "only numbers"),
+        ("2**3", r"\* at character 3"),
+        ("1 2", "2 at character 3"),
+        (" 1  2", "2 at character 3 of 1 2"),
+        ("1+", "stops short"),
+        ("(1", "closing bracket"),
+        ("1)", r"\) at character 2"),
+        (".", "only numbers"),
+        ("1/(2-2)", "divides by zero"),
+        ("1" * 81, "longer than 80"),
+    ],
+)
+def test_refusals(entry: str, told: str) -> None:
+    with pytest.raises(EntryError, match=told):
+        value_of(entry)
+
+
+def test_no_entry_is_too_deep() -> None:
+    assert value_of("(" * 39 + "1" + ")" * 39) == 1.0
+    with pytest.raises(EntryError, match="stops short"):
+        value_of("(" * 80)
+
+
+@given(st.floats(-1000, 1000), st.floats(-1000, 1000))
+def test_difference_of_two_numbers(a: float, b: float) -> None:
+    assert value_of(f"{a:.6f}-{b:.6f}") == float(f"{a:.6f}") - float(f"{b:.6f}")
+
+
+@given(st.text(max_size=30))
+def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
+    try:
+        assert isfinite(value_of(text))
+    except EntryError as error:
+        sentence = str(error)
+    else:
+        sentence = "a number"
+    assert sentence
+    assert "\n" not in sentence
