@@ -13,7 +13,7 @@ from core.interpreter.structure import call_target
 from core.language.diagnostics import Diagnostic
 
 MOST_BLOCKS = 5_000_000
-MOST_LINES = 20_000_000
+MOST_LINES = 10_000_000
 DEEPEST_CALL = 16
 
 

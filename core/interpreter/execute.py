@@ -14,14 +14,14 @@ from core.interpreter.mcodes import after_motion, before_motion
 from core.interpreter.moves import statement_move
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
-from core.interpreter.statement import PlainMove, Statement
+from core.interpreter.statement import FineMove, PlainMove, Statement
 from core.interpreter.tools import ToolUse, frame, secondary, tool_change
 from core.language.diagnostics import ProgramError
 
 _SHORTEST_DWELL = 0.1  # s
 _LONGEST_DWELL = 3600.0
 
-Ahead = Sequence[PlainMove | Statement | None]
+Ahead = Sequence[PlainMove | FineMove | Statement | None]
 
 
 def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first: bool) -> Iterator[Block]:
@@ -29,6 +29,11 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
 
     ``ahead``: the next few lines. Raises ProgramError at the first word that cannot be executed.
     """
+    if made.simple:
+        feed_words(state, made, first=first)
+        warn_of_crash_feed(state, made, ahead)
+        yield from _motion(state, made)
+        return
     _modes(state, made)
     if made.comment is not None:
         state.adopt(state.modal._replace(comment=made.comment))
@@ -68,6 +73,8 @@ def _motion(state: State, made: Statement) -> Iterator[Block]:
 
 def _modes(state: State, made: Statement) -> None:
     """Distance, units and X words; the other groups belong to feed and spindle."""
+    if not made.modal:
+        return
     modal = state.modal
     for code in made.modal:
         if code in {90, 91}:

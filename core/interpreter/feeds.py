@@ -8,7 +8,7 @@ from core.interpreter import units
 from core.interpreter.log import refusal
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import PlainMove, Statement
+from core.interpreter.statement import FineMove, PlainMove, Statement
 from core.language.diagnostics import ProgramError
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
@@ -28,7 +28,8 @@ def feed_words(state: State, made: Statement, *, first: bool) -> None:
     if 0 in modes and not first and (word is not None or modes - {0}):
         message = "G00 stands with F, G94 or G95, each of which ends the rapid."
         raise ProgramError(refusal(made.line, 1, "rapid-and-feed", message, "Split the line."))
-    _modes(state, made, modes, has_feed=word is not None)
+    if modes:
+        _modes(state, made, modes, has_feed=word is not None)
     if word is not None and word.value is not None:
         _feed(state, made, word.value, word.column, first=first)
     if 0 in modes:
@@ -51,13 +52,17 @@ def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) ->
     if modes - {0}:
         state.title_rapid = 0
         state.told.discard("feed-missing")
+    if modes - {0} and (modal.rapid, modal.per_rev, modal.feed) != (False, per_rev, feed):
         state.adopt(state.modal._replace(rapid=False, per_rev=per_rev, feed=feed))
 
 
 def _rapid(state: State, made: Statement) -> None:
     modal = state.modal
+    if modal.rapid:
+        state.title_rapid = 0 if made.moves else state.title_rapid
+        return
     titled = made.comment is not None and not made.moves
-    cutting = not modal.rapid and state.cut and modal.feed is not None
+    cutting = state.cut and modal.feed is not None
     state.title_rapid = made.line if titled and cutting else 0
     state.adopt(state.modal._replace(rapid=True))
 
@@ -73,6 +78,8 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         state.first_feed = kept
         state.adopt(state.modal._replace(feed=kept, rapid=False, rapid_rate=kept))
         state.derive()
+    elif (modal.feed, modal.cut_feed, modal.cut_per_rev, modal.rapid) == (kept, kept, modal.per_rev, False):
+        pass
     elif first:
         state.adopt(state.modal._replace(feed=kept, rapid=False))
     else:
@@ -87,7 +94,9 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         raise ProgramError(refusal(made.line, column, "feed-range", message, hint))
 
 
-def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[PlainMove | Statement | None]) -> None:
+def warn_of_crash_feed(
+    state: State, made: Statement, ahead: Sequence[PlainMove | FineMove | Statement | None]
+) -> None:
     """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
     modal, word = state.modal, made.words.get("F")
     if word is None or made.one_shot == 4 or not modal.per_rev or modal.coarse or modal.feed is None:
@@ -99,7 +108,7 @@ def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[PlainMove 
     state.log.warn(made.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
 
 
-def _taps(spindle: int, ahead: Sequence[PlainMove | Statement | None]) -> bool:
+def _taps(spindle: int, ahead: Sequence[PlainMove | FineMove | Statement | None]) -> bool:
     back = {1: 4, -1: 3}.get(spindle)
     return any(isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES])
 
@@ -117,6 +126,10 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         return
     if not (modal.per_rev or (modal.css and state.cut)):
         _warn_slow(state, line, length, modal.feed)
+        return
+    if modal.css and modal.spindle and not modal.surface_speed:
+        text = "G96 is active and no S has given a surface speed."
+        _once(state, line, "surface-speed-missing", text, "Write S beside G96.")
         return
     rpm = max(abs(rpm_at(state, x0)), abs(rpm_at(state, x)))
     if x0 * x < 0:  # over the centre

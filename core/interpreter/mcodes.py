@@ -19,7 +19,7 @@ from core.interpreter.modal import Modal
 from core.interpreter.spindle import rpm_at, stop_block
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError
 
 _WAITS = {91: ("TB2-5", False), 92: ("TB2-5", True), 93: ("TB2-7", False), 94: ("TB2-7", True)}
 
@@ -34,7 +34,9 @@ def before_motion(state: State, made: Statement) -> Block | None:
     if m in _WAITS:
         return _done(state, made, WaitInput(*_WAITS[m]))
     output = state.setup.limits.m_outputs.get(m)
-    return _output(state, made, *output) if output is not None and output[1] else None
+    if output is None:
+        raise ProgramError(_unknown(made))
+    return _output(state, made, *output) if output[1] else None
 
 
 def after_motion(state: State, made: Statement) -> Block | None:
@@ -66,10 +68,14 @@ def _stops(state: State, made: Statement, m: int) -> Action | None:
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     """Report the M codes that neither the control nor the machine file knows."""
     for made in lines:
-        if made.m_word is not None and made.m not in state.setup.limits.m_outputs:
-            text = f"{made.m_word.text} is no code of this machine."
-            hint = "The machine file assigns the outputs."
-            state.log.add(refusal(made.line, made.m_word.column, "m-unknown", text, hint))
+        if made.m not in state.setup.limits.m_outputs:
+            state.log.add(_unknown(made))
+
+
+def _unknown(made: Statement) -> Diagnostic:
+    column = made.m_word.column if made.m_word else 0
+    text = f"M{made.m:02d} is no code of this machine."
+    return refusal(made.line, column, "m-unknown", text, "The machine file assigns the outputs.")
 
 
 def _done(state: State, made: Statement, action: Action) -> Block:

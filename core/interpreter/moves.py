@@ -10,8 +10,9 @@ from core.interpreter.feeds import check_move
 from core.interpreter.log import refusal
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import PlainMove, Statement
+from core.interpreter.statement import FineMove, PlainMove, Statement
 from core.language.diagnostics import ProgramError
+from core.language.omniturn import Word, lex_line
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
 _DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
@@ -110,17 +111,45 @@ def on_step(state: State, made: Statement, letter: str) -> float | None:
     word = made.words.get(letter)
     if word is None or word.value is None or not isfinite(word.value):
         return None
+    value, finer = _nearest_step(state, letter, word.value)
+    if finer:
+        _warn_of_finer(state, made.line, word, value)
+    return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
+
+
+def rounded(state: State, line: int, text: str, step: FineMove) -> PlainMove:
+    """A line of X and Z alone on the control's step, with a warning for each word that was not."""
+    x, z, _ = step
+    new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
+    new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
+    if x_finer or z_finer:
+        for word in lex_line(line, text).words:
+            value, finer = _nearest_step(state, word.letter, word.value or 0.0)
+            if finer:
+                _warn_of_finer(state, line, word, value)
+    return new_x, new_z
+
+
+def _step(state: State, letter: str) -> float:
+    """The control's step in the unit of the program's numbers."""
     modal = state.modal
     if modal.metric:
-        step = units.METRIC_STEP
-    else:
-        step = _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
-    scale = state.scale_x if letter in _DIAMETERS else state.scale_z
-    count = word.value / step
+        return units.METRIC_STEP
+    return _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
+
+
+def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
+    """The number on the control's step, and whether it was not there before."""
+    step = _step(state, letter)
+    count = value / step
     whole = round(count)
     if abs(count - whole) <= max(_WHOLE, abs(count) * 1e-12):
-        return word.value * scale
-    name = "mm" if modal.metric else "in"
-    text = f"{word.text} is finer than the step of {step:.7g} {name}; {whole * step:.5f} is used."
-    state.log.warn(made.line, word.column, "finer-than-step", text, "Round the number.")
-    return whole * step * scale
+        return value, False
+    return whole * step, True
+
+
+def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
+    name = "mm" if state.modal.metric else "in"
+    step = f"{_step(state, word.letter):.5f}".rstrip("0")
+    text = f"{word.text} is finer than the step of {step} {name}; {value:.5f} is used."
+    state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")

@@ -5,7 +5,7 @@ This table is the only place that knows; a code that learns to run is taken out 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn.words import Word
@@ -24,28 +24,31 @@ CORNERS: dict[str, str] = {"C": "corners and spindle positioning", "R": "corners
 COMMENTS: tuple[str, ...] = ("~PLXC", "~PLZC")
 
 
-def not_yet(number: int, words: Iterable[Word], comment: str | None) -> Diagnostic | None:
+def not_yet(number: int, words: Sequence[Word], comment: str | None) -> Diagnostic | None:
     """The refusal for a line with these words, or None where all of them can run."""
     if comment is not None and comment.strip().upper() in COMMENTS:
         return _refusal(number, 1, f"({comment.strip().upper()})", "plane switching")
-    plain_line = not any(_one_shot(word) for word in words)
-    for word in words:
-        what = _feature(word, plain_line=plain_line)
+    corner: tuple[int, str, str] | None = None
+    for letter, value, column, text in words:
+        if letter == "G":
+            what = G_CODES.get(int(value or 0))
+        elif letter == "M":
+            what = M_CODES.get(int(value or 0))
+        elif letter in CORNERS:
+            corner = corner or (column, text, CORNERS[letter])
+            continue
+        else:
+            what = WORDS.get(letter)
         if what is not None:
-            return _refusal(number, word.column, word.text, what)
+            return _refusal(number, column, text, what)
+    if corner is not None and not any(_takes_corner_letters(word) for word in words):
+        return _refusal(number, *corner)
     return None
 
 
-def _one_shot(word: Word) -> bool:
+def _takes_corner_letters(word: Word) -> bool:
+    """G02 and G03 have an R of their own, M97 a C."""
     return (word.letter == "G" and word.value in {2, 3}) or (word.letter == "M" and word.value == 97)
-
-
-def _feature(word: Word, *, plain_line: bool) -> str | None:
-    if word.letter == "G" and word.value is not None:
-        return G_CODES.get(int(word.value))
-    if word.letter == "M" and word.value is not None:
-        return M_CODES.get(int(word.value))
-    return WORDS.get(word.letter) or (CORNERS.get(word.letter) if plain_line else None)
 
 
 def _refusal(line: int, column: int, text: str, what: str) -> Diagnostic:

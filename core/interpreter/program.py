@@ -6,19 +6,20 @@ import re
 from dataclasses import dataclass
 
 from core.interpreter import codes
-from core.interpreter.statement import PlainMove, Statement, statement
+from core.interpreter.statement import FineMove, PlainMove, Statement, statement
 from core.interpreter.structure import Structure, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
 from core.language.source import Source
 
-_NUMBER = r"([-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,4})?|\.[0-9]{1,4}))"
+_NUMBER = r"([-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,5})?|\.[0-9]{1,5}))"
 _PLAIN = re.compile(f"(?:[Xx]{_NUMBER})?(?:[Zz]{_NUMBER})?")
+_FIVE_PLACES = re.compile(r"\.[0-9]{5}")
 _MOST_PROBLEMS = 100
 _PLANE_END = re.compile(r"\s*\(\s*END\s*\)\s*", re.IGNORECASE)
 
-Step = PlainMove | Statement | None
+Step = PlainMove | FineMove | Statement | None
 """A line to run: X and Z alone, anything else, or nothing at all."""
 
 
@@ -55,6 +56,7 @@ class _Reader:
 
     def read(self) -> None:
         plain = _PLAIN.fullmatch
+        fine = _FIVE_PLACES.search
         append = self.steps.append
         for text in self.source.lines:
             match = plain(text)
@@ -62,7 +64,8 @@ class _Reader:
                 append(self._statement(text))
                 continue
             x, z = match.groups()
-            append((None if x is None else float(x), None if z is None else float(z)))
+            move = None if x is None else float(x), None if z is None else float(z)
+            append((*move, True) if fine(text) else move)
 
     def _statement(self, text: str) -> Statement | None:
         number = len(self.steps) + 1
@@ -94,8 +97,14 @@ def read_program(source: Source, strict: bool = False) -> Program:
     reader.read()
     length = len(reader.steps)
     structure, faults = find_structure(reader.statements, length)
+    if not length:
+        faults = [
+            Diagnostic(0, 0, Severity.ERROR, "file-empty", "The program is empty.", "Write G90 and M30.")
+        ]
     reader.style.look_at_file(source)
     problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
+    if not any(fault.code in {"after-end", "no-end"} for fault in faults):
+        problems += _beyond_the_end(reader.steps, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
     return Program(
         source=source,
@@ -114,22 +123,27 @@ def _executable(reader: _Reader) -> int:
 
 
 def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
-    inside: set[int] = set()
-    if structure.loop_ends:
-        for start, end in structure.loop_ends.items():
-            inside.update(range(start + 1, end + 2))
-    return [
-        Diagnostic(
-            made.line,
-            0,
-            Severity.WARNING,
-            "comment-in-loop",
-            "A comment stands inside a loop.",
-            "Move it before LS.",
-        )
-        for made in statements
-        if made.comment is not None and made.line in inside
-    ]
+    found: list[Diagnostic] = []
+    depth = 0
+    text, hint = "A comment stands inside a loop.", "Move it before LS."
+    for made in statements:
+        depth += (made.line - 1 in structure.loop_ends) - (made.line - 1 in structure.loop_starts)
+        if depth and made.comment is not None:
+            found.append(Diagnostic(made.line, 0, Severity.WARNING, "comment-in-loop", text, hint))
+    return found
+
+
+def _beyond_the_end(steps: list[Step], structure: Structure) -> list[Diagnostic]:
+    """Moves after M30 that no subroutine holds: the first of them."""
+    inside = False
+    starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
+    for at in range(structure.main_end, len(steps)):
+        inside = (inside or at in starts) and at not in ends
+        if not inside and isinstance(steps[at], tuple):
+            text = "This line stands after the end of the program and is in no subroutine."
+            hint = "Move it before M30, or start a subroutine with }n."
+            return [Diagnostic(at + 1, 1, Severity.ERROR, "after-end", text, hint)]
+    return []
 
 
 def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:

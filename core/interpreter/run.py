@@ -13,12 +13,12 @@ from core.interpreter.flow import Flow
 from core.interpreter.log import Log, refusal
 from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
-from core.interpreter.moves import fast_move, go, on_step, plain_move
-from core.interpreter.program import Program
+from core.interpreter.moves import fast_move, go, on_step, plain_move, rounded
+from core.interpreter.program import Program, Step
 from core.interpreter.setup import Setup
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import UNREADABLE, PlainMove, Statement
+from core.interpreter.statement import UNREADABLE, Statement
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import Diagnostic, ProgramError
 
@@ -28,8 +28,7 @@ _AHEAD = 8
 class Interpreter:
     """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
 
-    After an error the pass goes on as well as it can, so that a prover sees all of them; what executes
-    blocks must look at ``failed`` after each and stop there.
+    No block comes after an error, but the pass goes on as well as it can to find the other errors.
     """
 
     def __init__(self, program: Program, setup: Setup) -> None:
@@ -39,6 +38,7 @@ class Interpreter:
         self._tools = ToolUse()
         self._flow = Flow(program)
         self._refused = False
+        self._stopped = False  # an error has been met: no more blocks
         self._check()
 
     @property
@@ -66,11 +66,22 @@ class Interpreter:
         """Those of them whose offset has never been set."""
         return self._tools.missing
 
-    def blocks(self) -> Iterator[Block]:
-        """The elementary blocks, made as they are asked for. To be called once."""
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once.
+
+        At the first error the blocks end. What is left of the program is then still gone through for its
+        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        """
+        for block in self._pass():
+            if not self._stopped:
+                yield block
+            elif to_first_error:
+                return
+
+    def _pass(self) -> Iterator[Block]:
         if self._refused:
             return
-        steps, flow, state, log = self._program.steps, self._flow, self._state, self._log
+        steps, flow, state = self._program.steps, self._flow, self._state
         lines = self._program.source.lines
         left = MOST_LINES
         while flow.at < flow.end:
@@ -78,11 +89,13 @@ class Interpreter:
             flow.at = at + 1
             step = steps[at]
             left -= 1
-            if left < 0 or state.blocks >= MOST_BLOCKS or log.full:
+            if left < 0 or state.blocks >= MOST_BLOCKS:
                 self._too_much(at + 1)
-                return
+                break
             try:
                 if isinstance(step, tuple):
+                    if len(step) == 3:
+                        step = rounded(state, at + 1, lines[at], step)
                     if state.fast:
                         yield fast_move(state, at + 1, lines[at], step)
                     else:
@@ -94,9 +107,11 @@ class Interpreter:
         warn_of_idle_shifts(state)
 
     def _statement(self, made: Statement) -> Iterator[Block]:
-        if made.flow == UNREADABLE or (made.block_delete and self._state.setup.block_delete):
+        if made.block_delete and self._state.setup.block_delete:
             return
-        if made.flow in codes.CALLS:
+        if made.flow == UNREADABLE:
+            self._stopped = True
+        elif made.flow in codes.CALLS:
             yield from self._call(made)
         elif made.flow:
             self._flow.steer(made)
@@ -116,20 +131,20 @@ class Interpreter:
                 return
         self._flow.call(made)
 
-    def _recover(self, problem: ProgramError, step: PlainMove | Statement | None) -> None:
+    def _recover(self, problem: ProgramError, step: Step) -> None:
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""
         self._log.add(problem.diagnostic)
+        self._stopped = True
         state = self._state
         state.fast = False
-        if problem.diagnostic.code == "recursion":
-            self._flow.at = self._flow.end = 0
+        if problem.diagnostic.code == "recursion" or self._log.full:
+            self._flow.at = self._flow.end
         if isinstance(step, Statement) and step.moves and state.absolute:
             go(state, on_step(state, step, "X"), on_step(state, step, "Z"))
             state.tool_line = 0
 
     def _too_much(self, line: int) -> None:
-        if self._log.full:
-            return
+        self._stopped = True
         text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
         self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the loops."))
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi
-
+from core.geometry.spindle import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.blocks import Block
 from core.interpreter.log import refusal
@@ -20,12 +19,10 @@ def rpm_at(state: State, x: float) -> float:
     modal = state.modal
     if not modal.css or not modal.spindle:
         return state.rpm
-    radius = abs(x)
-    rpm = modal.surface_speed * 60 / (2 * pi * radius) if radius > 1e-9 else inf
     highest = state.setup.limits.max_rpm
     if modal.css_max is not None:
         highest = min(highest, modal.css_max)
-    return modal.spindle * min(max(rpm, modal.css_min), highest)
+    return modal.spindle * surface_rpm(modal.surface_speed, x, modal.css_min, highest)
 
 
 def spindle_modes(state: State, made: Statement) -> None:
@@ -90,7 +87,7 @@ def run_block(state: State, made: Statement) -> Block | None:
         _check_start(state, made)
         state.told.discard("spindle-stopped")
         state.adopt(state.modal._replace(spindle=direction))
-    elif "S" not in made.words or not state.modal.spindle or {76, 77}.intersection(made.modal):
+    elif "S" not in made.words or made.m == 5 or not state.modal.spindle or {76, 77}.intersection(made.modal):
         return None
     state.told.discard("spindle-stopped")
     rpm = rpm_at(state, state.x)

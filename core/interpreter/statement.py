@@ -12,6 +12,11 @@ from core.language.omniturn import Line, Word
 PlainMove = tuple[float | None, float | None]
 """X and Z as written of a line that holds nothing else: most lines of a long program."""
 
+FineMove = tuple[float | None, float | None, bool]
+"""The same with a fifth decimal, which may be finer than the control's step."""
+
+_SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
+_SIMPLE_MODAL = frozenset({0, 1})
 UNREADABLE = "unreadable"
 
 
@@ -30,7 +35,8 @@ class Statement:
     flow: str = ""  # a key of FLOW_WORDS, or UNREADABLE
     comment: str | None = None
     block_delete: bool = False
-    parts: dict[str, str] = field(default_factory=dict)
+    parts: dict[str, str] | None = None
+    simple: bool = False  # nothing but a move, its feed and G00…G03
 
     @property
     def moves(self) -> bool:
@@ -56,7 +62,7 @@ class Statement:
 
     def part(self, name: str) -> str:
         """Text of one of the blocks that the line makes."""
-        return self.parts.get(name, self.text)
+        return self.text if self.parts is None else self.parts.get(name, self.text)
 
 
 def statement(line: Line) -> Statement:
@@ -68,26 +74,36 @@ def statement(line: Line) -> Statement:
     if refusal is not None:
         raise ProgramError(refusal)
     _sort(made, line)
-    made.flow = _flow(made)
+    if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
+        made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
+    if not made.simple:
+        made.flow = _flow(made)
+        _name_parts(made, line)
     _check_words(made, line)
-    _name_parts(made, line)
     return made
 
 
 def _sort(made: Statement, line: Line) -> None:
     modal: list[Word] = []
+    words = made.words
     for word in line.words:
-        if word.letter == "G":
+        letter = word.letter
+        if letter == "G":
             _sort_g(made, word, modal)
-        elif word.letter == "M":
+        elif letter == "M":
             if made.m_word is not None:
                 raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
             made.m, made.m_word = int(word.value or 0), word
-        elif word.letter in made.words:
-            raise _refused(line, word, "word-twice", f"holds {word.letter} twice", "Take one out.")
+        elif letter in words:
+            raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
         else:
-            made.words[word.letter] = word
-    made.modal = tuple(int(word.value or 0) for word in modal)
+            words[letter] = word
+    if modal:
+        made.modal = tuple(int(word.value or 0) for word in modal)
+        _check_groups(made, line, modal)
+
+
+def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, made.modal, strict=True):
         if groups.setdefault(codes.MODAL_GROUPS[code], code) != code:
@@ -127,6 +143,8 @@ def _check_words(made: Statement, line: Line) -> None:
         _check_flow(made, line)
         return
     allowed = codes.WORDS.get(made.one_shot, codes.WORDS[None])
+    if allowed.issuperset(made.words):
+        return
     for letter, word in made.words.items():
         if letter not in allowed:
             what = f"holds {word.text}, which nothing on it takes"
@@ -146,6 +164,18 @@ def _check_flow(made: Statement, line: Line) -> None:
         if made.value(letter) is None:
             what = f"holds {made.flow} without {letter}"
             raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
+    if made.flow == "M97":
+        _check_condition(made, line)
+
+
+def _check_condition(made: Statement, line: Line) -> None:
+    if made.value("C") not in {0, 1}:
+        what = f"holds {made.words['C'].text}, which is neither C1 (on) nor C0 (off)"
+        raise _refused(line, made.words["C"], "condition", what, "Write C1 or C0.")
+    number = made.value("I")
+    if number is None or number < 1 or number != int(number):
+        what = f"holds {made.words['I'].text}, which is no number of an input"
+        raise _refused(line, made.words["I"], "input-number", what, "Write the input's number.")
 
 
 def _name_parts(made: Statement, line: Line) -> None:

@@ -89,7 +89,8 @@ class _Finder:
         self._loops.clear()
 
     def _unreachable(self, made: Statement) -> None:
-        if not self._stray:
+        late_end = made.m in codes.ENDS and any(each.code == "no-end" for each in self.problems)
+        if not self._stray and not late_end:
             self._stray = True
             text = "This line stands after the end of the program and is in no subroutine."
             self._refuse(made, "after-end", text, "Move it before M30, or start a subroutine with }n.")
@@ -97,7 +98,9 @@ class _Finder:
     def _no_end(self, line: int) -> None:
         self._ended = True
         text = "The main program ends without M30 or M02."
-        self.problems.append(Diagnostic(line, 0, Severity.ERROR, "no-end", text, "Add M30."))
+        self.problems.append(
+            Diagnostic(line, 0, Severity.ERROR, "no-end", text, "M30 goes before the subroutines.")
+        )
         self.found = self.found._replace(main_end=line)
 
     def finish(self, length: int) -> None:

@@ -11,6 +11,10 @@ from core.language.omniturn.words import BARE, Line, Word
 
 LONGEST_LINE = 8192
 
+# Most lines of a long program are nothing but these words; they need no look at each character.
+_NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
+_USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
+_USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
 _WORD = re.compile(r"(LS|LF|RF|CA|CI|[A-Z}])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))?")
 _THREAD = re.compile(r"G3[34](?![0-9.])")
 _TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
@@ -32,12 +36,29 @@ def lex_line(number: int, text: str) -> Line:
     """The words of line ``number``. Never raises: errors are in the line, each with its column."""
     if len(text) > LONGEST_LINE:
         return Line(number, errors=(faults.too_long(number, len(text)),))
+    if _USUAL.fullmatch(text):
+        words = _usual_words(text)
+        if words is not None:
+            return Line(number, words, text=text)
     errors: list[Diagnostic] = []
     written, columns, comment, comment_column = _without_comment(number, text, errors)
     code = _Code(written.upper() if written.isascii() else _upper(written), written, columns)
     block_delete = code.text.startswith("/")
     words = _Scanner(number, code, errors).words(1 if block_delete else 0)
     return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+
+
+def _usual_words(text: str) -> tuple[Word, ...] | None:
+    """The words of a line of usual words; None where one of them needs a closer look."""
+    words: list[Word] = []
+    column = 1
+    for written, letter, number in _USUAL_WORD.findall(text):
+        value = float(number)
+        if letter == "F" and value <= 0:
+            return None
+        words.append(Word(letter, value, column, written))
+        column += len(written)
+    return tuple(words)
 
 
 def _upper(text: str) -> str:
