@@ -24,4 +24,4 @@ class MachineFileError(Exception):
     def __init__(self, errors: Sequence[Finding], source: str) -> None:
         self.errors = tuple(errors)
         self.source = source
-        super().__init__("; ".join(f"{source}: {finding}" for finding in self.errors))
+        super().__init__(f"{source}: " + "; ".join(str(finding) for finding in self.errors))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import sqlite3
+import tempfile
 from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,6 +13,7 @@ from pathlib import Path
 from core.store import checking, database
 from core.store.errors import StoreError
 from core.store.lock import WriterLock
+from core.store.opening import make_folder
 
 
 def backup(folder: Path, target: Path) -> None:
@@ -39,7 +42,7 @@ def restore(folder: Path, source: Path) -> Path | None:
     found = checking.problems(source)
     if found:
         raise StoreError(f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup")
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     path = folder / database.FILE_NAME
     with closing(WriterLock(folder)):
         if path.exists() and path.samefile(source):
@@ -57,11 +60,14 @@ def _keep(path: Path) -> Path:
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
     log, _ = database.companions(path)
-    if log.exists() and log.stat().st_size:
-        shutil.copy2(log, database.companions(kept)[0])
     unfinished = kept.with_name(kept.name + ".new")
-    shutil.copy2(path, unfinished)
-    database.put_in_place(unfinished, kept)
+    try:
+        if log.exists() and log.stat().st_size:
+            shutil.copy2(log, database.companions(kept)[0])
+        shutil.copy2(path, unfinished)
+        database.put_in_place(unfinished, kept)
+    except OSError as error:
+        raise _unwritable(kept, error) from error
     return kept
 
 
@@ -76,8 +82,12 @@ def _empty_log(path: Path) -> None:
 
 def _copy(source: Path, target: Path) -> None:
     """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture."""
-    unfinished = target.with_name(target.name + ".new")
-    unfinished.unlink(missing_ok=True)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    except OSError as error:
+        raise _unwritable(target, error) from error
+    os.close(handle)
+    unfinished = Path(name)
     try:
         with (
             closing(database.connect(source, read_only=True)) as reading,
@@ -87,8 +97,10 @@ def _copy(source: Path, target: Path) -> None:
             writing.execute("PRAGMA journal_mode = DELETE")
         database.put_in_place(unfinished, target)
     except (OSError, sqlite3.Error) as error:
-        with suppress(OSError):
-            unfinished.unlink(missing_ok=True)
-        raise StoreError(
-            f"{target} cannot be written ({error}); check the folder, its space and rights"
-        ) from error
+        raise _unwritable(target, error) from error
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def _unwritable(target: Path, error: Exception) -> StoreError:
+    return StoreError(f"{target} cannot be written ({error}); check the folder, its space and rights")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,22 +20,27 @@ def export(store: Store, folder: Path) -> int:
 
     The folder appears when all of it is written. Raises StoreError when it is there already and not empty.
     """
-    unfinished = folder.with_name(folder.name + ".new")
     try:
         if folder.exists() and any(folder.iterdir()):
             raise StoreError(f"{folder} is not empty; name a new folder for the export")
-        shutil.rmtree(unfinished, ignore_errors=True)
-        (unfinished / PROGRAMS).mkdir(parents=True)
-        names = [row.name for row in store.programs()]
-        for name in names:
-            (unfinished / PROGRAMS / name).write_bytes(store.load_program(name))
-        (unfinished / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
-        _write_events(store, unfinished / EVENTS)
-        unfinished.replace(folder)
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as scratch:
+            unfinished = Path(scratch, folder.name)
+            count = _write_all(store, unfinished)
+            unfinished.replace(folder)
     except OSError as error:
         raise StoreError(
             f"{folder} cannot be written ({error}); check the folder, its space and rights"
         ) from error
+    return count
+
+
+def _write_all(store: Store, folder: Path) -> int:
+    (folder / PROGRAMS).mkdir(parents=True)
+    names = [row.name for row in store.programs()]
+    for name in names:
+        (folder / PROGRAMS / name).write_bytes(store.load_program(name))
+    (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
+    _write_events(store, folder / EVENTS)
     return len(names)
 
 

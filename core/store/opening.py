@@ -44,7 +44,7 @@ def open_to_read(folder: Path) -> Opened:
 def open_to_write(folder: Path) -> Opened:
     """The store under our lock, brought up to date; made where there is none. Raises StoreError."""
     path = folder / database.FILE_NAME
-    _make_folder(folder)
+    make_folder(folder)
     with ExitStack() as undo:
         lock = WriterLock(folder)
         undo.callback(lock.close)
@@ -59,7 +59,8 @@ def open_to_write(folder: Path) -> Opened:
         return Opened(path, reader, writer, lock)
 
 
-def _make_folder(folder: Path) -> None:
+def make_folder(folder: Path) -> None:
+    """The store's folder. Raises StoreError where it cannot be made."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

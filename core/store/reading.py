@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from core.store import database, offsets, programs, records
+from core.store.errors import StoreError
 from core.store.rows import Change, EventRow, Kind, ProgramRow, SecondaryRow, ToolRow, VersionRow
 
 
@@ -26,6 +27,8 @@ class StoreReader:
         with self._reading:
             try:
                 yield self._reader
+            except sqlite3.ProgrammingError as error:
+                raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
             except sqlite3.Error as error:
                 raise database.damaged(self.path, error) from error
 

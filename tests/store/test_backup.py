@@ -112,6 +112,24 @@ def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path
         backup.backup(folder, tmp_path / "none" / "b.db")
 
 
+def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: Path, tmp_path: Path) -> None:
+    fill(store)
+    (tmp_path / "b.db.new").write_text("mine")
+    (tmp_path / "out.new").mkdir()
+    backup.backup(folder, tmp_path / "b.db")
+    export.export(store, tmp_path / "out")
+    assert (tmp_path / "b.db.new").read_text() == "mine"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["b.db", "b.db.new", "home", "out", "out.new"]
+
+
+def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path) -> None:
+    fill(store)
+    store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
+    with pytest.raises(StoreError, match="not what was saved"):
+        export.export(store, tmp_path / "out")
+    assert [path.name for path in tmp_path.iterdir()] == ["home"]
+
+
 def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     target = tmp_path / "b.db"

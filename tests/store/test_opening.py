@@ -156,6 +156,31 @@ def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> 
     assert not closed.exists()
 
 
+def test_creation_that_was_cut_off_is_begun_again(folder: Path) -> None:
+    folder.mkdir()
+    (folder / "turndesk.db.new").write_bytes(b"half of a store")
+    with Store.open(folder) as store:
+        assert store.tools() == {}
+    assert not (folder / "turndesk.db.new").exists()
+
+
+def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
+    store.set_tool(1, "x", x=1.0).result()
+    store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
+    with pytest.raises(StoreError, match="disk is full"):
+        store.save_program("big", b"G90\n" * 100000, "x").result()
+    assert "disk is full" in store.trouble
+    assert store.programs() == ()
+    store.write(lambda c: c.execute("PRAGMA max_page_count = 1000000").close()).result()
+    assert store.save_program("big", b"G90\n" * 100000, "x").result() == 1
+
+
+def test_closed_store_refuses_questions(store: Store) -> None:
+    store.close()
+    with pytest.raises(StoreError, match="is closed"):
+        store.tools()
+
+
 def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(StoreError, match="cannot be made"):
