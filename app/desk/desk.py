@@ -14,7 +14,7 @@ from app.desk import prompts
 from app.desk.alarms import AlarmLog
 from app.desk.session import Loaded, Session
 from app.desk.shelf import Shelf
-from app.desk.station import Palms, StationPanel
+from app.desk.station import Palms, Pot, StationPanel
 from app.desk.view import Readout, View, view_of
 from core.executor.commands import (
     Command,
@@ -64,18 +64,20 @@ class Desk:
     notice: str = ""
     palms: Palms = field(default_factory=Palms)
     estop_pressed: bool = False
-    spindle_pot: float = 1.0
-    feed_pot: float = 1.0
+    spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
+    feed_knob: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
     log: AlarmLog = field(init=False)
     _giving_up: bool = False
     _refused: str = ""
     _noticed_in: State | None = None
+    _looked: float | None = None
 
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
 
     def look(self) -> tuple[Snapshot, View, Loaded]:
         """One snapshot, and what the page shows of it; called once a frame."""
+        self._turn_knobs()
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
         self._mind_refusals(snapshot)
@@ -253,19 +255,43 @@ class Desk:
         if self.station:
             self.station.set_spindle_auto(auto)
 
+    def turn_spindle_switch(self) -> None:
+        """The spindle switch to its other side."""
+        self.set_spindle_auto(not self.snapshot().spindle_auto)
+
+    def turn_spindle_pot(self, steps: int) -> None:
+        """The spindle pot by so many steps of ten percent."""
+        self.set_spindle_pot(round(self.spindle_pot / OVERRIDE_STEP + steps) * OVERRIDE_STEP)
+
+    @property
+    def spindle_pot(self) -> float:
+        """Where the spindle override pot shall stand, 0…1."""
+        return self.spindle_knob.wanted
+
     def set_spindle_pot(self, fraction: float) -> None:
         """The spindle override pot, 0…1."""
-        self.spindle_pot = max(0.0, min(1.0, fraction))
-        if self.station:
-            self.station.set_spindle_pot(self.spindle_pot)
+        self.spindle_knob.set(fraction)
+
+    @property
+    def feed_pot(self) -> float:
+        """Where the feed override pot shall stand, 0…1.5."""
+        return self.feed_knob.wanted
 
     def set_feed_pot(self, fraction: float) -> None:
         """Feed override 0…1.5: the station's pot where there is one, so that knob and value never differ."""
-        self.feed_pot = max(0.0, min(OVERRIDE_MOST, fraction))
-        if self.station:
-            self.station.set_feed_pot(self.feed_pot)
-        else:
+        self.feed_knob.set(fraction)
+        if self.station is None:
             self.post(FeedOverride(self.feed_pot))
+
+    def _turn_knobs(self) -> None:
+        now = self.clock()
+        passed = min(0.1, now - self._looked) if self._looked is not None else 0.0
+        self._looked = now
+        if self.station is not None:
+            if self.spindle_knob.turn(passed):
+                self.station.set_spindle_pot(self.spindle_knob.value)
+            if self.feed_knob.turn(passed):
+                self.station.set_feed_pot(self.feed_knob.value)
 
     def close(self) -> None:
         """End the loading and whatever drives the machine."""

@@ -64,3 +64,27 @@ class Palms:
         if not self.down:
             self.together = False
         return alone
+
+
+SLEW = 1.0  # of the whole range a second: faster than that a control takes it for a bad wiper, not for a hand
+
+
+@dataclass(slots=True)
+class Pot:
+    """A pot on the screen: ``wanted`` jumps with the finger, ``value`` turns after it as a knob can."""
+
+    most: float
+    wanted: float = 1.0
+    value: float = 1.0
+
+    def set(self, fraction: float) -> None:
+        """Where it shall stand."""
+        self.wanted = max(0.0, min(self.most, fraction))
+
+    def turn(self, seconds: float) -> bool:
+        """Turn on for so long; True when it has moved."""
+        if self.value == self.wanted:
+            return False
+        step = SLEW * seconds
+        self.value += max(-step, min(step, self.wanted - self.value))
+        return True

@@ -94,7 +94,6 @@ class SpindleView:
     actual: str
     surface: str
     surface_label: str
-    constant_surface: bool
     override: float
     auto: bool
 
@@ -230,12 +229,11 @@ def _spindle(snapshot: Snapshot) -> SpindleView:
     command = snapshot.rpm_command
     direction = "M03 FWD" if command > 0 else "M04 REV" if command < 0 else "M05 OFF"
     return SpindleView(
-        direction=direction,
+        direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),
         actual=formats.rpm(snapshot.rpm_actual),
         surface=formats.surface_speed(surface, modal.metric),
         surface_label="M/MIN" if modal.metric else "SFM",
-        constant_surface=modal.css,
         override=snapshot.spindle_override,
         auto=snapshot.spindle_auto,
     )
@@ -251,11 +249,12 @@ def _modes(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def _lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
+    """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …)."""
     return (
         _spindle_lamp(snapshot),
-        Lamp("COOLANT", snapshot.modal.coolant or "coolant" in snapshot.outputs),
+        Lamp("COOLANT", "coolant" in snapshot.outputs),
         _collet_lamp(snapshot),
-        Lamp("LIVE TOOL", "live_tool" in snapshot.outputs),
+        Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs)),
     )
 
 
@@ -270,8 +269,10 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 
 def _collet_lamp(snapshot: Snapshot) -> Lamp:
-    closed = snapshot.modal.collet_closed
-    return Lamp("COLLET CLOSED", lit=True) if closed else Lamp("COLLET OPEN", lit=True, warn=True)
+    """The output decides, not the program's word: it is what holds the bar."""
+    if "collet" in snapshot.outputs:
+        return Lamp("COLLET CLOSED", lit=True)
+    return Lamp("COLLET OPEN", lit=True, warn=True)
 
 
 def _message(snapshot: Snapshot) -> str:

@@ -1,0 +1,149 @@
+"""The lines across the page: title line, prompt line, comment, and the row of function keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk.view import Tone
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+from app.screen.shapes import draw_sign
+
+KEY_LABELS = (
+    "MENU",
+    "FILE",
+    "EDIT",
+    "READOUT",
+    "FIT",
+    "SEARCHTO",
+    "ALARMS",
+    "TOOLS",
+    "SECCMP",
+    "SPECIAL",
+)
+
+
+class TitleLine(Panel):
+    """Program of the desk, page, program name, machine state in words, clock."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self._shown = ("", "STARTING", Tone.OFF, "", "")
+
+    def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
+        """What stands in the line."""
+        if (program, state, tone, machine, clock) != self._shown:
+            self._shown = (program, state, tone, machine, clock)
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        program, state, tone, machine, clock = self._shown
+        look, u, high = self.look, self.look.u, self.height()
+        painter.fillRect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), look.colour("frame"))
+        painter.setFont(look.font(2.2, bold=True))
+        painter.setPen(look.colour("accent"))
+        put(painter, QRectF(1.4 * u, 0, 24 * u, high), LEFT, "AUTOMATIC")
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(program, 2.4, 38 * u, bold=True))
+        put(painter, QRectF(20 * u, 0, 38 * u, high), LEFT, program or "NO PROGRAM")
+        self._draw_state(painter, state, tone)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.fit(machine, 1.8, 30 * u))
+        put(painter, QRectF(self.width() - 47 * u, 0, 30 * u, high), RIGHT, machine)
+        painter.setFont(look.font(2.2))
+        painter.setPen(look.colour("text"))
+        put(painter, QRectF(self.width() - 16 * u, 0, 14.6 * u, high), RIGHT, clock)
+
+    def _draw_state(self, painter: QPainter, state: str, tone: Tone) -> None:
+        look, u, high = self.look, self.look.u, self.height()
+        box = QRectF(60 * u, 0.6 * u, 50 * u, high - 1.3 * u)
+        painter.fillRect(box, look.colour(tone.value))
+        ink = look.colour("on_state")
+        font = look.fit(state, 2.5, box.width() - 8 * u, bold=True)
+        painter.setFont(font)
+        wide = QFontMetricsF(font).horizontalAdvance(state)
+        left = box.center().x() - (wide + 3.6 * u) / 2
+        draw_sign(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
+        painter.setPen(ink)
+        put(painter, QRectF(left + 3.6 * u, box.y(), wide + u, box.height()), LEFT, state)
+
+
+class PromptLine(Panel):
+    """One line that says what can be done now, or answers the last key."""
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.text = ""
+        self._answer = False
+
+    def show_text(self, text: str, answer: bool) -> None:
+        """``answer`` when it answers a key: it stands out then."""
+        if (text, answer) != (self.text, self._answer):
+            self.text, self._answer = text, answer
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        area = self.area()
+        painter.fillRect(area, look.colour("pause" if self._answer else "panel"))
+        painter.setPen(look.colour("on_state" if self._answer else "text"))
+        font = look.fit(self.text, 2.3, area.width() - 3 * u, bold=True)
+        if font.pixelSize() < 1.7 * u:  # never so small that it cannot be read: the end is elided instead
+            font = look.font(1.7, bold=True)
+        painter.setFont(font)
+        put(painter, area.adjusted(1.4 * u, 0, -1.4 * u, 0), LEFT, self.text)
+
+
+class CommentLine(Panel):
+    """The last comment of the program, at the lower left."""
+
+    title = "COMMENT"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.text = ""
+
+    def show_text(self, text: str) -> None:
+        """The comment's own text, untouched."""
+        if text != self.text:
+            self.text = text
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("accent"))
+        room = self.area().adjusted(1.4 * u, 1.7 * u, -1.2 * u, -0.3 * u)
+        painter.setFont(look.fit(self.text, 2.0, room.width()))
+        put(painter, room, LEFT, self.text)
+
+
+class FunctionKeys(Panel):
+    """F1 to F10 with labels of up to eight characters; each is a target for a finger too."""
+
+    def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self._press = press
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        gap = 0.6 * u
+        wide = (self.width() + gap) / len(KEY_LABELS)
+        for number, label in enumerate(KEY_LABELS, 1):
+            box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
+            painter.fillRect(box, look.colour("key"))
+            painter.setPen(look.colour("accent"))
+            painter.setFont(look.font(1.8, bold=True))
+            put(painter, QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u), CENTRE, f"F{number}")
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.fit(label, 2.1, box.width() - u, bold=True))
+            put(painter, QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u), CENTRE, label)
+            self.place(box, self._presser(number))
+
+    def _presser(self, number: int) -> Callable[[], None]:
+        return lambda: self._press(number)

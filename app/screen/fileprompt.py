@@ -1,0 +1,176 @@
+"""``FILE TO BE PROCESSED``: a name is typed, or picked from the list with arrows or a finger."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QObject, QRectF, Qt
+from PySide6.QtGui import QKeyEvent, QPainter, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QLineEdit, QWidget
+
+from app.desk.prompts import ASK_FILE, NOT_FOUND
+from app.desk.shelf import Entry, Shelf
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+
+ROW = 4.6  # units: a fingertip
+
+
+class FilePrompt(Panel):
+    """Asks for a program. Typing narrows the list; Return takes the exact name, else the marked row."""
+
+    title = ASK_FILE
+
+    def __init__(
+        self,
+        look: Look,
+        shelf: Shelf,
+        choose: Callable[[str], bool],
+        closed: Callable[[], None],
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(look, parent)
+        self._shelf, self._choose, self._closed = shelf, choose, closed
+        self._entries: tuple[Entry, ...] = ()
+        self._row = 0
+        self._moved = False  # a row was marked by hand: it goes before what was typed
+        self.not_found = False
+        self.edit = QLineEdit(self)
+        self.edit.setMaxLength(250)
+        self.edit.textEdited.connect(self._typed)
+        self.edit.installEventFilter(self)
+        self.hide()
+
+    def ask(self) -> None:
+        """Come up empty, with the keyboard."""
+        self.not_found = False
+        self.edit.clear()
+        self._narrow("")
+        self.show()
+        self.raise_()
+        self.edit.setFocus()
+
+    def dismiss(self) -> None:
+        """Go, leaving the program that was there."""
+        if self.isVisible():
+            self.hide()
+            self._closed()
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        """Keys of the list and the two ends of the question; the rest is text."""
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
+            return self._key(event)
+        return False
+
+    def _key(self, event: QKeyEvent) -> bool:
+        if self.not_found:
+            self.not_found = False
+            self.edit.selectAll()
+            self.update()
+            return True
+        actions: dict[int, Callable[[], None]] = {
+            Qt.Key.Key_Escape: self.dismiss,
+            Qt.Key.Key_Return: self._take,
+            Qt.Key.Key_Enter: self._take,
+            Qt.Key.Key_Down: lambda: self._mark(self._row + 1),
+            Qt.Key.Key_Up: lambda: self._mark(self._row - 1),
+            Qt.Key.Key_PageDown: lambda: self._mark(self._row + self._rows),
+            Qt.Key.Key_PageUp: lambda: self._mark(self._row - self._rows),
+        }
+        action = actions.get(event.key())
+        if action is None:
+            return False
+        action()
+        return True
+
+    def _typed(self, text: str) -> None:
+        self._moved = False
+        self._narrow(text)
+
+    def _narrow(self, text: str) -> None:
+        self._entries = self._shelf.matching(text)
+        self._row = 0
+        self.update()
+
+    def _mark(self, row: int) -> None:
+        if self._entries:
+            self._row = max(0, min(len(self._entries) - 1, row))
+            self._moved = True
+            self.update()
+
+    def _take(self) -> None:
+        typed = self.edit.text()
+        if not self._moved and typed.strip() and self._shelf.find(typed) is not None:
+            self._try(typed)
+        elif self._entries:
+            self._try(str(self._entries[self._row].path))
+        else:
+            self._try(typed)
+
+    def _try(self, name: str) -> None:
+        if self._choose(name):
+            self.dismiss()
+        else:
+            self.not_found = True
+            self.update()
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    @property
+    def _rows(self) -> int:
+        return max(1, int((self.height() - 10.5 * self.look.u) / (ROW * self.look.u)))
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The line to type in keeps its place under the title."""
+        look, u = self.look, self.look.u
+        self.edit.setFont(look.font(2.6, bold=True))
+        self.edit.setGeometry(round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u))
+        self.edit.setStyleSheet(
+            f"QLineEdit {{ background: {look.palette.ground}; color: {look.palette.text};"
+            f" border: {max(1, round(0.2 * u))}px solid {look.palette.accent}; padding-left: {round(u)}px;"
+            f" selection-background-color: {look.palette.lit}; selection-color: {look.palette.on_lit}; }}"
+        )
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Move the mark."""
+        self._mark(self._row - round(event.angleDelta().y() / 120))
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        self.frame(painter, self.title, "accent", 0.3)
+        foot = QRectF(1.6 * u, self.height() - 3.2 * u, self.width() - 3.2 * u, 2.6 * u)
+        if self.not_found:
+            self._not_found(painter)
+        else:
+            self._list(painter)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6))
+        put(painter, foot, LEFT, "RETURN takes the marked program   ESC keeps the present one")
+        put(painter, foot, RIGHT, f"{len(self._entries)} programs")
+
+    def _list(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        first = max(0, min(self._row - self._rows // 2, len(self._entries) - self._rows))
+        for place, entry in enumerate(self._entries[first : first + self._rows]):
+            box = QRectF(1.6 * u, (8.0 + place * ROW) * u, self.width() - 3.2 * u, ROW * u)
+            marked = first + place == self._row
+            if marked:
+                painter.fillRect(box, look.colour("lit"))
+            painter.setPen(look.colour("on_lit" if marked else "text"))
+            painter.setFont(look.font(2.3, bold=marked))
+            put(painter, box.adjusted(1.2 * u, 0, -30 * u, 0), LEFT, entry.name)
+            painter.setFont(look.font(1.6))
+            painter.setPen(look.colour("on_lit" if marked else "soft"))
+            put(painter, box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), RIGHT, entry.path.parent.name)
+            self.place(box, self._picker(entry))
+
+    def _not_found(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        box = QRectF(1.6 * u, 10 * u, self.width() - 3.2 * u, 7 * u)
+        painter.fillRect(box, look.colour("alarm"))
+        painter.setPen(look.colour("on_state"))
+        painter.setFont(look.fit(NOT_FOUND, 2.8, box.width() - 2 * u, bold=True))
+        put(painter, box, CENTRE, NOT_FOUND)
+
+    def _picker(self, entry: Entry) -> Callable[[], None]:
+        return lambda: self._try(str(entry.path))

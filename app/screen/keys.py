@@ -1,0 +1,59 @@
+"""Which key does what on the Automatic page. One table, so that the screen and its tests agree.
+
+Bare arrows do nothing here: on the Jog page they move slides, and no page gives them a lighter meaning.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+
+Key = Qt.Key
+CTRL = Qt.KeyboardModifier.ControlModifier
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+NONE = Qt.KeyboardModifier.NoModifier
+
+PALMS = {Key.Key_F11: "left", Key.Key_F12: "right"}
+
+# What a key with these modifiers is called; keypad and shift are told apart only where it matters.
+NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
+    **{(Key(Key.Key_F1 + n), NONE): f"F{n + 1}" for n in range(10)},
+    (Key.Key_S, NONE): "S",
+    (Key.Key_O, NONE): "O",
+    (Key.Key_Slash, NONE): "/",
+    (Key.Key_C, NONE): "C",
+    (Key.Key_H, NONE): "H",
+    (Key.Key_Space, NONE): "H",
+    (Key.Key_R, NONE): "R",
+    (Key.Key_D, NONE): "D",
+    (Key.Key_E, NONE): "E",
+    (Key.Key_E, SHIFT): "Shift E",
+    (Key.Key_A, NONE): "A",
+    (Key.Key_Comma, NONE): ",",
+    (Key.Key_Period, NONE): ".",
+    (Key.Key_Plus, NONE): "+",
+    (Key.Key_Minus, NONE): "-",
+    (Key.Key_Escape, NONE): "Esc",
+    (Key.Key_Z, NONE): "Zoom in",
+    (Key.Key_Z, SHIFT): "Zoom out",
+    (Key.Key_Left, CTRL): "Pan left",
+    (Key.Key_Right, CTRL): "Pan right",
+    (Key.Key_Up, CTRL): "Pan up",
+    (Key.Key_Down, CTRL): "Pan down",
+    (Key.Key_PageUp, NONE): "Page up",
+    (Key.Key_PageDown, NONE): "Page down",
+    (Key.Key_Home, NONE): "Follow",
+}
+REPEATING = frozenset(
+    {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
+    | {"Pan left", "Pan right", "Pan up", "Pan down"}
+)
+# Signs that stand on shifted keys on one keyboard and on bare ones on another.
+_SIGNS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}
+
+
+def name_of(key: int, modifiers: Qt.KeyboardModifier) -> str:
+    """What was pressed; empty when it means nothing here."""
+    held = modifiers & (CTRL | SHIFT | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier)
+    if key in _SIGNS:
+        held &= ~SHIFT
+    return NAMES.get((key, held), "")

@@ -1,0 +1,93 @@
+"""Where everything stands on the Automatic page, for any window size. Pure arithmetic.
+
+All fixed things are measured in one unit that follows the window, 160 by 90 of it on a 16:9 screen; what is
+left over goes to the program window and the path view.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+ACROSS, DOWN = 160.0, 90.0
+LEAST = (1024, 600)
+
+
+class Rect(NamedTuple):
+    """Pixels."""
+
+    x: int
+    y: int
+    w: int
+    h: int
+
+    @property
+    def right(self) -> int:
+        """First column beyond."""
+        return self.x + self.w
+
+    @property
+    def bottom(self) -> int:
+        """First row beyond."""
+        return self.y + self.h
+
+
+class Places(NamedTuple):
+    """The parts of the page; ``dock`` is empty on a machine with a real operator station."""
+
+    title: Rect
+    position: Rect
+    feed: Rect
+    spindle: Rect
+    tool: Rect
+    times: Rect
+    strip: Rect
+    listing: Rect
+    comment: Rect
+    path: Rect
+    dock: Rect
+    prompt: Rect
+    keys: Rect
+
+
+def unit(width: int, height: int) -> float:
+    """Pixels of the one unit that every size is told in."""
+    return min(width / ACROSS, height / DOWN)
+
+
+def places(width: int, height: int, dock: bool) -> Places:
+    """Divide a window of this size."""
+    u = unit(width, height)
+    gap = max(4, round(0.7 * u))
+    title_h, strip_h, prompt_h, keys_h, comment_h = (round(k * u) for k in (4.8, 6.0, 4.6, 6.6, 4.8))
+    top_h = round(27.2 * u)
+    keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)
+    prompt = Rect(gap, keys.y - gap - prompt_h, width - 2 * gap, prompt_h)
+    title = Rect(0, 0, width, title_h)
+    top = title.bottom + gap
+    dock_w = round(24 * u) if dock else 0
+    right = width - gap - (dock_w + gap if dock else 0)
+    station = Rect(right + gap, top, dock_w, prompt.y - gap - top) if dock else Rect(0, 0, 0, 0)
+    position = Rect(gap, top, round(70 * u), top_h)
+    feed, spindle, tool, times = _quarters(
+        Rect(position.right + gap, top, right - position.right - gap, top_h), gap
+    )
+    strip = Rect(gap, position.bottom + gap, right - gap, strip_h)
+    below = strip.bottom + gap
+    comment = Rect(gap, prompt.y - gap - comment_h, round(52 * u), comment_h)
+    listing = Rect(gap, below, comment.w, comment.y - gap - below)
+    path = Rect(listing.right + gap, below, right - listing.right - gap, prompt.y - gap - below)
+    return Places(
+        title, position, feed, spindle, tool, times, strip, listing, comment, path, station, prompt, keys
+    )
+
+
+def _quarters(whole: Rect, gap: int) -> tuple[Rect, Rect, Rect, Rect]:
+    left = (whole.w - gap) // 2
+    upper = round((whole.h - gap) * 0.56)
+    x, y = whole.x + left + gap, whole.y + upper + gap
+    return (
+        Rect(whole.x, whole.y, left, upper),
+        Rect(x, whole.y, whole.right - x, upper),
+        Rect(whole.x, y, left, whole.bottom - y),
+        Rect(x, y, whole.right - x, whole.bottom - y),
+    )

@@ -1,0 +1,134 @@
+"""The program window: source lines, the current one marked, the generated block under it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+
+ROW = 2.9  # units from line to line
+
+
+class Listing(Panel):
+    """Paints only the lines that are seen, so its cost does not grow with the program."""
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self._lines: Sequence[str] = ()
+        self._bad: Mapping[int, str] = {}
+        self._line = 0
+        self._block = self._next = ""
+        self._top: int | None = None  # first row when scrolled by hand, None while it follows the run
+
+    def show_source(self, lines: Sequence[str], bad: Mapping[int, str]) -> None:
+        """Another program; ``bad`` are messages by line number."""
+        if lines is not self._lines or bad != self._bad:
+            self._lines, self._bad = lines, dict(bad)
+            self._top = max(0, min(self._bad) - 3) if self._bad else None
+            self.update()
+
+    def show_run(self, line: int, block: str, following: str) -> None:
+        """The line that is executed (0: none), the generated block, and the one after it."""
+        if (line, block, following) != (self._line, self._block, self._next):
+            self._line, self._block, self._next = line, block, following
+            self.update()
+
+    @property
+    def rows(self) -> int:
+        """How many rows fit."""
+        return max(1, int((self.height() - 3.2 * self.look.u) / (ROW * self.look.u)))
+
+    @property
+    def top(self) -> int:
+        """Number of the first row shown, from 0."""
+        if self._top is not None:
+            return self._top
+        at = max(0, self._line - 1 - self.rows // 3)
+        return max(0, min(at, len(self._lines) + self._extra - self.rows))
+
+    @property
+    def _extra(self) -> int:
+        return (1 if self._block else 0) + (1 if self._block and self._next else 0)
+
+    @property
+    def follows(self) -> bool:
+        """Whether the window goes along with the run."""
+        return self._top is None
+
+    def follow(self) -> None:
+        """Go along with the run again."""
+        self._top = None
+        self.update()
+
+    def look_at(self, rows: int) -> None:
+        """Look elsewhere in the program; the run goes on."""
+        most = max(0, len(self._lines) + self._extra - self.rows)
+        self._top = max(0, min(most, self.top + rows))
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three lines a notch."""
+        self.look_at(-round(event.angleDelta().y() / 40))
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        count = len(self._lines)
+        title = f"PROGRAM  ·  {count} LINES" if count else "PROGRAM"
+        self.frame(painter, title if self.follows else f"{title}  ·  HOME FOLLOWS AGAIN")
+        row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, ROW * u)
+        number = self.top + 1
+        for _ in range(self.rows):
+            if number > count:
+                break
+            self._source(painter, row, number)
+            row.translate(0, ROW * u)
+            if number == self._line and self._block:
+                row = self._generated(painter, row)
+            if row.bottom() > self.height() - 0.4 * u:
+                break
+            number += 1
+        if not count:
+            painter.setFont(look.font(2.0))
+            painter.setPen(look.colour("soft"))
+            put(
+                painter, self.inside().adjusted(0, 0, 0, -self.inside().height() + 4 * u), LEFT, "No program."
+            )
+
+    def _source(self, painter: QPainter, row: QRectF, number: int) -> None:
+        look, u = self.look, self.look.u
+        here, bad = number == self._line, number in self._bad
+        if here:
+            painter.fillRect(row, look.colour("here"))
+            painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("lit"))
+        if bad:
+            painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("alarm"))
+        painter.setFont(look.font(1.7))
+        painter.setPen(look.colour("alarm" if bad else "soft"))
+        wide = max(4, len(str(len(self._lines)))) * 1.2 * u
+        put(painter, QRectF(row.x() + 1.2 * u, row.y(), wide, row.height()), RIGHT, str(number))
+        painter.setFont(look.font(2.1, bold=here))
+        painter.setPen(look.colour("text"))
+        text = self._lines[number - 1].expandtabs(4)
+        put(painter, row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0), LEFT, text)
+
+    def _generated(self, painter: QPainter, row: QRectF) -> QRectF:
+        look, u = self.look, self.look.u
+        for text, name in ((self._block, "accent"), (self._next, "soft")):
+            if not text or row.bottom() > self.height() - 0.2 * u:
+                break
+            if name == "accent":
+                painter.fillRect(row, look.colour("here"))
+                painter.fillRect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), look.colour("lit"))
+            painter.setPen(look.colour(name))
+            painter.setFont(look.font(1.6, bold=True))
+            label = "BLOCK" if name == "accent" else "NEXT"
+            put(painter, QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), LEFT, label)
+            painter.setFont(look.font(2.0, bold=name == "accent"))
+            put(painter, row.adjusted(7.6 * u, 0, -0.8 * u, 0), LEFT, text)
+            row = row.translated(0, ROW * u)
+        return row

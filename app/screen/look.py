@@ -1,0 +1,111 @@
+"""What every part of the screen draws with: colours, the bundled fonts, and the one unit of size."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QFontMetricsF, QPainter, QPalette, QPen
+from PySide6.QtWidgets import QApplication
+
+from app.screen.theme import Palette
+
+# B612 has figures of one width, and an O that cannot be taken for a 0. (In B612 Mono both are alike, and its
+# point is followed by a gap, so that X.69 reads as X. 69.)
+FAMILY = "B612"
+LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+CENTRE = Qt.AlignmentFlag.AlignCenter
+
+
+@cache
+def load_fonts() -> tuple[str, ...]:
+    """Make the bundled fonts known to Qt; the families found. Without them a bare system shows boxes."""
+    families: list[str] = []
+    for file in sorted(files("resources").joinpath("fonts").iterdir(), key=lambda f: f.name):
+        if file.name.endswith(".otf"):
+            number = QFontDatabase.addApplicationFontFromData(file.read_bytes())
+            families += QFontDatabase.applicationFontFamilies(number)
+    return tuple(families)
+
+
+class Look:
+    """Shared by all widgets of a window; ``u`` changes with its size."""
+
+    def __init__(self, palette: Palette, u: float = 12.0) -> None:
+        self.palette = palette
+        self.u = u
+        self._colours: dict[str, QColor] = {}
+        self._fonts: dict[tuple[float, bool], QFont] = {}
+
+    def resize(self, u: float) -> None:
+        """Take another unit, pixels."""
+        if u != self.u:
+            self.u = u
+            self._fonts.clear()
+
+    def colour(self, name: str) -> QColor:
+        """A colour of the palette."""
+        if name not in self._colours:
+            self._colours[name] = QColor(getattr(self.palette, name))
+        return self._colours[name]
+
+    def font(self, size: float, *, bold: bool = False) -> QFont:
+        """A bundled font, ``size`` in units (height of the em)."""
+        key = (size, bold)
+        if key not in self._fonts:
+            font = QFont(FAMILY)
+            font.setPixelSize(max(8, round(size * self.u)))
+            font.setBold(bold)
+            self._fonts[key] = font
+        return self._fonts[key]
+
+    def pen(self, name: str, width: float = 0.12) -> QPen:
+        """A pen of a palette colour, ``width`` in units, at least one pixel."""
+        return QPen(self.colour(name), max(1.0, width * self.u))
+
+    def fit(self, text: str, size: float, width: float, *, bold: bool = False) -> QFont:
+        """The font of this size, or the largest smaller one in which ``text`` is not wider than ``width``."""
+        font = self.font(size, bold=bold)
+        wide = QFontMetricsF(font).horizontalAdvance(text)
+        if wide <= width or wide <= 0:
+            return font
+        smaller = QFont(font)
+        smaller.setPixelSize(max(6, int(font.pixelSize() * width / wide)))
+        return smaller
+
+
+def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
+    """Draw one line of text, its capitals centred on the middle of ``rect``; elided when it is too long."""
+    metrics = QFontMetricsF(painter.font())
+    if metrics.horizontalAdvance(text) > rect.width() + 1:
+        text = metrics.elidedText(text, Qt.TextElideMode.ElideRight, rect.width())
+    width = metrics.horizontalAdvance(text)
+    x = rect.left()
+    if flags & Qt.AlignmentFlag.AlignRight:
+        x = rect.right() - width
+    elif flags & Qt.AlignmentFlag.AlignHCenter:
+        x = rect.center().x() - width / 2
+    painter.drawText(round(x), round(rect.center().y() + metrics.capHeight() / 2), text)
+
+
+def dress(app: QApplication, palette: Palette) -> None:
+    """Fusion with our own palette, for the few stock widgets; setColorScheme does nothing on bare xcb."""
+    app.setStyle("Fusion")
+    look = Look(palette)
+    colours = QPalette()
+    for role, name in (
+        (QPalette.ColorRole.Window, "ground"),
+        (QPalette.ColorRole.Base, "panel"),
+        (QPalette.ColorRole.AlternateBase, "panel"),
+        (QPalette.ColorRole.Button, "key"),
+        (QPalette.ColorRole.Text, "text"),
+        (QPalette.ColorRole.WindowText, "text"),
+        (QPalette.ColorRole.ButtonText, "text"),
+        (QPalette.ColorRole.Highlight, "lit"),
+        (QPalette.ColorRole.HighlightedText, "on_lit"),
+        (QPalette.ColorRole.PlaceholderText, "soft"),
+    ):
+        colours.setColor(role, look.colour(name))
+    app.setPalette(colours)

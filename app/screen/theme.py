@@ -1,0 +1,120 @@
+"""The two palettes and the contrast they must keep. Colours are pairs that stay apart for colour-blind eyes.
+
+The state colours follow Okabe and Ito (2008): bluish green, orange, sky blue and vermilion differ in
+lightness as well as in hue. Nothing is told by colour alone: every state has its word and its shape.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """Colours as ``#rrggbb``. ``on_…`` is the ink upon a filled patch of that colour."""
+
+    name: str
+    ground: str
+    panel: str
+    frame: str
+    text: str
+    soft: str
+    accent: str
+    key: str
+    ready: str
+    run: str
+    pause: str
+    wait: str
+    alarm: str
+    off: str
+    on_state: str
+    mark: str
+    on_mark: str
+    lit: str
+    on_lit: str
+    here: str
+    todo: str
+    done: str
+    rapid: str
+    ghost: str
+    centre: str
+    tip: str
+    estop: str = "#c81e1e"  # a real E-stop is red on yellow in any light (IEC 60204-1)
+    estop_rim: str = "#7a0d0d"
+    estop_plate: str = "#ffd400"
+    estop_ground: str = "#14161a"
+    estop_ink: str = "#ffffff"
+
+
+DARK = Palette(
+    name="dark",
+    ground="#080c14",
+    panel="#0f1623",
+    frame="#5f7699",
+    text="#f4f7fb",
+    soft="#a9b9cf",
+    accent="#74d4f7",
+    key="#1d2a40",
+    ready="#dde6f1",
+    run="#35c4a2",
+    pause="#f5b638",
+    wait="#7fc8f6",
+    alarm="#ff7f50",
+    off="#8b9ab0",
+    on_state="#05080d",
+    mark="#f5b638",
+    on_mark="#05080d",
+    lit="#74d4f7",
+    on_lit="#05080d",
+    here="#203555",
+    todo="#8093ad",
+    done="#ffffff",
+    rapid="#d98e1f",
+    ghost="#3a4d6b",
+    centre="#a8779a",
+    tip="#ff7f50",
+)
+LIGHT = Palette(
+    name="light",
+    ground="#dfe5ec",
+    panel="#ffffff",
+    frame="#66788f",
+    text="#0a101b",
+    soft="#41506a",
+    accent="#005580",
+    key="#cdd7e3",
+    ready="#2a3547",
+    run="#006a52",
+    pause="#8f4e00",
+    wait="#005f99",
+    alarm="#b32d00",
+    off="#566478",
+    on_state="#ffffff",
+    mark="#8f4e00",
+    on_mark="#ffffff",
+    lit="#005f99",
+    on_lit="#ffffff",
+    here="#cfe3f3",
+    todo="#7c8ca1",
+    done="#0a101b",
+    rapid="#a85c00",
+    ghost="#c3ccd8",
+    centre="#94497f",
+    tip="#b32d00",
+)
+PALETTES = {palette.name: palette for palette in (DARK, LIGHT)}
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance after WCAG 2.2, 0…1."""
+    linear = []
+    for at in (1, 3, 5):
+        share = int(colour[at : at + 2], 16) / 255
+        linear.append(share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4)
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    """Contrast ratio after WCAG 2.2, 1…21."""
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)

@@ -1,0 +1,50 @@
+"""A desk on the scripted machine, loading real programs with the real interpreter and prover."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.compose.machine import setup_for
+from app.compose.proof import proof_of
+from app.desk.desk import Desk
+from app.desk.picture import Picture, sketched
+from app.desk.session import Proved, Session, Watch, Workshop
+from app.desk.shelf import Shelf
+from core.executor.job import Job
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source, load_source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from core.proving.timeline import Timeline, timed_blocks
+from tests.screen.fake import FakeMachine
+
+SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
+TOOLS = {n: ToolOffset(x, z) for n, x, z in ((1, -12.7, -76.2), (2, 6.35, -63.5), (3, -25.4, -81.28))}
+
+
+def desk_on(machine: FakeMachine, *folders: Path, two_hand: bool = True) -> Desk:
+    """A desk with the simulated station, on these folders or on the samples."""
+    lathe = load_machine(None)
+
+    def make_job(source: Source, block_delete: bool) -> Job:
+        setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
+        return Job(source, setup, digest=f"{source.name}{block_delete}")
+
+    def proved(job: Job, watch: Watch) -> Proved:
+        report = prove(job.source, job.setup, lathe, watch)
+        return Proved(proof_of(job, report), report.diagnostics)
+
+    def draw(job: Job, watch: Watch) -> Picture:
+        machine.blocks = list(timed_blocks(Timeline.of(job.source, job.setup, lathe)))
+        return sketched(machine.blocks, watch)
+
+    return Desk(
+        post=machine.post,
+        snapshot=machine.snapshot,
+        session=Session(Workshop(load_source, make_job, proved, draw), machine.post),
+        shelf=Shelf(folders or (SAMPLES,)),
+        station=machine,
+        two_hand=two_hand,
+        machine="GT-75 SIMULATED",
+        time_of_day=lambda: "09:41:07",
+    )
