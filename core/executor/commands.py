@@ -78,6 +78,13 @@ class SpindleLimit:
     rpm: float | None
 
 
+@dataclass(frozen=True, slots=True)
+class Home:
+    """Look for the home of one axis, or of all that do not know their position when ``axis`` is empty."""
+
+    axis: str = ""
+
+
 Command = (
     LoadJob
     | GiveProof
@@ -90,4 +97,5 @@ Command = (
     | Jog
     | JogStop
     | SpindleLimit
+    | Home
 )

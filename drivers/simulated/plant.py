@@ -94,7 +94,8 @@ class Plant:
                 self._power_off()
             elif self.enabled:
                 ends = self.queue.brake(now, [axis.amax for axis in self.config.axes])
-                self._off_at = ends if how is Stop.RAMP_OFF else _NEVER
+                if how is Stop.RAMP_OFF or self._off_at < _NEVER:
+                    self._off_at = ends
 
     def home(self, name: str) -> None:
         """Look for the home switch of one axis; an absolute axis has nothing to look for."""

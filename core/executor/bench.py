@@ -1,0 +1,76 @@
+"""What every part of the executor needs at hand: machine, ports, spindle, switches, and who keeps the log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from core.executor.snapshot import Event
+from core.executor.spindle import SpindleControl
+from core.executor.station_watch import Heard
+from core.machine.model import Machine
+from core.motion.limits import MotionLimits
+from core.ports import AxisSample, MachinePorts
+
+_QUIET = Heard(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
+_LEAST = 0.005  # of the feed: a smaller change of a pot is no change
+
+
+@dataclass(slots=True)
+class Switches:
+    """The lit words that an operator turns."""
+
+    single_block: bool = False
+    optional_stop: bool = False
+    cycle_repeat: bool = False
+
+
+@dataclass(slots=True)
+class Bench:
+    """What all parts of the executor look at in one tick; written by the executor's thread alone."""
+
+    machine: Machine
+    ports: MachinePorts
+    on_event: Callable[[Event], None]
+    spindle: SpindleControl
+    now: float
+    sample: AxisSample
+    inputs: dict[str, bool]
+    heard: Heard = _QUIET
+    switches: Switches = field(default_factory=Switches)
+    soft_override: float = 1.0
+    line: int = 0  # of the block being executed, for the log
+
+    @property
+    def feed_override(self) -> float:
+        """Pot times key, 0…1.5 of the programmed feed; steps of half a per cent."""
+        fraction = min(self.heard.feed * self.soft_override, 1.5)
+        return round(fraction / _LEAST) * _LEAST
+
+    def say(self, kind: str, text: str) -> None:
+        """Put something into the log."""
+        self.on_event(Event(self.now, kind, text, self.line))
+
+    def terminal(self, name: str) -> bool:
+        """Whether an input is on, by the name or terminal that a program uses."""
+        if name in self.inputs:
+            return self.inputs[name]
+        for model in self.machine.inputs.values():
+            if model.terminal == name:
+                return self.inputs.get(model.name, False)
+        return False
+
+    def in_position(self) -> bool:
+        """All slides are where they were sent."""
+        pairs = zip(self.machine.axes, self.sample.following_error, strict=True)
+        return not self.sample.moving and all(abs(error) <= axis.in_position for axis, error in pairs)
+
+
+def motion_limits(machine: Machine) -> MotionLimits:
+    """The machine's axes as the time law takes them."""
+    x, z, c = machine.axes
+    return MotionLimits(
+        vmax=(x.vmax, z.vmax, c.vmax),
+        amax=(x.amax, z.amax, c.amax),
+        interval=machine.timing.setpoint,
+    )

@@ -1,0 +1,240 @@
+"""One pass through a program on the machine: motion, standstills, holds and ends, in the order of blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.executor.alarms import TroubleError
+from core.executor.bench import Bench
+from core.executor.feed import BlockFeed, Pass, needs_speed
+from core.executor.limits import check_block
+from core.executor.mover import Mover, Progress
+from core.executor.player import Player
+from core.executor.retreat import Retreat
+from core.executor.snapshot import State
+from core.executor.waits import Wait, at_speed, carry_out, in_position
+from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+
+_BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
+_ACTIONS = 50  # carried out in one tick at most
+_BUFFER = 1.5  # of the look-ahead: seconds of motion kept read
+_GOING = frozenset({State.RUN, State.WAIT})
+
+
+class Cycle:
+    """``step`` is called every tick; ``enter`` is told of each change of state, ``ended`` of the end."""
+
+    def __init__(
+        self,
+        bench: Bench,
+        player: Player,
+        source: Pass,
+        enter: Callable[[State], None],
+        ended: Callable[[ProgramEnd], None],
+    ) -> None:
+        self._bench = bench
+        self._player = player
+        self._mover = Mover(bench, player)
+        self._enter = enter
+        self._ended = ended
+        self._feed = BlockFeed(source, lambda block: check_block(block, bench.machine))
+        self._state = State.RUN
+        self._wait: Wait | None = None
+        self._settled = True  # in position since the last motion
+        self._block_done = False  # for single block: something was executed since the last stop
+        self._held_at = 0.0
+        self._retreat: Retreat | None = None
+        self._reason = ""  # why the cycle was held, when not by the button
+        self.message = ""  # of M00 and M01 while the stop lasts
+        self.current: Block | None = None
+        self.modal = Modal()
+
+    @property
+    def waiting_for(self) -> str:
+        """In words, what the cycle waits for."""
+        if self._state is State.HOLD:
+            return self._reason
+        if self._wait is not None:
+            return self._wait.label()
+        return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
+
+    @property
+    def next_block(self) -> Block | None:
+        """What comes after the block that is being executed."""
+        return self._player.following() or self._feed.next_block
+
+    @property
+    def at_rest(self) -> bool:
+        """Nothing moves any more."""
+        return not self._mover.moving
+
+    # --- what the operator asks ---------------------------------------------------------------------------
+
+    def hold(self, reason: str = "") -> None:
+        """Come to rest on the path; in a thread behind its pull-out."""
+        if self._state not in _GOING:
+            return
+        self._reason, self._held_at = reason, self._bench.now
+        self._bench.say("stop", reason or "feed hold")
+        if self._mover.moving:
+            self._player.hold(self._mover.wanted())
+            self._change(State.HOLDING)
+        else:
+            self._change(State.HOLD)
+
+    def starve(self) -> None:
+        """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
+        self._player.let_stop()
+        if self._state in _GOING:
+            self._reason, self._held_at = "SETPOINTS RAN LOW", self._bench.now
+            self._change(State.HOLDING)
+
+    def abandon(self) -> None:
+        """Come to rest and be given up; the caller waits for ``at_rest``."""
+        if self._mover.moving:
+            self._player.brake()
+        if self._state in _GOING:
+            self._change(State.HOLDING)
+
+    def why_not_on(self) -> str:
+        """Why a stopped cycle cannot go on now; empty when it can."""
+        bench, block = self._bench, self.current
+        if not self._player.active or block is None or not needs_speed(block) or block.rpm == 0.0:
+            return ""
+        if self._player.complete() or bench.spindle.at_speed(bench.now):
+            return ""
+        return bench.spindle.why_slow.lower() or "the spindle is not at its speed"
+
+    def go_on(self) -> None:
+        """Cycle Start after hold, single block, M00, M01."""
+        stopped = self._state
+        self._reason = self.message = ""
+        self._block_done = False
+        if stopped is State.PROGRAM_STOP:
+            self._feed.pass_stop()
+        if self._wait is not None:
+            self._wait.shift(self._bench.now - self._held_at)
+        self._change(State.RUN)
+        if self._player.active and not self._player.complete():
+            self._mover.go_on(self.current if stopped is State.BLOCK_END else None)
+
+    # --- every tick ---------------------------------------------------------------------------------------
+
+    def step(self) -> None:
+        """Keep the queue filled, then do what comes next. Raises TroubleError, MotionError, DriverError."""
+        playing = self._mover.block if self._mover.moving else None
+        if playing is not None:
+            self._show(playing)
+            self._watch_spindle(playing)
+        if self._state is State.HOLDING:
+            self._slow_down()
+        elif self._state in _GOING:
+            self._feed.pull(_BLOCKS, _BUFFER * self._bench.machine.timing.lookahead)
+            self._advance()
+
+    def _slow_down(self) -> None:
+        self._player.extend(self._bench.now)
+        if self._mover.moving:
+            return
+        if self._retreat is not None:
+            self._retreat.step()
+        else:
+            self._change(State.HOLD)
+
+    def _advance(self) -> None:
+        match self._mover.progress(self._feed):
+            case Progress.MOVING:
+                self._change(State.RUN)
+            case Progress.STILL:
+                self._change(State.WAIT)
+            case Progress.BLOCK_END:
+                self._change(State.BLOCK_END)
+            case Progress.DONE:
+                self._stand()
+
+    def _stand(self) -> None:
+        """At rest: wait, act, begin the next stretch, as far as this tick's budget goes."""
+        for _ in range(_ACTIONS):
+            if self._wait is not None:
+                if not self._wait.over(self._bench.now):
+                    self._change(State.WAIT if self._wait.label() else State.RUN)
+                    return
+                self._wait = None
+                self._change(State.RUN)
+                self._waited()
+            elif not self._do_next():
+                return
+
+    def _do_next(self) -> bool:
+        """One thing; False when this tick has no more to do."""
+        feed, bench = self._feed, self._bench
+        if not self._settled:
+            self._wait = in_position(bench)
+            return True
+        if self._block_done and bench.switches.single_block:
+            self._change(State.BLOCK_END)
+        elif feed.pending:
+            self._settled, self._block_done = False, True
+            self._change(State.RUN)
+            self._mover.begin(feed.take())
+        elif feed.stop is not None:
+            return self._act(feed.stop)
+        elif feed.trouble is not None:
+            raise feed.trouble
+        elif feed.ended:
+            raise TroubleError("program", "the program ends without M30 or M02")
+        return False
+
+    def _waited(self) -> None:
+        if not self._settled:
+            self._settled = True
+        elif self._feed.stop is not None:
+            self._block_done = self._feed.stop.action is not None
+            self._feed.pass_stop()
+
+    def _act(self, block: Block) -> bool:
+        """The block that needed the standstill. False when the cycle stops or ends with it."""
+        bench, action = self._bench, block.action
+        if action is None:
+            self._wait = at_speed(bench)
+            return True
+        self._show(block)
+        if isinstance(action, ProgramEnd):
+            self._feed.pass_stop()
+            self._ended(action)
+            return False
+        if isinstance(action, ProgramStop) and (bench.switches.optional_stop or not action.optional):
+            self.message = action.message
+            bench.say("stop", action.message or ("optional stop" if action.optional else "program stop"))
+            self._change(State.PROGRAM_STOP)
+            return False
+        self._wait = carry_out(block, bench)
+        if self._wait is None:
+            self._waited()
+        return True
+
+    def _watch_spindle(self, block: Block) -> None:
+        """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
+        spindle = self._bench.spindle
+        if not needs_speed(block) or self._retreat is not None or not spindle.lost:
+            return
+        if block.kind is Kind.THREAD:
+            self._bench.say("stop", "spindle lost in a thread")
+            self._retreat = Retreat(self._bench, self._player, block)
+            self._change(State.HOLDING)
+        elif block.per_rev:
+            self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
+
+    def _show(self, block: Block) -> None:
+        self.current = block
+        self.modal = block.modal
+        self._bench.line = block.line
+        if block.moves:
+            self._bench.spindle.follow(block)
+
+    def _change(self, state: State) -> None:
+        if state is not self._state:
+            self._state = state
+            self._enter(state)

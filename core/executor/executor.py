@@ -1,0 +1,138 @@
+"""The executor: operator's commands in, setpoints out, one snapshot a tick. It alone talks to the drivers."""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from core.executor.alarms import TroubleError
+from core.executor.bench import Bench
+from core.executor.commands import Command
+from core.executor.conductor import Conductor
+from core.executor.feed import Pass
+from core.executor.guard import Guard
+from core.executor.interpret import interpret
+from core.executor.job import Job
+from core.executor.orders import Orders
+from core.executor.publish import Publisher
+from core.executor.snapshot import Event, Snapshot, State
+from core.executor.spindle import SpindleControl
+from core.executor.states import ACTIVE, CYCLE
+from core.executor.station_watch import StationWatch
+from core.interpreter.setup import Setup
+from core.machine.model import Machine
+from core.motion.errors import MotionError
+from core.ports import DriverError, MachinePorts
+
+_STALL = 0.2  # s between two ticks that tell of a stalled host
+_COMMANDS = 100  # looked at in one tick
+_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
+
+
+class Executor:
+    """``post`` and ``snapshot`` may be used from any thread, ``tick`` from one only.
+
+    ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
+    """
+
+    def __init__(
+        self,
+        machine: Machine,
+        ports: MachinePorts,
+        on_event: Callable[[Event], None],
+        passes: Callable[[Job, Setup], Pass] = interpret,
+    ) -> None:
+        self._commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self._ports = ports
+        spindle = SpindleControl(ports.spindle, machine.spindle)
+        self._bench = Bench(
+            machine, ports, on_event, spindle, ports.clock.now(), ports.axes.sample(), dict(ports.io.inputs())
+        )
+        self._station = StationWatch()
+        self._conductor = Conductor(self._bench, passes)
+        self._orders = Orders(self._bench, self._conductor, self._station)
+        self._publisher = Publisher()
+        self.snapshot: Snapshot = self._publish()
+
+    def post(self, command: Command) -> None:
+        """Ask for something; it is looked at first thing in the next tick. Never waits."""
+        self._commands.put(command)
+
+    def tick(self) -> None:
+        """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
+        with Guard(self.failed):
+            self._look()
+            for part in (self._obey, self._supervise, self._go_on, self._turn):
+                self._guarded(part)
+        with Guard(self.failed):
+            self.snapshot = self._publish()
+
+    def failed(self, error: Exception) -> None:
+        """A mistake of the control itself: nothing may go on."""
+        self._conductor.failed(error)
+
+    def shut(self) -> None:
+        """The end of the executor: nothing is left moving or switched on."""
+        self._conductor.shut()
+        self.snapshot = self._publish()
+
+    def _look(self) -> None:
+        bench, before = self._bench, self._bench.now
+        bench.now = self._ports.clock.now()
+        bench.sample = self._ports.axes.sample()
+        bench.inputs = dict(self._ports.io.inputs())
+        bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
+        bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
+        if self._conductor.state in ACTIVE:
+            self._conductor.counters.cycle += bench.now - before
+            if bench.now - before > _STALL:
+                bench.say("starved", f"the control was away for {bench.now - before:.2f} s")
+
+    def _obey(self) -> None:
+        """E-stop first, then what was posted, then the station's buttons."""
+        heard, conductor = self._bench.heard, self._conductor
+        conductor.mirror_estop(heard.estop)
+        for command in self._posted():
+            self._guarded(partial(self._orders.obey, command))
+        if heard.hold:
+            conductor.feed_hold("")
+        elif heard.trouble:
+            conductor.feed_hold(heard.trouble)
+        if heard.start:
+            conductor.start()
+
+    def _posted(self) -> Iterator[Command]:
+        for _ in range(_COMMANDS):
+            try:
+                yield self._commands.get_nowait()
+            except queue.Empty:
+                return
+
+    def _supervise(self) -> None:
+        self._conductor.supervisor.look()
+        if self._conductor.state in _POWERED and not self._bench.sample.enabled:
+            raise TroubleError("axis", "the drives have lost power")
+
+    def _go_on(self) -> None:
+        self._conductor.go_on()
+
+    def _turn(self) -> None:
+        cycle = self._conductor.cycle
+        block = cycle.current if cycle else None
+        x = self._bench.sample.demand[0] - (block.offset_x if block else 0.0)
+        self._bench.spindle.update(self._bench.now, x)
+
+    def _guarded(self, part: Callable[[], None]) -> None:
+        """What a part of a tick has to tell becomes an alarm, and the other parts go on."""
+        try:
+            part()
+        except TroubleError as trouble:
+            self._conductor.alarm(trouble)
+        except MotionError as error:
+            self._conductor.alarm(TroubleError("program", str(error)))
+        except DriverError as error:
+            self._conductor.alarm(TroubleError("driver", str(error)))
+
+    def _publish(self) -> Snapshot:
+        return self._publisher.snapshot(self._bench, self._conductor)

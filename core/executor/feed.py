@@ -1,0 +1,139 @@
+"""Blocks of one pass through the program, pulled no further than the next standstill."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from core.executor.alarms import TroubleError
+from core.geometry.arcs import arc_length
+from core.interpreter.actions import SpindleRun
+from core.interpreter.blocks import Block, Kind
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+
+
+class Pass(NamedTuple):
+    """One pass through a program: its blocks as they come, and what the interpreter has to say so far."""
+
+    blocks: Iterator[Block]
+    problems: Callable[[], Sequence[Diagnostic]]
+
+
+def needs_speed(block: Block) -> bool:
+    """Whether this block must not begin before the spindle is at its speed; rapids may."""
+    return block.moves and block.kind is not Kind.RAPID
+
+
+class BlockFeed:
+    """``pending`` may be moved in one stretch; ``stop`` waits behind it for a standstill.
+
+    A standstill is needed by every action, by the first block after a change of speed that is no rapid, and
+    by each thread pass. Nothing behind ``stop`` is read before it has been carried out, so that a program
+    that asks inputs asks them at their time.
+    """
+
+    def __init__(self, source: Pass, check: Callable[[Block], None]) -> None:
+        self._source = source
+        self._check = check
+        self._said = 0
+        self._new_speed = False
+        self._threading = False
+        self.pending: deque[Block] = deque()
+        self.seconds = 0.0  # what the pending blocks take at least
+        self.stop: Block | None = None
+        self.trouble: TroubleError | None = None  # what ends the pass once all before it is done
+        self.ended = False
+
+    @property
+    def next_block(self) -> Block | None:
+        """What comes after the blocks that were taken."""
+        return self.pending[0] if self.pending else self.stop
+
+    @property
+    def dry(self) -> bool:
+        """Nothing more can be pulled before a standstill."""
+        return self.stop is not None or self.ended or self.trouble is not None
+
+    def pull(self, blocks: int, seconds: float) -> None:
+        """Read on until so many blocks were read or so many seconds are pending."""
+        for _ in range(blocks):
+            if self.dry or self.seconds >= seconds:
+                return
+            block = self._next()
+            if block is not None:
+                self._sort(block)
+
+    def take(self) -> list[Block]:
+        """The pending blocks, for moving."""
+        taken = list(self.pending)
+        self.pending.clear()
+        self.seconds = 0.0
+        return taken
+
+    def pass_stop(self) -> None:
+        """The standstill has been used: an action is done, a cutting block may start."""
+        block, self.stop = self.stop, None
+        if block is None or block.action is not None:
+            return
+        self._new_speed = False
+        self._threading = block.kind is Kind.THREAD
+        self._append(block)
+
+    def _next(self) -> Block | None:
+        try:
+            block = next(self._source.blocks)
+        except StopIteration:
+            self._find_error()
+            self.ended = True
+            return None
+        except ProgramError as error:
+            self.trouble = TroubleError("program", error.diagnostic.message, error.diagnostic.line)
+            return None
+        self._find_error()
+        return None if self.trouble else block
+
+    def _find_error(self) -> None:
+        """An error that the live run met and the proof could not."""
+        problems = self._source.problems()
+        for problem in problems[self._said :]:
+            if problem.severity is Severity.ERROR and self.trouble is None:
+                self.trouble = TroubleError("program", problem.message, problem.line)
+        self._said = len(problems)
+
+    def _sort(self, block: Block) -> None:
+        try:
+            self._check(block)
+        except TroubleError as trouble:
+            self.trouble = trouble
+            return
+        if block.action is not None:
+            self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
+            self._threading = False
+            self.stop = block
+            return
+        entering = block.kind is Kind.THREAD and not self._threading
+        if entering or (self._new_speed and needs_speed(block)):
+            self.stop = block
+            return
+        self._threading = block.kind is Kind.THREAD
+        self._append(block)
+
+    def _append(self, block: Block) -> None:
+        self.pending.append(block)
+        self.seconds += nominal(block)
+
+
+def nominal(block: Block) -> float:
+    """Seconds the block takes at its programmed speed: never more than it will take."""
+    if block.kind is Kind.ARC:
+        ends = (block.x0, block.z0), (block.x, block.z)
+        way = arc_length(*ends, (block.cx, block.cz), clockwise=block.clockwise)
+    else:
+        way = math.hypot(block.x - block.x0, block.z - block.z0)
+    way = way or abs(block.c - block.c0)
+    speed = (
+        block.feed * abs(block.rpm) / 60.0 if block.per_rev and block.kind is not Kind.RAPID else block.feed
+    )
+    return way / speed if speed > 0.0 else 0.0

@@ -1,0 +1,49 @@
+"""Why a cycle may not start: every reason, in the order in which an operator has to remove them."""
+
+from __future__ import annotations
+
+from core.executor.bench import Bench
+from core.executor.job import Job, Proof
+from core.executor.snapshot import State
+
+_BUSY = {
+    State.ESTOP: "E-stop is pressed: release it",
+    State.FAULT: "an alarm stands: clear its cause and press Reset",
+    State.DISABLED: "the drives are off: switch them on",
+    State.JOG: "the machine is being jogged",
+    State.HOME: "the machine is homing",
+}
+
+
+def busy(bench: Bench) -> str:
+    """What at the station keeps a cycle from going on."""
+    if bench.heard.hold:
+        return "feed hold is pressed"
+    return bench.heard.trouble.lower()
+
+
+def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) -> str:
+    """Why Cycle Start does nothing now; empty when it may start."""
+    if state in _BUSY:
+        return _BUSY[state]
+    if busy(bench):
+        return busy(bench)
+    away = [a.name for a, homed in zip(bench.machine.axes, bench.sample.homed, strict=True) if not homed]
+    if away:
+        return f"{', '.join(away)} must be homed first"
+    return _program(job, proof)
+
+
+def _program(job: Job | None, proof: Proof | None) -> str:
+    if job is None:
+        return "no program is loaded"
+    if proof is None:
+        return "the program is not proved yet"
+    if proof.digest != job.digest:
+        return "the proof belongs to another program or to other offsets: load it again"
+    if proof.errors:
+        return f"the program has errors: {proof.errors[0]}"
+    missing = sorted(set(proof.tools) - job.tools_set)
+    if missing:
+        return f"tool offset {', '.join(f'T{number}' for number in missing)} has never been set"
+    return ""

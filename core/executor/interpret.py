@@ -1,0 +1,23 @@
+"""A job read and interpreted under the circumstances of its start."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+from core.executor.feed import Pass
+from core.executor.job import Job
+from core.interpreter.program import read_program
+from core.interpreter.run import Interpreter
+from core.interpreter.setup import Setup
+
+
+def interpret(job: Job, setup: Setup) -> Pass:
+    """One pass; its blocks end at the first error, which ``problems`` then tells."""
+    interpreter = Interpreter(read_program(job.source, strict=setup.strict), setup)
+    return Pass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
+
+
+def circumstances(setup: Setup, start: tuple[float, float, float], inputs: Callable[[str], bool]) -> Setup:
+    """The job's setup at this machine now: from where the slides stand, with its inputs live."""
+    return dataclasses.replace(setup, start=start, inputs=inputs)

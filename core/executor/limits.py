@@ -1,0 +1,37 @@
+"""What a block must hold before it may move: checked once more when it is read for running."""
+
+from __future__ import annotations
+
+from core.executor.alarms import TroubleError
+from core.geometry.extent import arc_extent
+from core.interpreter.blocks import Block, Kind
+from core.machine.model import Axis, Machine
+
+_ROUNDING = 1e-6  # mm
+
+
+def check_block(block: Block, machine: Machine) -> None:
+    """Raises TroubleError for a move out of the travel, or fed by the turns of a spindle that stands."""
+    if not block.moves:
+        return
+    if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
+        raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
+    if block.kind is Kind.ARC:
+        low_x, high_x, low_z, high_z = arc_extent(
+            block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
+        )
+    else:
+        low_x = high_x = block.x
+        low_z = high_z = block.z
+    _check(block, machine.axes[0], low_x + block.offset_x, high_x + block.offset_x)
+    _check(block, machine.axes[1], low_z + block.offset_z, high_z + block.offset_z)
+
+
+def _check(block: Block, axis: Axis, low: float, high: float) -> None:
+    if axis.travel is None:
+        return
+    if low < axis.travel[0] - _ROUNDING or high > axis.travel[1] + _ROUNDING:
+        far = low if low < axis.travel[0] else high
+        raise TroubleError(
+            "travel", f"line {block.line} moves {axis.name} to {far:.3f} mm from home", block.line
+        )

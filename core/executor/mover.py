@@ -1,0 +1,107 @@
+"""The moving part of a cycle: stretches from rest to rest under overrides, single block and read-ahead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum
+
+from core.executor.bench import Bench
+from core.executor.feed import BlockFeed
+from core.executor.player import Player
+from core.executor.stretch import Scales
+from core.executor.thread_sync import index_start
+from core.interpreter.blocks import Block, Kind
+
+
+class Progress(Enum):
+    """How far the present stretch is."""
+
+    DONE = "there is none, or it has come to its end"
+    MOVING = "it moves"
+    BLOCK_END = "at rest where single block wants it"
+    STILL = "at rest because the override is 0"
+
+
+class Mover:
+    """Plans with the overrides and switches of now, and again when they change."""
+
+    def __init__(self, bench: Bench, player: Player) -> None:
+        self._bench = bench
+        self.player = player
+        self._scales = Scales()
+        self._single = False  # the present plan stops at the end of a block
+        self._single_from: int | None = None  # the block from which on it may stop
+
+    @property
+    def moving(self) -> bool:
+        """Whether anything still moves."""
+        return self.player.active and not self.player.at_rest(self._bench.now)
+
+    @property
+    def block(self) -> Block | None:
+        """The block being played."""
+        return self.player.block(self._bench.now)
+
+    def begin(self, blocks: list[Block]) -> None:
+        """A new stretch, from rest; a thread begins at the spindle's index."""
+        self.player.begin(blocks, self._bench.spindle.highest)
+        self._single_from = None
+        self.go(start=index_start(self._bench) if blocks[0].kind is Kind.THREAD else None)
+
+    def go_on(self, behind: Block | None) -> None:
+        """From rest within the stretch; with single block to the end of the block after ``behind``."""
+        self._single_from = behind.n + 1 if behind else None
+        self.go()
+
+    def go(self, *, soon: bool = True, start: Callable[[float], float] | None = None) -> None:
+        """Plan on from the present state. Raises MotionError and DriverError."""
+        bench, player = self._bench, self.player
+        self._scales = self.wanted()
+        self._single = bench.switches.single_block
+        last = self._last_block() if self._single else None
+        if not self._single:
+            self._single_from = None
+        player.go(self._scales, last, soon=soon, start=start)
+
+    def progress(self, feed: BlockFeed) -> Progress:
+        """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
+        player = self.player
+        if not player.active:
+            return Progress.DONE
+        if self.wanted() != self._scales or self._bench.switches.single_block != self._single:
+            self.go()
+        if self.moving:
+            self._refill(feed)
+            return Progress.MOVING
+        if player.complete():
+            return Progress.DONE
+        if not (self._scales.feed and self._scales.rapid and self._scales.turn):
+            return Progress.STILL
+        if self._single:
+            return Progress.BLOCK_END
+        self.go()
+        return Progress.MOVING
+
+    def wanted(self) -> Scales:
+        """The scales of now. A rapid is never faster than its rate; G95 follows the spindle's pot."""
+        feed = self._bench.feed_override
+        return Scales(feed, min(feed, 1.0), round(self._bench.spindle.override, 2))
+
+    def _last_block(self) -> int | None:
+        now = self._bench.now
+        current = self.player.block(now)
+        first = self._single_from or (current.n if current else None)
+        last = self.player.settle_at(first, now)
+        self._single_from = last or first
+        return last
+
+    def _refill(self, feed: BlockFeed) -> None:
+        """Read-ahead blocks join the stretch before its braking end comes near."""
+        player, now = self.player, self._bench.now
+        left = player.planned_to - now
+        ahead = self._bench.machine.timing.lookahead
+        wanted = feed.seconds > 0.25 * ahead or feed.dry or left < 0.75 * ahead
+        if feed.pending and wanted and left < 1.5 * ahead:
+            player.add(feed.take())
+            self.go(soon=False)
+        player.extend(now)

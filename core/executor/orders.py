@@ -1,0 +1,145 @@
+"""What each command does, one method a command; nothing is refused in silence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.executor.bench import Bench
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    FeedOverride,
+    GiveProof,
+    Home,
+    Jog,
+    JogStop,
+    LoadJob,
+    Reset,
+    SetSwitch,
+    SpindleLimit,
+)
+from core.executor.conductor import Conductor
+from core.executor.snapshot import State
+from core.executor.states import CYCLE
+from core.executor.station_watch import StationWatch
+
+_SWITCHES = ("single_block", "optional_stop", "cycle_repeat")
+
+
+class Orders:
+    """Obeys commands, on the executor's thread."""
+
+    def __init__(self, bench: Bench, conductor: Conductor, station: StationWatch) -> None:
+        self._bench = bench
+        self._conductor = conductor
+        self._station = station
+        self._simple: dict[type[Command], Callable[[], None]] = {
+            CycleStart: self._start,
+            FeedHold: self._hold,
+            Reset: conductor.reset,
+            EnableDrives: self._enable,
+            JogStop: conductor.jogger.stop,
+        }
+
+    def obey(self, command: Command) -> None:
+        """Do it, or say why not. Raises DriverError."""
+        simple = self._simple.get(type(command))
+        if simple is not None:
+            simple()
+            return
+        match command:
+            case LoadJob():
+                self._load(command)
+            case GiveProof(proof=proof):
+                self._conductor.standing.proof = proof
+            case SetSwitch(name=name, on=on):
+                self._switch(name, on)
+            case FeedOverride(fraction=fraction):
+                self._override(fraction)
+            case SpindleLimit(rpm=rpm):
+                self._limit(rpm)
+            case Jog():
+                self._jog(command)
+            case Home(axis=axis):
+                self._home(axis)
+
+    def _start(self) -> None:
+        """A start without the palms: where a real machine asks for two hands, this is not one."""
+        machine = self._bench.machine
+        if machine.interlocks.two_hand_start and machine.backend != "sim":
+            self._conductor.refuse("press both palm buttons")
+        elif self._station.may_start(self._bench.now):
+            self._conductor.start()
+
+    def _hold(self) -> None:
+        self._conductor.feed_hold("")
+
+    def _load(self, command: LoadJob) -> None:
+        conductor = self._conductor
+        if conductor.state in CYCLE:
+            self._bench.say(
+                "refused", "a program is under way: it must end or be reset before another is loaded"
+            )
+            return
+        conductor.standing.job, conductor.standing.proof = command.job, command.proof
+        conductor.standing.start_refused = ""
+        self._bench.say("load", command.job.source.name)
+
+    def _enable(self) -> None:
+        conductor = self._conductor
+        if conductor.state is not State.DISABLED:
+            self._bench.say("refused", f"drives cannot be switched on in state {conductor.state.value}")
+        elif conductor.standing.alarms:
+            self._bench.say("refused", "an alarm stands: press Reset first")
+        else:
+            self._bench.ports.axes.enable(True)
+            self._bench.sample = self._bench.ports.axes.sample()
+            conductor.enter(State.IDLE)
+
+    def _switch(self, name: str, on: bool) -> None:
+        if name not in _SWITCHES:
+            self._bench.say("refused", f"there is no switch {name!r}")
+            return
+        setattr(self._bench.switches, name, on)
+        self._bench.say("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
+
+    def _override(self, fraction: float) -> None:
+        if not 0.0 <= fraction <= 1.5:
+            self._bench.say("refused", f"feed override {fraction} is not between 0 and 1.5")
+            return
+        self._bench.soft_override = fraction
+        self._bench.say("override", f"feed {100 * fraction:.0f} %")
+
+    def _limit(self, rpm: float | None) -> None:
+        highest = self._bench.machine.spindle.rpm_max
+        if rpm is not None and not 0.0 < rpm <= highest:
+            self._bench.say("refused", f"spindle limit {rpm:g} is not between 0 and {highest:g} rpm")
+            return
+        self._bench.spindle.limit = rpm
+        self._bench.say("override", f"spindle limit {rpm or highest:g} rpm")
+
+    def _jog(self, command: Jog) -> None:
+        conductor, jogger = self._conductor, self._conductor.jogger
+        if conductor.state not in {State.IDLE, State.JOG}:
+            self._bench.say("refused", f"no jog in state {conductor.state.value}")
+            return
+        why = jogger.refusal(command.axis, command.velocity, command.lease)
+        if why:
+            jogger.stop()
+            self._bench.say("refused", f"jog: {why}")
+        elif jogger.move(command.axis, command.velocity, command.lease):
+            conductor.enter(State.JOG)
+
+    def _home(self, axis: str) -> None:
+        conductor = self._conductor
+        why = (
+            conductor.homing.begin(axis)
+            if conductor.state is State.IDLE
+            else f"state {conductor.state.value}"
+        )
+        if why:
+            self._bench.say("refused", f"homing: {why}")
+        else:
+            conductor.enter(State.HOME)

@@ -1,0 +1,216 @@
+"""Plays one stretch of motion, from rest to rest, on the axes: plans it, keeps it queued, brakes it, goes on.
+
+Only a second or so is ever queued, and a braking tail behind it, so the slides stop on the path when nobody
+comes back. Hold, override and single block are the same act: plan from the present state, splice the result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from core.executor.stretch import Scales, Stretch
+from core.executor.tracks import Track, Tracks
+from core.interpreter.blocks import Block
+from core.motion.limits import MotionLimits
+from core.motion.plan import plan
+from core.motion.profile import Profile
+from core.ports import AxisSink, DriverError, Segments
+
+Moment = Callable[[float], float]
+
+_AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
+_SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
+_TRIES = 3
+_PATIENCE = 0.02  # s added to the lead when a plan came too late
+
+
+class Player:
+    """One stretch at a time; called by the executor's thread alone."""
+
+    def __init__(self, axes: AxisSink, limits: MotionLimits, lookahead: float) -> None:
+        self._axes = axes
+        self._limits = limits
+        self._ahead = lookahead + _AHEAD
+        self._lookahead = lookahead
+        self._cost = 0.0  # s that planning took of late
+        self._stretch: Stretch | None = None
+        self._profile: Profile | None = None
+        self._origin = 0.0
+        self._queued_to = 0.0  # end of the plan's part in the queue; behind it lies the tail
+        self._tracks = Tracks()
+        self._shown: Block | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether there is a stretch at all."""
+        return self._stretch is not None
+
+    @property
+    def planned_to(self) -> float:
+        """When the present plan comes to rest."""
+        return self._origin + (self._profile.duration if self._profile else 0.0)
+
+    @property
+    def starving(self) -> float:
+        """When the tail begins although the plan goes on; endless when the whole plan is queued."""
+        return self._queued_to if self._queued_to < self.planned_to - 1e-9 else np.inf
+
+    def begin(self, blocks: Iterable[Block], rpm_max: float) -> None:
+        """A new stretch from where the slides rest. Raises MotionError for a block that cannot be moved."""
+        self.forget()
+        self._stretch = Stretch(self._limits, rpm_max)
+        self._stretch.add(blocks)
+
+    def add(self, blocks: Iterable[Block]) -> None:
+        """More of the stretch; planned with the next ``go``."""
+        assert self._stretch is not None
+        self._stretch.add(blocks)
+
+    def forget(self) -> None:
+        """The stretch is over, or nothing of it holds any more."""
+        self._stretch, self._profile, self._shown = None, None, None
+        self._tracks.clear()
+        self._origin = self._queued_to = 0.0
+
+    def go(
+        self, scales: Scales, last: int | None = None, *, soon: bool = True, start: Moment | None = None
+    ) -> None:
+        """Plan on from the present state and splice. ``last``: the block at whose end to stop.
+
+        ``soon`` takes effect as soon as the queue allows; without it what is queued stays and the plan goes
+        on behind it. ``start`` says for the earliest moment possible when to begin. Raises MotionError and
+        DriverError.
+        """
+        self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon, start=start)
+
+    def hold(self, scales: Scales) -> None:
+        """Come to rest as soon as the path allows, in a thread behind its pull-out."""
+        self._resplice(lambda t: self._plan_stop(t, scales), soon=True)
+
+    def brake(self) -> None:
+        """Come to rest at once on the path, thread or not."""
+        self._resplice(lambda t: self._plan_stop(t, None), soon=True)
+
+    def let_stop(self) -> None:
+        """Leave the tail in the queue as it is: what was planned beyond it no longer holds."""
+        track = self._tracks.last
+        if track is not None:
+            self._origin, self._profile = track.origin, track.profile
+            self._queued_to = self.planned_to
+
+    def extend(self, now: float) -> bool:
+        """Keep the queue filled from the present plan; False when it is too late for that."""
+        if self._profile is None or self._queued_to - now >= self._lookahead or self.starving == np.inf:
+            return True
+        at = self._queued_to
+        if at < self._axes.now() + self._axes.commit:
+            return False
+        self._queue(at, self._origin, self._profile)
+        return True
+
+    def settle_at(self, last: int | None, now: float) -> int | None:
+        """The first block at or after ``last`` at whose end the slides can still come to rest."""
+        assert self._stretch is not None
+        if self._tracks.last is None:
+            return self._stretch.stoppable(last, -np.inf)
+        return self._stretch.stoppable(last, self._plan_stop(self._lead(now), None).end_s)
+
+    def at_rest(self, now: float) -> bool:
+        """Nothing that was queued moves any more."""
+        return self._axes.horizon() <= now + 1e-9
+
+    def complete(self) -> bool:
+        """Whether what is queued ends where the stretch does."""
+        track = self._tracks.last
+        if self._stretch is None or not self._stretch.length:
+            return True
+        return track is not None and track.profile.end_s >= self._stretch.end_s - 1e-9
+
+    def block(self, now: float) -> Block | None:
+        """The block being played, not one planned ahead."""
+        if self._stretch is None:
+            return None
+        track = self._tracks.at(now)
+        playing = self._stretch.block(track.block(now)) if track else None
+        self._shown = playing or self._shown or self._stretch.first_block
+        return self._shown
+
+    def following(self) -> Block | None:
+        """The block behind the one being played, when it belongs to the stretch."""
+        return self._stretch.block(self._shown.n + 1) if self._stretch and self._shown else None
+
+    def behind(self, block: Block) -> list[Block]:
+        """Blocks of the stretch that come after this one."""
+        return self._stretch.behind(block.n) if self._stretch else []
+
+    def _lead(self, now: float) -> float:
+        return now + self._axes.commit + 1.5 * self._cost
+
+    def _plan_on(self, t: float, scales: Scales, last: int | None) -> Profile:
+        assert self._stretch is not None
+        playing = self.block(self._axes.now())
+        self._stretch.drop_before(playing.n if playing else None)
+        path = self._stretch.path(scales, last)
+        track = self._tracks.at(t)
+        if track is None:
+            return plan(path)
+        s, v = track.state(t)
+        return plan(path, start_s=s, start_v=v)
+
+    def _plan_stop(self, t: float, scales: Scales | None) -> Profile:
+        """``scales`` None: whatever is being cut; otherwise a thread is finished first."""
+        assert self._stretch is not None
+        track = self._tracks.at(t)
+        path = self._stretch.path(scales or Scales(), None)
+        if track is None:
+            return plan(path, stop=True)
+        s, v = track.state(t)
+        if scales is not None and self._stretch.is_protected(track.block(t)):
+            return plan(self._stretch.path(Scales(0.0, 0.0, scales.turn), None), start_s=s, start_v=v)
+        return plan(path, start_s=s, start_v=v, stop=True)
+
+    def _resplice(self, make: Callable[[float], Profile], *, soon: bool, start: Moment | None = None) -> None:
+        """Plan for a moment that can still be changed, and splice; again, later, when that took too long."""
+        for attempt in range(_TRIES):
+            began = self._axes.now()
+            t = self._lead(began) + attempt * _PATIENCE
+            if not soon:
+                t = max(t, min(self._queued_to, self.planned_to - _SETTLED))
+            t = start(t) if start else t
+            profile = make(t)
+            try:
+                self._queue(t, t, profile)
+            except DriverError:
+                late = self._axes.now() + self._axes.commit > t
+                self._cost = min(self._axes.now() - began, 0.2)
+                if not late or attempt == _TRIES - 1:
+                    raise
+                continue
+            self._cost = max(min(self._axes.now() - began, 0.2), 0.8 * self._cost)
+            self._origin, self._profile = t, profile
+            return
+
+    def _queue(self, t: float, origin: float, profile: Profile) -> None:
+        """Splice the plan from ``t`` on, as far as the look-ahead, and its tail."""
+        end = min(origin + profile.duration, max(self._axes.now() + self._ahead, t + _AHEAD))
+        parts = [profile.segments(t - origin, end - origin, origin)]
+        tracks = [Track(t, origin, profile)]
+        if end < origin + profile.duration - 1e-9:
+            s, v = profile.at(end - origin)
+            tail = plan(profile.path, start_s=float(s[0]), start_v=float(v[0]), stop=True)
+            parts.append(tail.segments(0.0, tail.duration, end))
+            tracks.append(Track(end, end, tail))
+        arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
+        if not len(arrays[0]):
+            arrays = _standing(t, profile)
+        self._axes.splice(Segments(*arrays))
+        self._tracks.replace(t, tracks, self._axes.now())
+        self._queued_to = end
+
+
+def _standing(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
+    """Setpoints that stay where the plan stands: they cut off whatever was queued behind."""
+    still = np.zeros((1, 3))
+    return [np.array([t]), np.zeros(1), profile.path.point(np.array([profile.end_s])), still, still]

@@ -1,0 +1,93 @@
+"""The snapshot: the machine of this instant, from what is played and measured, not from what is planned."""
+
+from __future__ import annotations
+
+import math
+
+from core.executor.bench import Bench
+from core.executor.conductor import Conductor
+from core.executor.snapshot import Snapshot
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.ports import AxisSample
+
+
+class Publisher:
+    """Makes snapshots; remembers the last sample, from which the velocity is measured."""
+
+    def __init__(self) -> None:
+        self._before: AxisSample | None = None
+        self._velocity = 0.0
+        self._modal = Modal()
+
+    def snapshot(self, bench: Bench, conductor: Conductor) -> Snapshot:
+        """The snapshot of this tick."""
+        cycle, standing, counters = conductor.cycle, conductor.standing, conductor.counters
+        block = cycle.current if cycle else None
+        following = cycle.next_block if cycle else None
+        if cycle is not None:
+            self._modal = cycle.modal
+        job, modal = standing.job, self._modal
+        return Snapshot(
+            t=bench.now,
+            state=standing.state,
+            waiting_for=cycle.waiting_for if cycle else "",
+            program=job.source.name if job else "",
+            line=block.line if block else 0,
+            block=block.n if block else 0,
+            block_text=block.text if block else "",
+            next_text=following.text if following else "",
+            demand=_three(bench.sample.demand),
+            actual=_three(bench.sample.actual),
+            following_error=_three(bench.sample.following_error),
+            homed=(bench.sample.homed[0], bench.sample.homed[1], bench.sample.homed[2]),
+            block_end=(block.mx, block.mz, block.c) if block else _three(bench.sample.demand),
+            offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
+            modal=modal,
+            velocity=self._measured(bench.sample),
+            feed=_feed(block, modal),
+            rapid=block.kind is Kind.RAPID if block else modal.rapid,
+            rpm_command=bench.spindle.command,
+            rpm_actual=bench.spindle.measured,
+            feed_override=bench.feed_override,
+            spindle_override=bench.spindle.override,
+            spindle_auto=bench.spindle.auto,
+            single_block=bench.switches.single_block,
+            optional_stop=bench.switches.optional_stop,
+            block_delete=job.setup.block_delete if job else False,
+            cycle_repeat=bench.switches.cycle_repeat,
+            outputs=frozenset(name for name, on in bench.ports.io.outputs().items() if on),
+            inputs=frozenset(name for name, on in bench.inputs.items() if on),
+            comment=modal.comment,
+            message=cycle.message if cycle else "",
+            alarms=standing.alarms,
+            cycle_elapsed=counters.cycle,
+            last_cycle=counters.last_cycle,
+            parts=counters.parts,
+            underruns=counters.underruns,
+            max_following_error=conductor.supervisor.max_following_error,
+            proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
+            start_refused=standing.start_refused,
+        )
+
+    def _measured(self, sample: AxisSample) -> float:
+        """Velocity of both slides together, mm/s, from the encoders."""
+        before, self._before = self._before, sample
+        if before is None:
+            return 0.0
+        dt = sample.t - before.t
+        if dt > 0.0:
+            x, z = (sample.actual[i] - before.actual[i] for i in (0, 1))
+            self._velocity = math.hypot(x, z) / dt
+        return self._velocity
+
+
+def _three(values: tuple[float, ...]) -> tuple[float, float, float]:
+    return values[0], values[1], values[2]
+
+
+def _feed(block: Block | None, modal: Modal) -> float:
+    """Programmed: of the block where it moves, otherwise what is in force."""
+    if block is not None and block.moves:
+        return block.feed
+    return modal.feed or 0.0

@@ -1,0 +1,152 @@
+"""The main spindle: what the program asked for, what the operator allows, what it really does."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from core.executor.alarms import TroubleError
+from core.geometry.spindle import surface_rpm
+from core.interpreter.blocks import Block
+from core.machine.model import SpindleModel
+from core.ports import Spindle
+
+_GRACE = 1.0  # s in which a drive must have begun to obey a lower speed
+_OVER = 0.1  # fraction and
+_OVER_RPM = 50.0  # rpm above what ought to be
+
+
+class Ask(NamedTuple):
+    """Signed rpm of M03 and M04, or a surface speed in mm/s with the clamps of G76 and G77 in force."""
+
+    rpm: float
+    surface: float | None = None
+    lowest: float = 0.0
+    highest: float | None = None
+
+    @classmethod
+    def of(cls, block: Block) -> Ask:
+        """What is in force in a block."""
+        return cls(block.rpm, block.css, block.modal.css_min, block.modal.css_max)
+
+
+class SpindleControl:
+    """Turns the program's word into a command, every tick, and watches the drive obey it.
+
+    Nothing in here starts a spindle but ``ask``: after ``stop`` it stays still until the program asks again.
+    """
+
+    def __init__(self, port: Spindle, model: SpindleModel) -> None:
+        self._port = port
+        self._model = model
+        self.limit: float | None = None  # F10, until restart
+        self.command = 0.0  # signed rpm as sent
+        self.measured = 0.0
+        self.override = 1.0
+        self.auto = True
+        self._ask: Ask | None = None
+        self._in_band_since: float | None = None
+        self._fell: tuple[float, float] = (0.0, 0.0)  # when, and from what speed, the command fell
+
+    @property
+    def highest(self) -> float:
+        """The highest speed allowed now, rpm."""
+        return min(self._model.rpm_max, self.limit or self._model.rpm_max)
+
+    @property
+    def asked(self) -> bool:
+        """Whether the program wants it to turn."""
+        return self._ask is not None
+
+    @property
+    def stopped(self) -> bool:
+        """Whether it stands still, measured."""
+        return abs(self.measured) < self._model.stop_below
+
+    @property
+    def lost(self) -> bool:
+        """Less than half of what is commanded: feeding by the revolution must stop."""
+        return self.command == 0.0 or abs(self.measured) < 0.5 * abs(self.command)
+
+    @property
+    def why_slow(self) -> str:
+        """What keeps it from turning, when that is the operator."""
+        if self._ask is None:
+            return "SPINDLE STOPPED"
+        if not self.auto:
+            return "SPINDLE SWITCH OFF"
+        return "SPINDLE OVERRIDE AT 0" if self.override <= 0.0 else ""
+
+    def ask(self, ask: Ask) -> None:
+        """M03, M04, S."""
+        self._ask = ask
+        self._in_band_since = None
+
+    def follow(self, block: Block) -> None:
+        """The block being played may say G96 or G97: that changes the speed, it never starts a spindle."""
+        if self._ask is not None and block.rpm != 0.0:
+            self._ask = Ask.of(block)
+
+    def stop(self) -> None:
+        """M05, and every stop of the control: the word is forgotten."""
+        self._ask = None
+        self._send(0.0, self._now)
+
+    def update(self, now: float, radius: float) -> None:
+        """Once a tick: send what has changed, and see what the drive does.
+
+        ``radius`` (mm) of the tool decides under constant surface speed. Raises TroubleError
+        when the drive has tripped or does not obey.
+        """
+        self._now = now
+        self.measured = self._port.speed()
+        self._send(self._wanted(radius), now)
+        self._watch_band(now)
+        fault = self._port.fault()
+        if fault:
+            raise TroubleError("spindle", fault)
+        if abs(self.measured) > self._allowed(now):
+            raise TroubleError("ignores-stop", f"{self.measured:.0f} rpm, {self.command:.0f} asked")
+
+    def at_speed(self, now: float) -> bool:
+        """Within its band for long enough, and turning at all when it ought to."""
+        if self._ask is None:
+            return True
+        if self.command == 0.0 or self._in_band_since is None:
+            return False
+        return now - self._in_band_since >= self._model.at_speed_time - 1e-9
+
+    def _wanted(self, radius: float) -> float:
+        ask = self._ask
+        if ask is None or not self.auto:
+            return 0.0
+        rpm = abs(ask.rpm)
+        if ask.surface is not None:
+            rpm = surface_rpm(ask.surface, radius, ask.lowest, min(ask.highest or self.highest, self.highest))
+        rpm = min(rpm, self.highest) * self.override
+        if 0.0 < rpm < self._model.rpm_min:
+            rpm = self._model.rpm_min
+        return rpm if ask.rpm >= 0.0 else -rpm
+
+    def _send(self, rpm: float, now: float) -> None:
+        if abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0):
+            return
+        if abs(rpm) < abs(self.command) or rpm * self.command < 0.0:
+            self._fell = (now, max(abs(self.measured), abs(self.command)))
+        if abs(rpm - self.command) > self._model.at_speed * abs(rpm):
+            self._in_band_since = None
+        self.command = rpm
+        self._port.run(rpm)
+
+    def _watch_band(self, now: float) -> None:
+        if abs(self.measured - self.command) > self._model.at_speed * abs(self.command):
+            self._in_band_since = None
+        elif self._in_band_since is None:
+            self._in_band_since = now
+
+    def _allowed(self, now: float) -> float:
+        """Highest speed that an obeying drive can still have after the command fell."""
+        since, speed = self._fell
+        ramp = speed - self._model.decel * max(now - since - _GRACE, 0.0)
+        return max(abs(self.command), ramp) * (1.0 + _OVER) + _OVER_RPM
+
+    _now = 0.0

@@ -1,0 +1,30 @@
+"""What the executor knows of job, alarms and counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from core.executor.job import Job, Proof
+from core.executor.snapshot import Alarm, State
+
+
+@dataclass(slots=True)
+class Counters:
+    """What is counted from the start of the executor; times in seconds, stops not counted."""
+
+    parts: int = 0
+    underruns: int = 0
+    cycle: float = 0.0
+    last_cycle: float = 0.0
+
+
+@dataclass(slots=True)
+class Standing:
+    """State, program and alarms of the machine."""
+
+    state: State = State.DISABLED
+    job: Job | None = None
+    proof: Proof | None = None
+    alarms: tuple[Alarm, ...] = ()
+    power_off: bool = False  # an alarm has switched the drives off
+    start_refused: str = ""

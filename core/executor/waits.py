@@ -1,0 +1,122 @@
+"""What the cycle waits for while the slides rest: in words for the screen, with an end and a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from core.executor.alarms import TroubleError
+from core.executor.bench import Bench
+from core.executor.spindle import Ask
+from core.interpreter.actions import (
+    Collet,
+    Coolant,
+    Dwell,
+    Output,
+    RepeatOff,
+    SpindleRun,
+    SpindleStop,
+    WaitInput,
+)
+from core.interpreter.blocks import Block
+
+_IN_POSITION = 1.0  # s for a slide that is at rest to arrive
+_COLLET_LATE = 2.0  # s beyond its time
+
+
+@dataclass(slots=True)
+class Wait:
+    """One wait. ``label`` is empty for waits that are too short to show; time held does not count."""
+
+    label: Callable[[], str]
+    done: Callable[[float], bool]
+    since: float
+    timeout: float = float("inf")
+    alarm: str = ""
+
+    def over(self, now: float) -> bool:
+        """Whether it is over; raises TroubleError when it took too long."""
+        if self.done(now - self.since):
+            return True
+        if now - self.since > self.timeout:
+            raise TroubleError(self.alarm)
+        return False
+
+    def shift(self, held: float) -> None:
+        """The cycle was held so long."""
+        self.since += held
+
+
+def in_position(bench: Bench) -> Wait:
+    """Until the slides are where they were sent."""
+    return Wait(lambda: "", lambda _: bench.in_position(), bench.now, _IN_POSITION, "in-position")
+
+
+def at_speed(bench: Bench) -> Wait:
+    """Until the spindle turns as commanded. While the operator keeps it still there is no time limit."""
+    spindle = bench.spindle
+    wait = Wait(
+        lambda: spindle.why_slow or "AT SPEED",
+        lambda _: spindle.at_speed(bench.now),
+        bench.now,
+        bench.machine.spindle.timeout,
+        "at-speed",
+    )
+
+    def done(_: float) -> bool:
+        if spindle.why_slow:
+            wait.since = bench.now
+        return spindle.at_speed(bench.now)
+
+    wait.done = done
+    return wait
+
+
+def carry_out(block: Block, bench: Bench) -> Wait | None:
+    """Do what an action block says; returns what has to be waited for. Raises TroubleError, DriverError.
+
+    Stops and ends of the program are the cycle's own business and do nothing here; offsets, shifts and
+    presets are in the blocks already.
+    """
+    match block.action:
+        case SpindleRun():
+            _start_spindle(block, bench)
+        case SpindleStop():
+            bench.spindle.stop()
+        case Coolant(on=on):
+            bench.ports.io.write("coolant", on)
+        case Output(name=name, on=on):
+            bench.ports.io.write(name, on)
+        case Collet(closed=closed):
+            return _move_collet(closed, bench)
+        case RepeatOff():
+            bench.switches.cycle_repeat = False
+            bench.say("switch", "cycle repeat off by M31")
+        case Dwell(seconds=seconds):
+            return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, bench.now)
+        case WaitInput(terminal=terminal, closed=closed):
+            return Wait(lambda: terminal, lambda _: bench.terminal(terminal) == closed, bench.now)
+        case _:
+            pass
+    return None
+
+
+def _start_spindle(block: Block, bench: Bench) -> None:
+    open_allowed = bench.machine.interlocks.spindle_with_collet_open
+    if not open_allowed and not bench.inputs.get("collet_closed", True):
+        raise TroubleError("collet-open", line=block.line)
+    bench.spindle.ask(Ask.of(block))
+
+
+def _move_collet(closed: bool, bench: Bench) -> Wait:
+    if not closed and not bench.spindle.stopped and not bench.machine.interlocks.unclamp_while_turning:
+        raise TroubleError("unclamp", f"the spindle turns at {bench.spindle.measured:.0f} rpm")
+    bench.ports.io.write("collet", closed)
+    timing = bench.machine.timing
+    time = timing.collet_close if closed else timing.collet_open
+
+    def done(passed: float) -> bool:
+        switch = bench.inputs.get("collet_closed")
+        return passed >= time if switch is None else switch == closed
+
+    return Wait(lambda: "COLLET", done, bench.now, time + _COLLET_LATE, "collet")

@@ -1,0 +1,110 @@
+"""An executor on a simulated machine and a clock that the test moves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from app.compose.machine import control_limits
+from app.compose.simulated import simulated
+from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
+from core.executor.executor import Executor
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import Event, Snapshot, State
+from core.interpreter.setup import Setup, ToolOffset
+from core.language.source import Source
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from drivers.simulated import Simulation, StepClock
+
+INCH = 25.4
+TICK = 0.01
+
+
+@dataclass
+class Rig:
+    """Drive it with ``post``, ``run`` and the simulated hands of ``sim.machine``."""
+
+    machine: Machine = field(default_factory=load_machine)
+    events: list[Event] = field(default_factory=list)
+    watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.clock = StepClock()
+        self.sim: Simulation = simulated(self.machine, self.clock)
+        self.executor = Executor(self.machine, self.sim.ports, self.events.append)
+        self.executor.tick()
+
+    @property
+    def shot(self) -> Snapshot:
+        return self.executor.snapshot
+
+    @property
+    def state(self) -> State:
+        return self.executor.snapshot.state
+
+    def post(self, *commands: Command) -> None:
+        """Post and let one tick pass."""
+        for command in commands:
+            self.executor.post(command)
+        self.tick()
+
+    def tick(self, dt: float = TICK) -> None:
+        self.clock.advance(dt)
+        self.executor.tick()
+        for look in self.watch:
+            look(self.executor.snapshot)
+
+    def run(self, seconds: float) -> None:
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.tick()
+
+    def until(self, *states: State, limit: float = 60.0) -> float:
+        """Run until one of these states; returns how long it took."""
+        began = self.clock.now()
+        while self.state not in states:
+            assert self.clock.now() - began < limit, f"still {self.state} after {limit} s: {self.shot}"
+            self.tick()
+        return self.clock.now() - began
+
+    def until_true(self, condition: Callable[[Snapshot], bool], limit: float = 60.0) -> float:
+        began = self.clock.now()
+        while not condition(self.shot):
+            assert self.clock.now() - began < limit, f"not within {limit} s: {self.shot}"
+            self.tick()
+        return self.clock.now() - began
+
+    def load(self, text: str, tools: Mapping[int, ToolOffset] | None = None, **changes: object) -> Job:
+        """Load a program with a proof that has nothing against it."""
+        setup = Setup(
+            tools=dict(tools or {}),
+            limits=control_limits(self.machine),
+            last_rapid=self.machine.manual_rapid,
+            **changes,  # type: ignore[arg-type]
+        )
+        job = make_job(Source("PART", text), setup)
+        self.post(LoadJob(job, Proof(job.digest, ())))
+        return job
+
+    def ready(self) -> None:
+        self.post(EnableDrives())
+        assert self.state is State.IDLE, self.shot
+
+    def start(self, text: str, tools: Mapping[int, ToolOffset] | None = None) -> None:
+        """Drives on, program loaded, Cycle Start."""
+        if self.state is State.DISABLED:
+            self.ready()
+        self.load(text, tools)
+        self.post(CycleStart())
+
+    def said(self, kind: str) -> list[str]:
+        return [event.text for event in self.events if event.kind == kind]
+
+
+def off_line(shot: Snapshot, a: tuple[float, float], b: tuple[float, float]) -> float:
+    """How far the demand lies off the line through two points (x, z), mm."""
+    x, z, _ = shot.demand
+    length = math.hypot(b[0] - a[0], b[1] - a[1])
+    return abs((b[0] - a[0]) * (z - a[1]) - (b[1] - a[1]) * (x - a[0])) / length
