@@ -51,7 +51,7 @@ def profile_of(
     return Profile(
         path=path,
         start_s=at,
-        end_s=float(s[-1] + length[-1]),
+        end_s=min(float(s[-1] + length[-1]), float(path.s[first + len(length)])),
         duration=float(t[-1]),
         phases=Phases(
             t=t[:-1],

@@ -44,7 +44,7 @@ def plan(
     at = _start(path, start_s)
     first = int(path.piece_at(np.array([at]))[0])
     if path.s[-1] - at <= NEAR or not len(path):
-        return _rest(path, at, start_v)
+        return _rest(path, start_v)
     if stop:
         return _brake(path, at, start_v, first)
     scale = np.where(path.pieces.rapid[first:], rapid_scale, feed_scale)
@@ -173,12 +173,12 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
     return profile_of(path, first, at, length=length, a=run.a[:k], cap=np.zeros(k), speeds=speeds)
 
 
-def _rest(path: Path, at: float, v: float) -> Profile:
+def _rest(path: Path, v: float) -> Profile:
     if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
         raise MotionError(
-            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan earlier."
+            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan before it."
         )
-    return at_rest(path, at)
+    return at_rest(path, float(path.s[-1]))
 
 
 def _start(path: Path, start_s: float | None) -> float:

@@ -11,6 +11,7 @@ from core.motion.path import Path
 from core.motion.setpoints import Phases, SegmentArrays, axis_segments
 
 NEAR = 1e-9  # mm that are rounding, not distance
+BRIEF = 1e-12  # s that are rounding, not time
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +73,7 @@ class Profile:
 
         Blocks behind the start have 0 for both; a block without length ends where it starts.
         """
-        joints, first = self.time_at(self.path.s), self.path.first
+        joints, first = self._joint_times(), self.path.first
         return self.path.blocks, joints[first[:-1]], joints[first[1:]]
 
     def time_at(self, s: FloatArray) -> FloatArray:
@@ -104,6 +105,12 @@ class Profile:
         duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
         return Profile(path=self.path, start_s=self.start_s, end_s=s, duration=duration, phases=phases)
 
+    def _joint_times(self) -> FloatArray:
+        """``time_at`` of all joints, by their pieces: near a stop a distance says little about a time."""
+        joints = np.arange(len(self.path) + 1)
+        times = np.append(self.phases.t, self.duration)[np.searchsorted(self.phases.piece, joints)]
+        return np.where(self.path.s > self.end_s + NEAR, np.inf, times)
+
     def _window(self, t_from: float, t_to: float) -> Phases:
         lo, hi = max(t_from, 0.0), min(t_to, self.duration)
         if not len(self) or hi <= lo:
@@ -117,7 +124,7 @@ class Profile:
         part.v[0] += part.a[0] * skip
         part.t[0] += skip
         part.dt[0] -= skip
-        return part.pick(part.dt > 0.0)
+        return part.pick(part.dt > BRIEF)
 
     def _phase(self, times: FloatArray) -> IntArray:
         found: IntArray = np.searchsorted(self.phases.t, times, side="right") - 1

@@ -27,9 +27,9 @@ def constant_rates(words: Words) -> FloatArray:
     _refuse(
         words, words.per_rev & ~(rpm > 0.0), "feed per revolution with the spindle stopped; start it first"
     )
-    _refuse(
-        words, words.per_rev & ~np.isfinite(rpm), "the spindle speed has no upper limit; give G77 or rpm_max"
-    )
+    on_axis = (words.start[:, 0] - words.axis) * (words.end[:, 0] - words.axis) <= 0.0
+    endless = surface & on_axis & np.isinf(words.hi)
+    _refuse(words, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
     return np.where(words.per_rev, words.feed * rpm / 60.0, words.feed)
 
 

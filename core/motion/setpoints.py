@@ -13,6 +13,7 @@ SegmentArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray
 
 PART = 0.002  # s, longest part of an arc
 ARC_ERROR = 2.5e-4  # mm by which a part may leave the arc between its ends
+BRIEF = 1e-6  # s; in shorter parts differences of positions would be rounding, and the arc is its tangent
 PART_ANGLE = 0.25  # rad, longest part of an arc
 
 
@@ -66,9 +67,22 @@ def _joined_on_arc(
     p1, _, _ = _states(path, phases, end)
     resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
     p0, v0 = begin
-    chord, span = p1 - p0, h[:, None]
-    v = np.where(resting, 2.0 * chord / span, v0)
-    return v, np.where(resting, -v / span, 2.0 * (chord - v * span) / span**2)
+    short = (h < BRIEF)[:, None]
+    chord, span = p1 - p0, np.maximum(h, BRIEF)[:, None]
+    v = np.where(resting & ~short, 2.0 * chord / span, v0)
+    joining = np.where(resting, -v / span, 2.0 * (chord - v * span) / span**2)
+    return v, np.where(short, _curved(path, phases, v0), joining)
+
+
+def _curved(path: Path, phases: Phases, v: FloatArray) -> FloatArray:
+    """The true acceleration (k, 3) at the start of arc phases, where the velocity is ``v`` (k, 3)."""
+    pieces = path.pieces[phases.piece]
+    tangent = pieces.tangent(np.clip(phases.s - path.s[phases.piece], 0.0, pieces.length))
+    curved: FloatArray = tangent * phases.a[:, None]
+    turning = pieces.curvature * np.hypot(v[:, 0], v[:, 1])
+    curved[:, 0] += turning * v[:, 1]
+    curved[:, 1] -= turning * v[:, 0]
+    return curved
 
 
 def _part_counts(path: Path, phases: Phases) -> IntArray:

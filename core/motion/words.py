@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -147,6 +148,10 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
     lo, hi = np.zeros(len(blocks)), np.full(len(blocks), rpm_max)
     for i, block in enumerate(blocks):
         if block.css is not None:
+            if not 0.0 <= block.css < math.inf:
+                raise MotionError(
+                    f"Block {block.n}: css is {block.css} mm/s; program a surface speed with S."
+                )
             surface[i], lo[i] = block.css, block.modal.css_min
             hi[i] = rpm_max if block.modal.css_max is None else min(block.modal.css_max, rpm_max)
     return surface, np.minimum(lo, hi), hi

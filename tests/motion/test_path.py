@@ -1,0 +1,88 @@
+"""Paths: blocks without length, gaps, owners, dropping what lies behind."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.motion.errors import MotionError
+from core.motion.path import PathBuilder, build_path
+from core.motion.plan import plan
+from tests.motion.moves import LIMITS, arc, line, polyline
+
+
+def test_a_block_without_length_is_done_when_its_turn_comes() -> None:
+    path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 50), (0, 90)], 100.0), LIMITS)
+    assert len(path) == 2
+    numbers, start, end = plan(path).block_times()
+    assert numbers.tolist() == [1, 2, 3, 4]
+    assert start[1] == end[1] == start[2] == end[2] == end[0]
+    assert 0.0 < end[0] < end[3]
+
+
+def test_nothing_but_points_takes_no_time() -> None:
+    profile = plan(build_path(polyline([(3, 4), (3, 4), (3, 4)]), LIMITS))
+    numbers, start, end = profile.block_times()
+    assert (profile.duration, numbers.tolist(), start.tolist(), end.tolist()) == (0.0, [1, 2], [0, 0], [0, 0])
+
+
+def test_the_block_at_a_time_is_the_one_that_moves() -> None:
+    profile = plan(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
+    middle = profile.duration / 2
+    assert profile.block_at([-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0]).tolist() == [1, 1, 1, 3, 3]
+
+
+def test_blocks_behind_the_start_are_done() -> None:
+    path = build_path(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]), LIMITS)
+    _, start, end = plan(path, start_s=15.0).block_times()
+    assert (start[0], end[0], start[1]) == (0.0, 0.0, 0.0)
+    assert 0.0 < end[1] == start[2] < end[2]
+
+
+def test_a_gap_is_refused() -> None:
+    blocks = [line((0, 0), (0, 10), n=1), line((0, 10.5), (0, 20), n=2)]
+    with pytest.raises(MotionError, match=r"Block 2 starts 0\.5000 mm from the end"):
+        build_path(blocks, LIMITS)
+
+
+def test_a_gap_to_what_was_added_before_is_refused_and_nothing_is_added() -> None:
+    builder = PathBuilder(LIMITS)
+    builder.add([line((0, 0), (0, 10), n=1)])
+    with pytest.raises(MotionError, match=r"Block 2 starts 1\.0000 mm"):
+        builder.add([line((0, 11), (0, 20), n=2)])
+    assert builder.path().blocks.tolist() == [1]
+
+
+def test_another_offset_is_no_gap_while_the_machine_stays() -> None:
+    second = replace(line((5, 110), (5, 120), n=2), offset_x=-5.0, offset_z=-100.0)
+    assert build_path([line((0, 0), (0, 10), n=1), second], LIMITS).length == pytest.approx(20.0)
+
+
+def test_without_blocks_there_is_no_path() -> None:
+    with pytest.raises(MotionError, match="no block"):
+        build_path([], LIMITS)
+
+
+def test_blocks_that_are_not_on_the_path() -> None:
+    builder = PathBuilder(LIMITS)
+    builder.add(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]))
+    builder.drop_before(3)
+    assert builder.path().block_span(2) == (10.0, 20.0)  # kept for its corner
+    with pytest.raises(MotionError, match="Block 1 is not"):
+        builder.path().block_span(1)
+    with pytest.raises(MotionError, match="Block 4 is not"):
+        builder.path().block_span(4)
+
+
+def test_a_full_arc_between_lines_is_met_exactly() -> None:
+    blocks = [
+        line((0, 0), (0, 10), n=1),
+        arc((0, 10), (0, 10), (5, 10), n=2),
+        line((0, 10), (0, 20), n=3),
+    ]
+    path = build_path(blocks, LIMITS)
+    assert path.point(path.s)[:, :2] == pytest.approx(
+        np.array([[0, 0], [0, 10], [0, 10], [0, 20.0]]), abs=1e-9
+    )

@@ -1,0 +1,126 @@
+"""Feeds per revolution and constant surface speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.geometry.spindle import surface_rpm
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.motion.errors import MotionError
+from core.motion.path import build_path
+from core.motion.plan import plan
+from core.motion.rates import surface_rpms
+from core.motion.words import read_words
+from tests.motion.moves import LIMITS, A, Point, arc, line
+
+SURFACE = 2000.0  # mm/s
+
+
+def turning(start: Point, end: Point, **words: object) -> Block:
+    """A move at 0.1 mm per revolution under constant surface speed, clamped at 3000 rpm."""
+    modal = Modal(css_max=3000.0)
+    block = replace(line(start, end, 0.1), per_rev=True, rpm=500.0, css=SURFACE, modal=modal)
+    return replace(block, **words)
+
+
+def test_feed_per_revolution_follows_the_spindle_either_way_round() -> None:
+    for rpm in (1200.0, -1200.0):
+        block = replace(line((0, 0), (0, 50), 0.5), per_rev=True, rpm=rpm)
+        assert build_path([block], LIMITS).pieces.rate == pytest.approx([10.0])
+
+
+def test_the_operators_limit_slows_the_feed_too() -> None:
+    block = replace(line((0, 0), (0, 50), 0.5), per_rev=True, rpm=1200.0)
+    assert build_path([block], LIMITS, rpm_max=600.0).pieces.rate == pytest.approx([5.0])
+
+
+def test_facing_takes_the_time_of_the_growing_speed() -> None:
+    """dt = dr / (f·S/(2·pi·r)): from r 100 to 50 the time is pi·(100² - 50²)/(f·S)."""
+    profile = plan(build_path([turning((100, 0), (50, 0))], LIMITS))
+    ideal = math.pi * (100.0**2 - 50.0**2) / (0.1 * SURFACE)
+    assert profile.duration == pytest.approx(ideal, rel=1e-4)
+
+
+def test_the_speed_changes_by_two_percent_at_most_within_a_piece() -> None:
+    path = build_path([turning((100, 0), (50, 0))], LIMITS)
+    ends = path.pieces.point(path.pieces.length)[:, 0]
+    assert (path.pieces.start[:, 0] / ends).max() <= 1.02 + 1e-9
+    assert len(path) == 36  # ln 2 / ln 1.02 = 35.003
+    assert path.blocks.tolist() == [1]
+
+
+def test_at_the_clamp_the_feed_is_constant() -> None:
+    """3000 rpm are reached at r = 2000·60/(2·pi·3000) = 6.366 mm: no split inside, through the axis."""
+    path = build_path([turning((6.0, 0), (-6.0, 0))], LIMITS)
+    assert path.pieces.rate == pytest.approx([0.1 * 3000.0 / 60.0] * len(path))
+    assert len(path) <= 2
+
+
+def test_facing_to_the_centre_is_clamped_and_bounded() -> None:
+    path = build_path([turning((100, 0), (0, 0))], LIMITS)
+    assert path.pieces.rate.max() == pytest.approx(5.0)
+    assert path.length == pytest.approx(100.0)
+    assert len(path) <= 2 + math.log(100 / 6.366) / math.log(1.02)
+
+
+def test_the_lower_clamp_holds_far_out() -> None:
+    path = build_path([turning((100, 0), (200, 0), modal=Modal(css_min=400.0, css_max=3000.0))], LIMITS)
+    assert path.pieces.rate == pytest.approx([0.1 * 400.0 / 60.0])
+
+
+def test_the_radius_counts_from_the_program_axis() -> None:
+    """X offsets move the machine, not the part: the tool stands at r 50 wherever the slide is."""
+    path = build_path([turning((50, 0), (50, 20), offset_x=-300.0)], LIMITS)
+    assert path.pieces.rate == pytest.approx([0.1 * SURFACE / (2 * math.pi * 50.0)])
+
+
+def test_an_arc_is_split_as_well_and_stays_the_arc() -> None:
+    quarter = replace(turning((20, 50), (60, 10)), kind=Kind.ARC, cx=20.0, cz=10.0, clockwise=True)
+    path = build_path([quarter], LIMITS)
+    assert len(path) >= math.log(3) / math.log(1.02)
+    assert path.length == pytest.approx(20.0 * math.pi)
+    x, z, _ = path.point(np.linspace(0.0, path.length, 100)).T
+    assert np.hypot(x - 20.0, z - 10.0) == pytest.approx(np.full(100, 40.0), abs=1e-9)
+    ends = path.pieces.point(path.pieces.length)[:, 0]
+    assert (ends / path.pieces.start[:, 0]).max() < 1.03
+
+
+def test_rapids_do_not_care_for_the_spindle() -> None:
+    block = replace(line((0, 0), (0, 50), 100.0, kind=Kind.RAPID), per_rev=True, rpm=0.0)
+    assert plan(build_path([block], LIMITS)).duration == pytest.approx(0.5 + 100.0 / A)
+
+
+def test_feed_per_revolution_with_the_spindle_stopped_is_refused() -> None:
+    block = replace(line((0, 0), (0, 50), 0.5, n=9), per_rev=True)
+    with pytest.raises(MotionError, match="Block 9: feed per revolution with the spindle stopped"):
+        build_path([block], LIMITS)
+
+
+def test_surface_speed_on_the_axis_without_a_limit_is_refused() -> None:
+    with pytest.raises(MotionError, match="no upper limit"):
+        build_path([turning((0, 0), (0, 9), modal=Modal())], LIMITS)
+    with pytest.raises(MotionError, match="no upper limit"):
+        build_path([turning((9, 0), (0, 0), modal=Modal())], LIMITS)
+
+
+def test_a_surface_speed_that_is_no_number_is_refused() -> None:
+    with pytest.raises(MotionError, match="Block 1: css"):
+        build_path([turning((10, 0), (20, 0), css=math.nan)], LIMITS)
+    with pytest.raises(MotionError, match="Block 1: css"):
+        build_path([turning((10, 0), (20, 0), css=-5.0)], LIMITS)
+
+
+@pytest.mark.parametrize("radius", [0.0, 1e-9, 5.0, -5.0, 20.0, 1e4])
+def test_arrays_and_numbers_agree(radius: float) -> None:
+    words = read_words([turning((1, 0), (2, 0), modal=Modal(css_min=30.0, css_max=2500.0))], 2000.0)
+    assert surface_rpms(words, np.array([radius]))[0] == surface_rpm(SURFACE, radius, 30.0, 2000.0)
+
+
+def test_an_arc_at_feed_per_minute_is_not_split() -> None:
+    block = replace(arc((20, 50), (60, 10), (20, 10)), css=SURFACE, rpm=500.0)
+    assert len(build_path([block], LIMITS)) == 1

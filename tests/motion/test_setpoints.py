@@ -1,0 +1,115 @@
+"""Profiles as pieces of constant axis acceleration, the form in which drivers take them."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.interpreter.blocks import Block
+from core.motion.limits import FloatArray
+from core.motion.path import build_path
+from core.motion.plan import plan
+from core.motion.setpoints import SegmentArrays
+from core.ports import Segments
+from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
+
+few = settings(max_examples=60, deadline=None)
+
+
+def ends(segments: SegmentArrays) -> tuple[FloatArray, FloatArray]:
+    """Position and velocity (n, 3) at the ends of the pieces."""
+    _, dt, p, v, a = segments
+    span = dt[:, None]
+    return p + v * span + 0.5 * a * span**2, v + a * span
+
+
+def evaluate(segments: SegmentArrays, t: FloatArray) -> FloatArray:
+    """Positions (m, 3) at the times (m,), as a driver plays them."""
+    start, _, p, v, a = segments
+    k = np.clip(np.searchsorted(start, t, side="right") - 1, 0, len(start) - 1)
+    tau = (t - start[k])[:, None]
+    played: FloatArray = p[k] + v[k] * tau + 0.5 * a[k] * tau**2
+    return played
+
+
+def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
+    profile = plan(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
+    segments = Segments(*profile.segments(0.0, math.inf, 7.0))
+    assert segments.t == pytest.approx([7.0, 7.0 + 100 / A, 8.0])
+    assert segments.v[:, 1] == pytest.approx([0.0, 100.0, 100.0])
+    assert segments.a[:, 1] == pytest.approx([A, 0.0, -A])
+
+
+@few
+@given(programs())
+def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
+    profile = plan(build_path(blocks, LIMITS))
+    segments = profile.segments(0.0, profile.duration)
+    t, dt, p, v, _ = segments
+    end_p, end_v = ends(segments)
+    assert (t + dt)[:-1] == pytest.approx(t[1:], abs=1e-12)
+    assert end_p[:-1] == pytest.approx(p[1:], abs=1e-9)
+    # a corner's own step, and next to it what an arc's parts are off by (see the arcs below)
+    assert np.abs(end_v[:-1] - v[1:])[:, :2].max(initial=0.0) <= 1.3 * A * T
+    assert v[0] == pytest.approx(np.zeros(3), abs=A * T)
+    assert end_v[-1] == pytest.approx(np.zeros(3), abs=1e-9)
+    assert end_p[-1, :2] == pytest.approx([blocks[-1].x, blocks[-1].z], abs=1e-9)
+
+
+@few
+@given(programs())
+def test_they_follow_the_exact_motion_within_half_a_micrometre(blocks: list[Block]) -> None:
+    profile = plan(build_path(blocks, LIMITS))
+    t = np.linspace(0.0, profile.duration, 3000, endpoint=False)
+    played = evaluate(profile.segments(0.0, profile.duration), t)
+    assert np.linalg.norm(played - profile.position(t), axis=1).max() < 5e-4
+
+
+@pytest.mark.parametrize("radius", [0.002, 0.05, 0.16, 1.0, 6.6, 300.0])
+def test_arcs_of_every_size_stay_on_the_arc(radius: float) -> None:
+    profile = plan(build_path([arc((0, radius), (0, -radius), (0, 0), 500.0)], LIMITS))
+    segments = profile.segments(0.0, profile.duration)
+    assert segments[1].max() <= 0.002 * (1 + 1e-9)
+    x, z, _ = evaluate(segments, np.linspace(0.0, profile.duration, 5000, endpoint=False)).T
+    assert np.abs(np.hypot(x, z) - radius).max() < 2.5e-4
+    jumps = np.abs(ends(segments)[1][:-1] - segments[3][1:])
+    assert jumps.max(initial=0.0) < 0.3 * A * T
+
+
+@few
+@given(programs(), st.lists(st.floats(0.0, 1.0), max_size=4))
+def test_windows_put_together_are_the_whole(blocks: list[Block], cuts: list[float]) -> None:
+    profile = plan(build_path(blocks, LIMITS))
+    times = sorted({0.0, profile.duration, *(c * profile.duration for c in cuts)})
+    windows = [profile.segments(a, b) for a, b in pairwise(times)]
+    together = tuple(np.concatenate(column) for column in zip(*windows, strict=True))
+    assert together[1].sum() == pytest.approx(profile.duration, rel=1e-9)
+    t = np.linspace(0.0, profile.duration, 500, endpoint=False)
+    played = evaluate((together[0], together[1], together[2], together[3], together[4]), t)
+    assert np.linalg.norm(played - profile.position(t), axis=1).max() < 5e-4
+
+
+def test_a_window_of_a_long_plan_converts_only_itself() -> None:
+    profile = plan(build_path(polyline([(0, 0.02 * i) for i in range(20_000)], 100.0), LIMITS))
+    t, dt, *_ = profile.segments(1.0, 1.01)
+    assert t[0] == 1.0
+    assert t[-1] + dt[-1] == pytest.approx(1.01, abs=1e-12)
+    assert len(t) <= 52  # 1 mm at 0.02 mm a piece, cut at both ends
+
+
+@pytest.mark.parametrize(("t_from", "t_to"), [(5.0, 9.0), (-2.0, -1.0), (0.4, 0.4)])
+def test_a_window_outside_the_motion_is_empty(t_from: float, t_to: float) -> None:
+    profile = plan(build_path([line((0, 0), (0, 1))], LIMITS))
+    assert [column.shape for column in profile.segments(t_from, t_to)] == [(0,), (0,), (0, 3), (0, 3), (0, 3)]
+
+
+def test_no_motion_gives_no_pieces() -> None:
+    profile = plan(build_path([line((3, 4), (3, 4))], LIMITS))
+    assert len(profile.segments(0.0, 1.0)[0]) == 0
+    assert profile.position(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])
+    assert profile.block_at(0.0).tolist() == [0]
