@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot, isfinite
+from math import copysign, floor, hypot, isfinite
 
 from core.interpreter import units
 from core.interpreter.blocks import Block
@@ -142,7 +142,7 @@ def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]
     """The number on the control's step, and whether it was not there before."""
     step = _step(state, letter)
     count = value / step
-    whole = round(count)
+    whole = copysign(floor(abs(count) + 0.5 + _WHOLE), count)  # half a step goes away from zero
     if abs(count - whole) <= max(_WHOLE, abs(count) * 1e-12):
         return value, False
     return whole * step, True

@@ -21,4 +21,5 @@ def length(mm: float, *, metric: bool) -> str:
 def feed(value: float, *, per_rev: bool, metric: bool) -> str:
     """A feed in mm/s or mm/rev as the program's reader knows it."""
     number = value / per_unit(metric=metric) * (1 if per_rev else 60)
-    return f"{number:.7g} {'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
+    digits = f"{number:.5f}".rstrip("0").rstrip(".")
+    return f"{digits} {'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"

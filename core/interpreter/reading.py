@@ -1,0 +1,158 @@
+"""Words of a line → a statement; what may not stand together on a line is refused here."""
+
+from __future__ import annotations
+
+from core.interpreter import codes
+from core.interpreter.not_yet import not_yet
+from core.interpreter.statement import UNREADABLE, Statement
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Line, Word
+
+_SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
+_SIMPLE_MODAL = frozenset({0, 1})
+
+
+def statement(line: Line) -> Statement:
+    """The line made ready. Raises ProgramError for what may not stand together on a line."""
+    if line.errors:
+        return Statement(line.number, line.text, flow=UNREADABLE, block_delete=line.block_delete)
+    made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
+    refusal = not_yet(line.number, line.words, line.comment)
+    if refusal is not None:
+        raise ProgramError(refusal)
+    _sort(made, line)
+    if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
+        made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
+    if not made.simple:
+        made.flow = _flow(made)
+        _name_parts(made, line)
+    _check_words(made, line)
+    return made
+
+
+def _sort(made: Statement, line: Line) -> None:
+    modal: list[Word] = []
+    words = made.words
+    for word in line.words:
+        letter = word.letter
+        if letter == "G":
+            _sort_g(made, word, modal)
+        elif letter == "M":
+            if made.m_word is not None:
+                raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
+            made.m, made.m_word = int(word.value or 0), word
+        elif letter in words:
+            raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
+        else:
+            words[letter] = word
+    if modal:
+        made.modal = tuple(int(word.value or 0) for word in modal)
+        _check_groups(made, line, modal)
+
+
+def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
+    groups: dict[str, int] = {}
+    for word, code in zip(modal, made.modal, strict=True):
+        if groups.setdefault(codes.MODAL_GROUPS[code], code) != code:
+            what = f"holds two codes of one group ({codes.MODAL_GROUPS[code]})"
+            raise _refused(line, word, "modal-conflict", what, "Keep one of them.")
+
+
+def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
+    code = int(word.value or 0)
+    if code in codes.MODAL_GROUPS:
+        modal.append(word)
+    elif code not in codes.ONE_SHOT:
+        message = f"{word.text} is no code of this control."
+        raise ProgramError(
+            Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, "Look it up.")
+        )
+    elif made.code is not None:
+        message = f"{made.code.text} and {word.text} cannot act on one line."
+        raise ProgramError(
+            Diagnostic(made.line, word.column, Severity.ERROR, "two-one-shots", message, "Split the line.")
+        )
+    else:
+        made.one_shot, made.code = code, word
+
+
+def _flow(made: Statement) -> str:
+    for letter in ("LS", "LF", "}", "RF"):
+        if letter in made.words:
+            return letter
+    if made.m in codes.M_FLOW:
+        return f"M{made.m}"
+    return "P" if "P" in made.words and made.code is None else ""
+
+
+def _check_words(made: Statement, line: Line) -> None:
+    if made.flow:
+        _check_flow(made, line)
+        return
+    allowed = codes.WORDS.get(made.one_shot, codes.WORDS[None])
+    if allowed.issuperset(made.words):
+        return
+    for letter, word in made.words.items():
+        if letter not in allowed:
+            what = f"holds {word.text}, which nothing on it takes"
+            raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
+
+
+def _check_flow(made: Statement, line: Line) -> None:
+    allowed = codes.FLOW_WORDS[made.flow]
+    for word in line.words:
+        if word.letter not in allowed:
+            what = f"holds {word.text} besides {made.flow}, which stands alone"
+            raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
+    if made.flow in {"LS", "LF", "}", "M99"} and line.block_delete:
+        what = f"deletes {made.flow}, without which the rest has no meaning"
+        raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
+    for letter in allowed - {"M", "LF", "RF"}:
+        if made.value(letter) is None:
+            what = f"holds {made.flow} without {letter}"
+            raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
+    if made.flow == "M97":
+        _check_condition(made, line)
+
+
+def _check_condition(made: Statement, line: Line) -> None:
+    if made.value("C") not in {0, 1}:
+        what = f"holds {made.words['C'].text}, which is neither C1 (on) nor C0 (off)"
+        raise _refused(line, made.words["C"], "condition", what, "Write C1 or C0.")
+    number = made.value("I")
+    if number is None or number < 1 or number != int(number):
+        what = f"holds {made.words['I'].text}, which is no number of an input"
+        raise _refused(line, made.words["I"], "input-number", what, "Write the input's number.")
+
+
+def _name_parts(made: Statement, line: Line) -> None:
+    """Each block that the line makes gets the words it comes from; a single block gets the line."""
+    groups: dict[str, str] = {}
+    for word in line.words:
+        name = _group(made, word)
+        groups[name] = groups.get(name, "") + word.text
+    own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
+    if made.moves or made.one_shot == 4:
+        own.append("move")
+    if len(own) > 1:
+        if "move" not in own and "move" in groups:
+            groups[own[0]] = groups.pop("move") + groups[own[0]]
+        made.parts = groups
+
+
+def _group(made: Statement, word: Word) -> str:
+    letter = word.letter
+    if letter == "T" or (letter == "D" and "T" in made.words):
+        return "tool"
+    if made.one_shot in codes.FRAME and (letter in {"X", "Z"} or word is made.code):
+        return "frame"
+    if letter == "M":
+        return "spindle" if made.m in {3, 4} else "m"
+    if letter == "S" and not {76, 77}.intersection(made.modal):
+        return "spindle"
+    return "move"
+
+
+def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
+    message = f"The line {what}."
+    return ProgramError(Diagnostic(line.number, word.column, Severity.ERROR, code, message, hint))

@@ -1,0 +1,165 @@
+"""The manual's worked examples as cleaned: the figures of their table, block by block."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from pathlib import Path
+
+import pytest
+
+from core.interpreter.actions import Dwell, SpindleRun
+from core.interpreter.blocks import Block, Kind
+from core.language.source import load_source
+from tests.interpreter.programs import INCH, Pass, in_feed, passed, setup
+
+FOLDER = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
+pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the worked examples are not at hand")
+
+
+def example(name: str, secondary: dict[int, tuple[float, float]] | None = None) -> Pass:
+    result = passed(load_source(FOLDER / f"{name}.nc").text, setup(secondary=secondary))
+    assert result.errors == []
+    assert result.warnings == []
+    return result
+
+
+def point(block: Block) -> tuple[str, float, float, float, float]:
+    return (
+        str(block.kind),
+        round(block.x / INCH, 9),
+        round(block.z / INCH, 9),
+        round(in_feed(block), 9),
+        block.rpm,
+    )
+
+
+def centre(block: Block) -> tuple[float, float]:
+    return block.cx / INCH, block.cz / INCH
+
+
+def on_line(result: Pass, line: int) -> Block:
+    (block,) = (block for block in result.moves if block.line == line)
+    return block
+
+
+def test_diameter_and_radius_programs_move_alike() -> None:
+    diameter, radius = example("linear-diameter"), example("linear-radius")
+    assert [point(block) for block in diameter.moves] == [point(block) for block in radius.moves]
+    assert diameter.feeds == [
+        *[("rapid", 300)] * 2,
+        *[("feed", 0.003)] * 6,
+        ("rapid", 300),
+    ]
+    assert diameter.ends == [
+        (0, 1), (0, 0.1), (0, 0), (0.25, 0), (0.25, -0.5), (0.35, -0.5), (0.35, -1.1), (0.5, -1.1), (0.5, 1),
+    ]  # fmt: skip
+
+
+def test_rapid_and_back_to_feed() -> None:
+    result = example("rapid-g00-g01")
+    feeds = dict(zip([block.text for block in result.moves], result.feeds, strict=False))
+    assert feeds["G00Z.05"] == ("rapid", 300)
+    assert feeds["X0"] == ("rapid", 300)
+    assert feeds["G01Z0"] == ("feed", 0.003)
+    assert feeds["X.5"] == ("feed", 0.003)
+    assert feeds["G00Z1"] == ("rapid", 300)
+
+
+@pytest.mark.parametrize(
+    ("name", "line", "end", "middle", "clockwise"),
+    [
+        ("arc-r-radius-convex", 8, (0.25, -0.15), (0.1, -0.15), True),
+        ("arc-r-diameter-barrel", 9, (0.2, -0.5), (0.2 - sqrt(0.635**2 - 0.15**2), -0.35), True),
+        ("arc-ik-radius", 6, (0.25, -0.15), (0.1, -0.15), True),
+        ("arc-ik-diameter", 7, (0.25, -0.15), (0.1, -0.15), True),
+        ("arc-ik-diameter", 14, (0.2, -0.4), (0.2, -0.3), False),
+    ],
+)
+def test_arcs(
+    name: str, line: int, end: tuple[float, float], middle: tuple[float, float], clockwise: bool
+) -> None:
+    arc = on_line(example(name), line)
+    assert arc.kind is Kind.ARC
+    assert arc.clockwise is clockwise
+    assert (arc.x / INCH, arc.z / INCH) == pytest.approx(end)
+    assert centre(arc) == pytest.approx(middle, abs=1e-9)
+
+
+def test_the_barrel_bulges_outwards() -> None:
+    arc = on_line(example("arc-r-diameter-barrel"), 9)
+    assert centre(arc)[0] == pytest.approx(-0.41703, abs=5e-6)
+    assert centre(arc)[0] + 0.635 == pytest.approx(0.21797, abs=5e-6)
+
+
+def test_the_dry_run_is_three_inches_away() -> None:
+    result = example("workshift-dry-run")
+    assert all(block.mz - block.z == pytest.approx(3 * INCH) for block in result.moves)
+    assert all(block.mx == pytest.approx(block.x) for block in result.moves)
+    assert result.interpreter.modal.shift_z == 0
+    assert result.blocks[-1].mz == pytest.approx(result.blocks[-1].z)
+
+
+def test_three_parts_from_one_bar() -> None:
+    result = example("workshift-bar-loop")
+    loop = [block for block in result.moves if block.line >= 11]
+    parts = [loop[i : i + len(loop) // 3] for i in range(0, len(loop), len(loop) // 3)]
+    assert len(parts) == 3
+    for k, part in enumerate(parts):
+        assert [block.line for block in part] == [block.line for block in parts[0]]
+        assert all(block.mz - block.z == pytest.approx(-0.35 * k * INCH, abs=1e-9) for block in part)
+        assert all(block.mx == pytest.approx(block.x, abs=1e-9) for block in part)
+
+
+def test_taper_correction() -> None:
+    result = example("secondary-taper", {4: (-0.0005, 0)})
+    assert result.ends[4:6] == [(0.1245, -0.75), (0.2, -0.75)]
+    assert on_line(result, 7).x0 == pytest.approx(0.125 * INCH)
+
+
+def test_three_bores_each_with_its_own_offset() -> None:
+    plain = example("secondary-three-bores").ends
+    for number, lines in ((1, (6, 7)), (2, (8, 9)), (3, (10, 13))):
+        moved = example("secondary-three-bores", {number: (0.001, 0)})
+        for block, before in zip(moved.moves, plain, strict=True):
+            inside = lines[0] <= block.line <= lines[1]
+            assert block.x / INCH == pytest.approx(before[0] + (0.001 if inside else 0))
+
+
+def test_sixteen_notches() -> None:
+    result = example("loop-notches")
+    cuts = [block for block in result.moves if block.kind is Kind.FEED]
+    assert [round(block.z / INCH, 5) for block in cuts] == [round(-0.035 - 0.085 * k, 5) for k in range(16)]
+    assert {round(block.x / INCH, 5) for block in cuts} == {0.15}
+    assert [action for action in result.actions if isinstance(action, Dwell)] == [Dwell(0.5)] * 16
+    assert result.moves[-1].modal.absolute is True
+    assert result.ends[-1] == (0.25, 1)
+
+
+def test_tapping_turns_the_spindle_back_on_the_way_out() -> None:
+    result = example("tapping")
+    way_in, way_out = (block for block in result.moves if block.kind is Kind.FEED)
+    assert (in_feed(way_in), way_in.rpm, way_in.z / INCH) == pytest.approx((0.05, 1000, -0.4))
+    assert (in_feed(way_out), way_out.rpm, way_out.z / INCH) == pytest.approx((0.05, -1000, 0.1))
+    assert SpindleRun(-1000) in result.actions
+
+
+def test_facing_at_constant_surface_speed() -> None:
+    result = example("css-facing")
+    at = {block.line: block for block in result.blocks}
+    assert at[5].rpm == pytest.approx(250 * 12 / (2 * pi * 0.25))
+    assert round(at[5].rpm) == 1910
+    assert at[9].rpm == 2500  # on the centre, held by G77
+    assert max(block.rpm for block in result.blocks) == 2500
+    assert at[12].rpm == 2000
+    assert at[12].action == SpindleRun(2000)
+    assert [block.css is not None for block in result.moves] == [False, True, True, True, False, False, False]
+
+
+def test_what_cannot_run_yet_is_refused_and_nothing_else() -> None:
+    codes = {
+        code
+        for path in sorted(FOLDER.glob("*.nc"))
+        for _, _, code in passed(load_source(path).text).errors
+        if code != "m-unknown"  # live tools are the machine file's
+    }
+    assert codes <= {"not-yet"}

@@ -1,0 +1,92 @@
+"""Reading program files: what shops' archives hold, and what is refused with one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from core.language.source import Source, SourceError, load_source
+
+
+def write(folder: Path, data: bytes) -> Path:
+    path = folder / "PART"
+    path.write_bytes(data)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("data", "lines"),
+    [
+        (b"G90\nM30\n", ("G90", "M30")),
+        (b"G90\r\nM30\r\n", ("G90", "M30")),
+        (b"G90\rM30\r", ("G90", "M30")),
+        (b"G90\nM30", ("G90", "M30")),
+        (b"\xef\xbb\xbfG90\nM30\n", ("G90", "M30")),
+        (b"G90\n\nM30\n\n", ("G90", "", "M30", "")),
+        (b"G90\nM30\n\x1a", ("G90", "M30")),
+        (b"G90\x0cX1\nM30\n", ("G90\x0cX1", "M30")),
+    ],
+    ids=["unix", "dos", "mac", "no last end", "bom", "blank lines", "dos end of file", "form feed"],
+)
+def test_line_ends(tmp_path: Path, data: bytes, lines: tuple[str, ...]) -> None:
+    assert load_source(write(tmp_path, data)).lines == lines
+
+
+@pytest.mark.parametrize(
+    ("data", "comment"),
+    [
+        ("G90(Bohrer für Ø5)\n".encode(), "G90(Bohrer für Ø5)"),
+        (b"G90(f\x81r)\n", "G90(für)"),  # code page 437
+        (b"G90(f\xfcr)\n", "G90(für)"),  # Latin-1
+    ],
+    ids=["utf-8", "dos", "latin-1"],
+)
+def test_accents_survive(tmp_path: Path, data: bytes, comment: str) -> None:
+    assert load_source(write(tmp_path, data)).lines[0] == comment
+
+
+def test_a_line_separator_of_unicode_ends_no_line() -> None:
+    assert Source("a", "G90(a\u2028b)\nM30\n").lines == ("G90(a\u2028b)", "M30")
+
+
+def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
+    assert load_source(write(tmp_path, b"G90\n")).name == "PART"
+
+
+@pytest.mark.parametrize(
+    ("data", "code", "word"),
+    [
+        (b"", "file-empty", "empty"),
+        (b" \r\n\x1a", "file-empty", "empty"),
+        (b"\xff\xfeG\x009\x000\x00", "file-utf16", "UTF-16"),
+        (b"\xfe\xff\x00G\x009\x000", "file-utf16", "UTF-16"),
+        (b"G90\x00\x01\x02", "file-binary", "zero bytes"),
+        (b"G90\n" + b"X1" * 500_000, "line-too-long", "Line 2"),
+    ],
+    ids=["empty", "blank", "utf-16 le", "utf-16 be", "binary", "one line of a megabyte"],
+)
+def test_what_is_no_program_is_refused(tmp_path: Path, data: bytes, code: str, word: str) -> None:
+    with pytest.raises(SourceError, match=word) as refused:
+        load_source(write(tmp_path, data))
+    assert refused.value.diagnostic.code == code
+    assert refused.value.diagnostic.hint
+
+
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SourceError, match="cannot be read") as refused:
+        load_source(tmp_path / "NONE")
+    assert refused.value.diagnostic.code == "file-unreadable"
+
+
+def test_a_folder_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SourceError, match="cannot be read"):
+        load_source(tmp_path)
+
+
+def test_a_huge_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "HUGE"
+    with path.open("wb") as file:
+        file.truncate(65 * 1024 * 1024)
+    with pytest.raises(SourceError, match="64 MB"):
+        load_source(path)
