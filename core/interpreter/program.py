@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 
 from core.interpreter import codes
-from core.interpreter.reading import statement
-from core.interpreter.statement import UNREADABLE, FineMove, PlainMove, Statement
+from core.interpreter.reading import statement, unreadable
+from core.interpreter.statement import FineMove, PlainMove, Statement
 from core.interpreter.structure import Structure, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
@@ -83,7 +83,7 @@ class _Reader:
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
             self._in_plane = problem.diagnostic.code == "not-yet" and not line.words
-            made = Statement(number, line.text, flow=UNREADABLE)
+            made = unreadable(line)
         self.style.look_at(line, made)
         self.statements.append(made)
         return made

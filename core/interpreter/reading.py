@@ -15,7 +15,7 @@ _SIMPLE_MODAL = frozenset({0, 1})
 def statement(line: Line) -> Statement:
     """The line made ready. Raises ProgramError for what may not stand together on a line."""
     if line.errors:
-        return Statement(line.number, line.text, flow=UNREADABLE, block_delete=line.block_delete)
+        return unreadable(line)
     made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
     refusal = not_yet(line.number, line.words, line.comment)
     if refusal is not None:
@@ -27,6 +27,16 @@ def statement(line: Line) -> Statement:
         made.flow = _flow(made)
         _name_parts(made, line)
     _check_words(made, line)
+    return made
+
+
+def unreadable(line: Line) -> Statement:
+    """A line that cannot run; X and Z of a move are kept, so that the lines after it are judged well."""
+    words: dict[str, Word] = {}
+    if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
+        words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
+    made = Statement(line.number, line.text, words, flow=UNREADABLE, block_delete=line.block_delete)
+    made.modal = tuple(code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words))
     return made
 
 

@@ -111,6 +111,7 @@ class Interpreter:
             return
         if made.flow == UNREADABLE:
             self._stopped = True
+            self._arrive(made)
         elif made.flow in codes.CALLS:
             yield from self._call(made)
         elif made.flow:
@@ -139,8 +140,14 @@ class Interpreter:
         state.fast = False
         if problem.diagnostic.code == "recursion" or self._log.full:
             self._flow.at = self._flow.end
-        if isinstance(step, Statement) and step.moves and state.absolute:
-            go(state, on_step(state, step, "X"), on_step(state, step, "Z"))
+        if isinstance(step, Statement):
+            self._arrive(step)
+
+    def _arrive(self, made: Statement) -> None:
+        """Stand where the line would have ended."""
+        state = self._state
+        if made.moves and state.absolute:
+            go(state, on_step(state, made, "X"), on_step(state, made, "Z"))
             state.tool_line = 0
 
     def _too_much(self, line: int) -> None:

@@ -12,13 +12,25 @@ from tests.interpreter.programs import lines, passed, setup
 
 NUMBERS = st.sampled_from(["0", "1", "-1", ".5", "-.25", ".001", "2", "3.12345", "99", "300", "1000"])
 WORD = st.builds(str.__add__, st.sampled_from(list("XZIKRFSTDPC")), NUMBERS)
-CODE = st.sampled_from(
-    (
-        "G90 G91 G94 G95 G00 G01 G02 G03 G04 G10 G92 G70 G71 G72 G73 G96 G97 G76 G77 G41 G33 G75 M00 M01 M02 M03"
-        " M04 M05 M08 M12 M13 M25 M26 M30 M31 M91 M95 M98P1 M97I1C1P2 M99 LS2 LS3 LF }1 }2 P1 RF / (A) (~PLXC)"
-        " (END) M19 CA90"
-    ).split()
-)
+G_CODES = [0, 1, 2, 3, 4, 10, 33, 41, 70, 71, 72, 73, 75, 76, 77, 90, 91, 92, 94, 95, 96, 97]
+M_CODES = [0, 1, 2, 3, 4, 5, 8, 12, 13, 19, 25, 26, 30, 31, 91, 95, 99]
+OTHERS = [
+    "M98P1",
+    "M97I1C1P2",
+    "LS2",
+    "LS3",
+    "LF",
+    "}1",
+    "}2",
+    "P1",
+    "RF",
+    "/",
+    "(A)",
+    "(~PLXC)",
+    "(END)",
+    "CA90",
+]
+CODE = st.sampled_from([*(f"G{n:02d}" for n in G_CODES), *(f"M{n:02d}" for n in M_CODES), *OTHERS])
 LINE = st.lists(WORD | CODE, max_size=4).map("".join)
 TEXT = st.lists(LINE, max_size=25).map(lambda each: lines("G90G94F300", "M03S500", *each, "M30"))
 
