@@ -7,6 +7,7 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -25,11 +26,12 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import Event, Snapshot, State
 
 OVERRIDE_STEP = 0.1
 OVERRIDE_MOST = 1.5
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
+HEARD = 100  # events that wait for the next frame; older ones are in the log
 UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
 
 
@@ -71,6 +73,7 @@ class Desk:
     _refused: str = ""
     _noticed_in: State | None = None
     _looked: float | None = None
+    _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
@@ -80,7 +83,7 @@ class Desk:
         self._turn_knobs()
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
-        self._mind_refusals(snapshot)
+        self._answer(snapshot)
         return snapshot, view_of(snapshot, self.readout, self.with_c), self.session.now
 
     def prompt(self, snapshot: Snapshot, loaded: Loaded) -> str:
@@ -298,7 +301,16 @@ class Desk:
         self.session.close()
         self.shut()
 
-    def _mind_refusals(self, snapshot: Snapshot) -> None:
+    def hear(self, event: Event) -> None:
+        """What the executor has to say; it may be called from its thread."""
+        self._heard.append(event)
+
+    def _answer(self, snapshot: Snapshot) -> None:
+        """Nothing is refused in silence: a refused start, and whatever else the executor would not do."""
+        while self._heard:
+            event = self._heard.popleft()
+            if event.kind == "refused" and event.text != snapshot.start_refused:
+                self.say(f"REFUSED: {event.text}")
         if snapshot.start_refused != self._refused:
             self._refused = snapshot.start_refused
             if self._refused:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -121,6 +121,12 @@ class Session:
             ticket = self._ticket
             self._now = Loaded(Phase.READING, path, block_delete)
         self._future = self._pool.submit(self._work, ticket, path, block_delete)
+
+    def settled(self, timeout: float) -> Loaded:
+        """Wait until loading is over and look; for scripts and tests, never for the screen."""
+        if self._future is not None:
+            wait([self._future], timeout)
+        return self.now
 
     def close(self) -> None:
         """Give up whatever is being loaded and end the worker."""

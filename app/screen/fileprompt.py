@@ -122,13 +122,19 @@ class FilePrompt(Panel):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line to type in keeps its place under the title."""
-        look, u = self.look, self.look.u
-        self.edit.setFont(look.font(2.6, bold=True))
+        u = self.look.u
         self.edit.setGeometry(round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u))
+        self.dress()
+
+    def dress(self) -> None:
+        """Font and colours of the line to type in."""
+        look, u = self.look, self.look.u
+        colours = look.palette
+        self.edit.setFont(look.font(2.6, bold=True))
         self.edit.setStyleSheet(
-            f"QLineEdit {{ background: {look.palette.ground}; color: {look.palette.text};"
-            f" border: {max(1, round(0.2 * u))}px solid {look.palette.accent}; padding-left: {round(u)}px;"
-            f" selection-background-color: {look.palette.lit}; selection-color: {look.palette.on_lit}; }}"
+            f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
+            f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: {round(u)}px;"
+            f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
         )
 
     def wheelEvent(self, event: QWheelEvent) -> None:

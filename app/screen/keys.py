@@ -32,6 +32,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Period, NONE): ".",
     (Key.Key_Plus, NONE): "+",
     (Key.Key_Minus, NONE): "-",
+    (Key.Key_T, NONE): "T",
     (Key.Key_Escape, NONE): "Esc",
     (Key.Key_Z, NONE): "Zoom in",
     (Key.Key_Z, SHIFT): "Zoom out",

@@ -33,7 +33,12 @@ class Listing(Panel):
             self.update()
 
     def show_run(self, line: int, block: str, following: str) -> None:
-        """The line that is executed (0: none), the generated block, and the one after it."""
+        """The line that is executed (0: none), the generated block, and the one after it.
+
+        The one after is shown where it is generated too; where it is the next line, that line shows it.
+        """
+        if following and any(text.startswith(following) for text in self._lines[line : line + 1]):
+            following = ""
         if (line, block, following) != (self._line, self._block, self._next):
             self._line, self._block, self._next = line, block, following
             self.update()

@@ -45,6 +45,11 @@ class Look:
             self.u = u
             self._fonts.clear()
 
+    def repaint(self, palette: Palette) -> None:
+        """Take other colours."""
+        self.palette = palette
+        self._colours.clear()
+
     def colour(self, name: str) -> QColor:
         """A colour of the palette."""
         if name not in self._colours:
@@ -90,9 +95,9 @@ def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> 
     painter.drawText(round(x), round(rect.center().y() + metrics.capHeight() / 2), text)
 
 
-def dress(app: QApplication, palette: Palette) -> None:
+def dress(palette: Palette) -> None:
     """Fusion with our own palette, for the few stock widgets; setColorScheme does nothing on bare xcb."""
-    app.setStyle("Fusion")
+    QApplication.setStyle("Fusion")
     look = Look(palette)
     colours = QPalette()
     for role, name in (
@@ -108,4 +113,4 @@ def dress(app: QApplication, palette: Palette) -> None:
         (QPalette.ColorRole.PlaceholderText, "soft"),
     ):
         colours.setColor(role, look.colour(name))
-    app.setPalette(colours)
+    QApplication.setPalette(colours)

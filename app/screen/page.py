@@ -52,6 +52,13 @@ class AutomaticPage(QWidget):
         self.log = AlarmList(look, self)
         self.files = FilePrompt(look, desk.shelf, desk.choose, self._files_closed, self)
 
+    def dress(self) -> None:
+        """Everything in the colours that are in force now."""
+        self.files.dress()
+        self.path.restart()
+        for part in self.findChildren(QWidget):
+            part.update()
+
     def _files_closed(self) -> None:
         self.window().setFocus()
 

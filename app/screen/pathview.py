@@ -77,6 +77,11 @@ class PathView(Panel):
             self._layers = None
             self.update()
 
+    def restart(self) -> None:
+        """The same again, in other colours."""
+        if self._frame is not None:
+            self._show_frame(self._frame)
+
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
         """Nearer (positive) or farther, about a point of the widget or about the middle."""
         if self._frame is not None:

@@ -13,8 +13,9 @@ from app.desk.desk import UNDER_WAY, Desk
 from app.desk.prompts import LATER
 from app.screen.keys import PALMS, REPEATING, name_of
 from app.screen.layout import LEAST
-from app.screen.look import Look
+from app.screen.look import Look, dress
 from app.screen.page import AutomaticPage
+from app.screen.theme import DARK, LIGHT
 
 FRAME_MS = 16  # at most 60 pictures a second
 
@@ -74,8 +75,17 @@ class MainWindow(QWidget):
             ".": partial(desk.turn_spindle_pot, 1),
             "+": partial(desk.override, 1),
             "-": partial(desk.override, -1),
+            "T": self.other_theme,
             "Esc": self._escape,
         }
+
+    def other_theme(self) -> None:
+        """Dark to light and back, for a shop with the doors open."""
+        wanted = LIGHT if self.look.palette.name == DARK.name else DARK
+        self.look.repaint(wanted)
+        dress(wanted)
+        if self.page is not None:
+            self.page.dress()
 
     def _escape(self) -> None:
         if self.page is not None and not self.page.escape():

@@ -1,0 +1,88 @@
+"""The desk of the operator screen: machine, simulated lathe, executor thread, loading, folders."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.errors import CommandError
+from app.compose.machine import read_machine, setup_for
+from app.compose.offsets import Offsets, stored_offsets
+from app.compose.simulated import simulated
+from app.desk.desk import Desk
+from app.desk.home import home
+from app.desk.session import Proved, Session, Watch, Workshop
+from app.desk.shelf import Shelf
+from core.executor.executor import Executor
+from core.executor.job import Job, make_job
+from core.executor.thread import ExecutorThread
+from core.language.source import Source, SourceError, load_source
+from core.machine.model import Machine
+from drivers.simulated import RealClock
+
+if TYPE_CHECKING:
+    from app.desk.picture import Picture
+
+
+def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
+    """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
+
+    Raises CommandError for a bad machine file and for a machine that is not simulated.
+    """
+    machine = read_machine(machine_file)
+    if machine.backend != "sim":
+        raise CommandError(
+            f"{machine.source}: the screen drives simulated machines only, not {machine.backend}"
+        )
+    clock = RealClock()
+    simulation = simulated(machine, clock)
+    heard: list[Desk] = []
+    executor = Executor(machine, simulation.ports, lambda event: heard[0].hear(event) if heard else None)
+    thread = ExecutorThread(executor, clock)
+    desk = Desk(
+        post=executor.post,
+        snapshot=lambda: executor.snapshot,
+        session=Session(workshop(machine, offsets), executor.post),
+        shelf=Shelf((home() / "programs", Path(str(files("resources"))) / "programs")),
+        station=simulation.machine,
+        two_hand=machine.interlocks.two_hand_start,
+        with_c=machine.c_enabled,
+        machine=f"{machine.name} · SIMULATED",
+        shut=thread.close,
+    )
+    heard.append(desk)
+    thread.start()
+    return desk
+
+
+def workshop(machine: Machine, offsets: Callable[[], Offsets]) -> Workshop:
+    """What loading needs; the offsets are those of the moment of loading."""
+
+    def new_job(source: Source, block_delete: bool) -> Job:
+        tools, secondary = offsets()
+        setup = setup_for(machine, tools=tools, secondary=secondary, block_delete=block_delete)
+        return make_job(source, setup)
+
+    def prove_job(job: Job, watch: Watch) -> Proved:
+        from app.compose.proof import proof_of
+        from core.proving.prove import prove
+
+        report = prove(job.source, job.setup, machine, watch)
+        return Proved(proof_of(job, report), report.diagnostics)
+
+    def draw(job: Job, watch: Watch) -> Picture:
+        from app.desk.picture import sketched
+        from core.proving.timeline import Timeline, timed_blocks
+
+        return sketched(timed_blocks(Timeline.of(job.source, job.setup, machine)), watch)
+
+    return Workshop(_read, new_job, prove_job, draw)
+
+
+def _read(path: Path) -> Source:
+    try:
+        return load_source(path)
+    except SourceError as error:
+        raise ValueError(str(error)) from error

@@ -1,0 +1,253 @@
+"""What an operator may do in which state, and what the control answers when he may not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.desk.desk import Desk
+from app.desk.prompts import GIVE_UP, LATER, ONE_PALM
+from app.desk.session import Phase, Session, Workshop
+from app.desk.shelf import Shelf
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
+from core.executor.snapshot import Alarm, Event, State
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+@pytest.fixture
+def desk(machine: FakeMachine) -> Iterator[Desk]:
+    desk = desk_on(machine)
+    yield desk
+    desk.close()
+
+
+def at(machine: FakeMachine, state: State) -> None:
+    """Put the machine into a state, whatever was before."""
+    machine.now = replace(machine.now, state=state)
+
+
+@pytest.mark.parametrize("name", ["single_block", "optional_stop", "cycle_repeat"])
+def test_switches_turn_over(desk: Desk, machine: FakeMachine, name: str) -> None:
+    desk.switch(name)
+    desk.switch(name)
+    assert machine.posted == [SetSwitch(name, True), SetSwitch(name, False)]
+
+
+def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
+    with pytest.raises(ValueError, match="block_delete"):
+        desk.switch("block_delete")
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.WAIT, State.PROGRAM_STOP, State.JOG])
+def test_no_other_program_while_one_is_under_way(desk: Desk, machine: FakeMachine, state: State) -> None:
+    at(machine, state)
+    assert desk.may_choose() is False
+    assert "UNDER WAY" in desk.notice
+
+
+def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
+    assert desk.choose("nosuch") is False
+    assert desk.session.now.phase is Phase.EMPTY
+
+
+def test_block_delete_needs_a_program_and_rest(desk: Desk, machine: FakeMachine) -> None:
+    desk.block_delete()
+    assert "CHOOSE A PROGRAM FIRST" in desk.notice
+    assert desk.choose("grooves")
+    at(machine, State.HOLD)
+    desk.block_delete()
+    assert "BETWEEN TWO CYCLES" in desk.notice
+    assert desk.session.now.block_delete is False
+    at(machine, State.IDLE)
+    desk.block_delete()
+    assert desk.session.now.block_delete is True
+
+
+@pytest.mark.parametrize("state", list(State))
+def test_feed_hold_is_always_posted(desk: Desk, machine: FakeMachine, state: State) -> None:
+    at(machine, state)
+    desk.feed_hold()
+    assert FeedHold() in machine.posted
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.WAIT, State.HOLDING])
+def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, state: State) -> None:
+    at(machine, state)
+    desk.reset()
+    assert Reset() not in machine.posted
+    assert "FEED HOLD FIRST" in desk.notice
+
+
+def test_giving_a_program_up_is_asked_once(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.HOLD)
+    desk.reset()
+    assert desk.notice == GIVE_UP
+    assert machine.posted == []
+    desk.escape()
+    desk.reset()
+    assert machine.posted == []
+    desk.reset()
+    assert machine.posted == [Reset()]
+
+
+def test_another_key_takes_the_question_back(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.HOLD)
+    desk.reset()
+    desk.switch("single_block")
+    desk.reset()
+    assert Reset() not in machine.posted
+
+
+def test_an_alarm_is_acknowledged_at_once(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.FAULT)
+    desk.reset()
+    assert machine.posted == [Reset()]
+
+
+@pytest.mark.parametrize(
+    ("state", "answer"),
+    [
+        (State.ESTOP, "STILL PRESSED"),
+        (State.FAULT, "ACKNOWLEDGE IT FIRST"),
+        (State.IDLE, "THE DRIVES ARE ON"),
+        (State.RUN, "THE DRIVES ARE ON"),
+    ],
+)
+def test_drives_on_is_refused_unless_they_are_off(
+    desk: Desk, machine: FakeMachine, state: State, answer: str
+) -> None:
+    at(machine, state)
+    desk.enable()
+    assert machine.posted == []
+    assert answer in desk.notice
+
+
+def test_drives_on(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.DISABLED)
+    desk.enable()
+    assert machine.posted == [EnableDrives()]
+
+
+def test_escape_holds_what_moves(desk: Desk, machine: FakeMachine) -> None:
+    desk.escape()
+    assert machine.posted == []
+    at(machine, State.RUN)
+    desk.escape()
+    assert machine.posted == [FeedHold()]
+
+
+def test_one_palm_does_not_start_and_is_told(desk: Desk, machine: FakeMachine) -> None:
+    desk.palm("left", down=True)
+    desk.palm("left", down=False)
+    assert CycleStart() not in machine.posted
+    assert desk.notice == ONE_PALM
+
+
+def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:
+    desk.palm("left", down=True)
+    desk.palm("left", down=True)
+    desk.palm("left", down=False)
+    assert machine.palms == set()
+
+
+def test_losing_the_window_lets_the_palms_go(desk: Desk, machine: FakeMachine) -> None:
+    desk.palm("left", down=True)
+    desk.let_go()
+    assert machine.palms == set()
+    desk.palm("right", down=True)
+    assert CycleStart() not in machine.posted
+
+
+def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) -> None:
+    for _ in range(2):
+        desk.palm("left", down=True)
+        desk.palm("right", down=True)
+        desk.let_go()
+        desk.look()
+        assert desk.notice == "NO START: NO PROVED PROGRAM"
+        desk.clear()
+
+
+def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> None:
+    desk.hear(Event(1.0, "refused", "wait until the slides are at rest"))
+    desk.hear(Event(1.1, "state", "READY"))
+    desk.look()
+    assert desk.notice == "REFUSED: wait until the slides are at rest"
+
+
+def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine) -> None:
+    desk.later("F3")
+    snapshot, _view, loaded = desk.look()
+    assert desk.prompt(snapshot, loaded) == LATER["F3"]
+    at(machine, State.DISABLED)
+    snapshot, _view, loaded = desk.look()
+    assert desk.prompt(snapshot, loaded) == "DRIVES ARE OFF: PRESS D FOR DRIVES ON"
+
+
+@pytest.mark.parametrize("key", ["F1", "F3", "F6", "F8", "F9", "F10"])
+def test_pages_to_come_are_announced(desk: Desk, key: str) -> None:
+    desk.later(key)
+    assert desk.notice.endswith("WITH A LATER VERSION")
+
+
+def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
+    ticks = iter(range(1000))
+    desk = desk_on(machine)
+    desk.clock = lambda: next(ticks) / 10
+    desk.override(-3)
+    for _ in range(10):
+        desk.look()
+    assert machine.now.feed_override == pytest.approx(0.7)
+    assert not any(isinstance(command, FeedOverride) for command in machine.posted)
+    desk.close()
+
+
+def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path: Path) -> None:
+    desk = Desk(machine.post, machine.snapshot, Session(_no_workshop(), machine.post), Shelf((tmp_path,)))
+    desk.override(-20)
+    assert machine.posted == [FeedOverride(0.0)]
+    desk.palm("left", down=True)
+    desk.estop(pressed=True)
+    assert machine.palms == set()
+    assert machine.now.state is State.IDLE
+    desk.close()
+
+
+def test_one_button_starts_only_where_the_machine_file_says_one(machine: FakeMachine) -> None:
+    two, one = desk_on(machine), desk_on(machine, two_hand=False)
+    two.start_button()
+    assert machine.posted == []
+    one.start_button()
+    assert machine.posted == [CycleStart()]
+    for desk in (one, two):
+        desk.close()
+
+
+def test_the_log_keeps_an_alarm_that_is_over_and_counts_it_once(desk: Desk, machine: FakeMachine) -> None:
+    machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "", "", line=4))
+    desk.look()
+    desk.look()
+    machine.now = replace(machine.now, alarms=())
+    desk.look()
+    assert [(entry.at, entry.alarm.number) for entry in desk.log.entries] == [("09:41:07", 102)]
+
+
+def test_time_left_stands_still_at_override_zero(desk: Desk, machine: FakeMachine) -> None:
+    snapshot, _view, loaded = desk.look()
+    assert desk.time_left(snapshot, loaded) == float("inf")
+
+
+def _no_workshop() -> Workshop:
+    def refuse(*_given: object) -> None:
+        raise AssertionError("nothing is loaded here")
+
+    return Workshop(refuse, refuse, refuse, refuse)  # type: ignore[arg-type]

@@ -1,0 +1,21 @@
+"""The sample programs prove without a word, on the offsets that come with them."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.cli.offset_file import read_offsets
+from app.compose.machine import setup_for
+from core.language.source import load_source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from tests.screen.desks import SAMPLES
+
+
+@pytest.mark.parametrize("name", ["bushing.nc", "grooves.nc", "knob.nc", "pin.nc"])
+def test_sample_proves(name: str) -> None:
+    machine = load_machine(None)
+    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    report = prove(load_source(SAMPLES / name), setup_for(machine, tools=tools, secondary=secondary), machine)
+    assert report.diagnostics == ()
+    assert report.missing_tools == ()

@@ -1,0 +1,141 @@
+"""Loading: what is posted and shown, and what a newer choice and a failure make of it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.desk.picture import Picture, Sketch
+from app.desk.prompts import prompt, refusal
+from app.desk.session import Loaded, Phase, Proved, Session, Watch, Workshop
+from core.executor.commands import Command, GiveProof, LoadJob
+from core.executor.job import Job, Proof
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Source
+
+LIMIT = 5.0  # seconds after which a test that waits for the worker has failed
+BAD = Diagnostic(7, 1, Severity.ERROR, "arc-radius", "The arc's radius is too small.")
+
+
+class Bench:
+    """A workshop whose proving stops until the test lets it go on."""
+
+    def __init__(self) -> None:
+        self.posted: list[Command] = []
+        self.proving = threading.Event()
+        self.go_on = threading.Event()
+        self.go_on.set()
+        self.found: tuple[Diagnostic, ...] = ()
+        self.session = Session(Workshop(self.read, self.make, self.prove, self.draw), self.posted.append)
+
+    def read(self, path: Path) -> Source:
+        if path.name == "gone.nc":
+            raise FileNotFoundError(2, "No such file or directory", str(path))
+        if path.name == "broken.nc":
+            raise RuntimeError("the reader fell over")
+        return Source(path.name, "G90\nM30\n")
+
+    def make(self, source: Source, block_delete: bool) -> Job:
+        return Job(source, Setup(block_delete=block_delete), f"digest of {source.name}")
+
+    def prove(self, job: Job, watch: Watch) -> Proved:
+        self.proving.set()
+        assert self.go_on.wait(LIMIT)
+        watch(1000)
+        return Proved(Proof(job.digest, tuple(d.message for d in self.found)), self.found)
+
+    def draw(self, _job: Job, watch: Watch) -> Picture:
+        watch(500)
+        return Sketch().picture()
+
+    def settled(self) -> Loaded:
+        """The program on the desk once loading is over."""
+        now = self.session.settled(LIMIT)
+        assert not now.busy
+        return now
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    bench = Bench()
+    yield bench
+    bench.go_on.set()
+    bench.session.close()
+
+
+def test_a_program_is_loaded_proved_and_drawn(bench: Bench) -> None:
+    bench.session.load(Path("part.nc"))
+    loaded = bench.settled()
+    assert loaded.phase is Phase.READY
+    assert loaded.source is not None
+    assert loaded.source.lines == ("G90", "M30")
+    assert loaded.picture is not None
+    assert [type(command) for command in bench.posted] == [LoadJob, GiveProof]
+
+
+def test_it_is_loaded_before_it_is_proved_and_then_without_a_proof(bench: Bench) -> None:
+    bench.go_on.clear()
+    bench.session.load(Path("part.nc"))
+    assert bench.proving.wait(LIMIT)
+    (load,) = bench.posted
+    assert isinstance(load, LoadJob)
+    assert load.proof is None
+    assert bench.session.now.phase is Phase.PROVING
+
+
+def test_a_newer_choice_goes_before_the_one_under_way(bench: Bench) -> None:
+    bench.go_on.clear()
+    bench.session.load(Path("first.nc"))
+    assert bench.proving.wait(LIMIT)
+    bench.session.load(Path("second.nc"))
+    bench.go_on.set()
+    loaded = bench.settled()
+    assert loaded.name == "second.nc"
+    proofs = [command.proof.digest for command in bench.posted if isinstance(command, GiveProof)]
+    assert proofs == ["digest of second.nc"]
+
+
+def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
+    bench.found = (BAD, BAD)
+    bench.session.load(Path("part.nc"))
+    loaded = bench.settled()
+    assert loaded.phase is Phase.REFUSED
+    assert refusal(loaded) == "WILL NOT RUN: LINE 7: The arc's radius is too small. (1 MORE)"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"), [("gone.nc", "No such file or directory"), ("broken.nc", "the reader fell over")]
+)
+def test_what_cannot_be_loaded_says_why(bench: Bench, name: str, why: str) -> None:
+    bench.session.load(Path(name))
+    loaded = bench.settled()
+    assert loaded.phase is Phase.UNREADABLE
+    assert bench.posted == []
+    text = prompt(Snapshot(state=State.IDLE), loaded, "", "")
+    assert text == f"{name} CANNOT BE LOADED: {why}; PRESS F2 FOR ANOTHER"
+
+
+def test_block_delete_is_part_of_the_job(bench: Bench) -> None:
+    bench.session.load(Path("part.nc"), block_delete=True)
+    bench.settled()
+    (load, _proof) = bench.posted
+    assert isinstance(load, LoadJob)
+    assert load.job.setup.block_delete
+
+
+def test_closing_gives_up_what_is_under_way(bench: Bench) -> None:
+    bench.go_on.clear()
+    bench.session.load(Path("part.nc"))
+    assert bench.proving.wait(LIMIT)
+    closing = threading.Thread(target=bench.session.close)
+    closing.start()
+    bench.go_on.set()
+    closing.join(LIMIT)
+    assert not closing.is_alive()
+    assert len(bench.posted) <= 2
+    assert bench.session.now.picture is None

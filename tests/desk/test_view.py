@@ -1,0 +1,169 @@
+"""One snapshot in words and figures: value, unit and mode never come from two different ones."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from app.desk.view import Readout, Tone, coordinates, view_of
+from core.executor.snapshot import Alarm, Snapshot, State
+from core.interpreter.modal import Modal
+
+INCH = 25.4
+AT = Snapshot(
+    state=State.RUN,
+    actual=(1.5 * INCH, -2 * INCH, 90.0),
+    block=3,
+    block_end=(1.75 * INCH, -2.25 * INCH, 90.0),
+    offset=(1.0 * INCH, -1.0 * INCH),
+    homed=(True, True, True),
+)
+
+
+def shown(snapshot: Snapshot, readout: Readout = Readout.POSITION) -> list[tuple[str, str, str]]:
+    """(mark, large, small) of each axis."""
+    return [(a.mark, a.value, a.beside) for a in view_of(snapshot, readout, with_c=True).position.axes]
+
+
+def test_radius_in_inch() -> None:
+    assert shown(AT) == [
+        ("R", "0.50000", "0.25000"),
+        ("", "−1.00000", "−0.25000"),
+        ("", "90.00", "0.00"),
+    ]
+
+
+def test_a_diameter_doubles_position_and_distance_to_go_of_x_alone() -> None:
+    diameter = replace(AT, modal=Modal(diameter=True))
+    assert shown(diameter)[0] == ("Ø", "1.00000", "0.50000")
+    assert shown(diameter)[1] == shown(AT)[1]
+
+
+def test_metric_has_four_places_and_says_so() -> None:
+    metric = replace(AT, modal=Modal(metric=True))
+    assert shown(metric)[0] == ("R", "12.7000", "6.3500")
+    assert view_of(metric, Readout.POSITION, with_c=True).position.unit == "MM"
+
+
+@pytest.mark.parametrize(
+    ("readout", "x"), [(Readout.POSITION, 0.5), (Readout.TO_GO, 0.25), (Readout.HOME, 1.5)]
+)
+def test_three_readouts(readout: Readout, x: float) -> None:
+    assert coordinates(AT, readout)[0] == pytest.approx(x * INCH)
+
+
+def test_nothing_to_go_outside_a_block() -> None:
+    assert coordinates(replace(AT, block=0), Readout.TO_GO) == (0.0, 0.0, 0.0)
+
+
+def test_readouts_come_round() -> None:
+    assert Readout.POSITION.following.following.following is Readout.POSITION
+
+
+def test_beside_distance_to_go_stands_the_position() -> None:
+    assert view_of(AT, Readout.TO_GO, with_c=True).position.beside is Readout.POSITION
+
+
+def test_a_lathe_without_c_shows_two_axes() -> None:
+    assert [a.name for a in view_of(AT, Readout.POSITION, with_c=False).position.axes] == ["X", "Z"]
+
+
+def test_tiny_negative_positions_have_no_sign() -> None:
+    near = replace(AT, actual=(1.0 * INCH - 1e-6, -1.0 * INCH - 1e-6, -1e-4))
+    assert [row[1] for row in shown(near)] == ["0.00000", "0.00000", "0.00"]
+
+
+def test_feed_per_revolution_is_measured_against_the_spindle() -> None:
+    # .005 in/rev at 1200 rpm = 20 rev/s: 2.54 mm/s
+    modal = Modal(per_rev=True)
+    view = view_of(
+        replace(AT, modal=modal, feed=0.127, velocity=2.54, rpm_actual=1200), Readout.POSITION, True
+    )
+    assert (view.feed.value, view.feed.actual, view.feed.actual_unit) == ("0.00500", "0.00500", "in/rev")
+
+
+def test_feed_per_revolution_of_a_standing_spindle_is_not_a_number() -> None:
+    view = view_of(replace(AT, modal=Modal(per_rev=True), feed=0.127, velocity=0.0), Readout.POSITION, True)
+    assert view.feed.actual == "—"
+
+
+def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
+    view = view_of(replace(AT, modal=Modal(per_rev=True), rapid=True, velocity=127.0), Readout.POSITION, True)
+    assert (view.feed.value, view.feed.unit) == ("RAPID", "")
+    assert (view.feed.actual, view.feed.actual_unit) == ("300.00", "in/min")
+
+
+def test_metric_feeds_carry_the_prefix() -> None:
+    view = view_of(replace(AT, modal=Modal(metric=True), feed=2.0, velocity=1.9), Readout.POSITION, True)
+    assert (view.feed.value, view.feed.actual) == ("MM120.0", "MM114.0")
+
+
+def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> None:
+    # 2 · pi · .5 in · 1000 rpm / 12 = 261.8 ft/min
+    back = replace(AT, actual=(0.5 * INCH, 0.0, 0.0), rpm_command=-1000.0, rpm_actual=-1000.0)
+    spindle = view_of(back, Readout.POSITION, True).spindle
+    assert math.isclose(2 * math.pi * 0.5 * 1000 / 12, 261.8, rel_tol=1e-4)
+    assert (spindle.surface, spindle.surface_label) == ("262", "SFM")
+    assert (spindle.direction, spindle.rpm, spindle.actual) == ("M04 REV", "1000", "1000")
+
+
+def test_constant_surface_speed_is_named() -> None:
+    turning = replace(AT, modal=Modal(css=True, metric=True), rpm_command=500.0)
+    spindle = view_of(turning, Readout.POSITION, True).spindle
+    assert spindle.direction == "M03 FWD · G96"
+    assert spindle.surface_label == "M/MIN"
+
+
+@pytest.mark.parametrize(
+    ("command", "actual", "word", "lit", "warn"),
+    [
+        (0.0, 0.0, "SPINDLE", False, False),
+        (900.0, 0.0, "SPINDLE", False, False),
+        (900.0, 880.0, "SPINDLE FWD", True, False),
+        (-900.0, -880.0, "SPINDLE REV", True, False),
+        (0.0, 400.0, "SPINDLE COASTS", True, True),
+    ],
+)
+def test_spindle_lamp_tells_what_turns(
+    command: float, actual: float, word: str, lit: bool, warn: bool
+) -> None:
+    view = view_of(replace(AT, rpm_command=command, rpm_actual=actual), Readout.POSITION, True)
+    lamp = view.lamps[0]
+    assert (lamp.word, lamp.lit, lamp.warn) == (word, lit, warn)
+
+
+def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
+    told = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
+    words = {lamp.word: lamp.lit for lamp in view_of(told, Readout.POSITION, True).lamps}
+    assert words["COOLANT"] is False
+    assert "COLLET OPEN" in words
+    done = replace(told, outputs=frozenset({"coolant", "collet", "live2"}))
+    words = {lamp.word: lamp.lit for lamp in view_of(done, Readout.POSITION, True).lamps}
+    assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
+
+
+def test_every_state_has_a_word_and_a_tone() -> None:
+    for state in State:
+        view = view_of(replace(AT, state=state), Readout.POSITION, True)
+        assert view.state == state.value
+        assert isinstance(view.tone, Tone)
+    assert view_of(replace(AT, state=State.FAULT), Readout.POSITION, True).tone is Tone.ALARM
+
+
+def test_a_wait_says_for_what() -> None:
+    view = view_of(replace(AT, state=State.WAIT, waiting_for="AT SPEED"), Readout.POSITION, True)
+    assert view.state == "WAITING: AT SPEED"
+
+
+def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
+    stop = replace(AT, state=State.PROGRAM_STOP, message="CHECK THE BORE")
+    assert view_of(stop, Readout.POSITION, True).message == "CHECK THE BORE"
+    assert view_of(replace(stop, message=""), Readout.POSITION, True).message == "PROGRAM STOP"
+    assert view_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
+
+
+def test_the_newest_alarm_is_shown() -> None:
+    old, new = (Alarm(n, "axis", f"ALARM {n}", "", "") for n in (1, 2))
+    assert view_of(replace(AT, alarms=(old, new)), Readout.POSITION, True).alarm is new
