@@ -111,13 +111,13 @@ class Cycle:
         """Cycle Start after hold, single block, M00, M01."""
         stopped = self._state
         self._reason = self.message = ""
-        self._block_done = False
+        self._block_done = self._player.active and not self._player.complete()
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
         if self._wait is not None:
             self._wait.shift(self._bench.now - self._held_at)
         self._change(State.RUN)
-        if self._player.active and not self._player.complete():
+        if self._block_done:
             self._mover.go_on(self.current if stopped is State.BLOCK_END else None)
 
     # --- every tick ---------------------------------------------------------------------------------------
@@ -131,8 +131,11 @@ class Cycle:
         if self._state is State.HOLDING:
             self._slow_down()
         elif self._state in _GOING:
-            self._feed.pull(_BLOCKS, _BUFFER * self._bench.machine.timing.lookahead)
+            self._read()
             self._advance()
+
+    def _read(self) -> None:
+        self._feed.pull(_BLOCKS, _BUFFER * self._bench.machine.timing.lookahead)
 
     def _slow_down(self) -> None:
         self._player.extend(self._bench.now)
@@ -178,6 +181,7 @@ class Cycle:
         elif feed.pending:
             self._settled, self._block_done = False, True
             self._change(State.RUN)
+            self._read()
             self._mover.begin(feed.take())
         elif feed.stop is not None:
             return self._act(feed.stop)

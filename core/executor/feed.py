@@ -57,9 +57,9 @@ class BlockFeed:
         return self.stop is not None or self.ended or self.trouble is not None
 
     def pull(self, blocks: int, seconds: float) -> None:
-        """Read on until so many blocks were read or so many seconds are pending."""
+        """Read on until so many blocks were read or so many seconds are pending, pull-outs of threads too."""
         for _ in range(blocks):
-            if self.dry or self.seconds >= seconds:
+            if self.dry or (self.seconds >= seconds and not self._threading):
                 return
             block = self._next()
             if block is not None:

@@ -44,6 +44,7 @@ class SpindleControl:
         self.override = 1.0
         self.auto = True
         self._ask: Ask | None = None
+        self._coasting = False
         self._in_band_since: float | None = None
         self._fell: tuple[float, float] = (0.0, 0.0)  # when, and from what speed, the command fell
 
@@ -91,6 +92,12 @@ class SpindleControl:
         self._ask = None
         self._send(0.0, self._now)
 
+    def coast(self) -> None:
+        """Let it run down without torque: E-stop, and drives that are no longer trusted."""
+        self._ask, self.command = None, 0.0
+        self._coasting = True
+        self._port.coast()
+
     def update(self, now: float, radius: float) -> None:
         """Once a tick: send what has changed, and see what the drive does.
 
@@ -103,8 +110,10 @@ class SpindleControl:
         self._watch_band(now)
         fault = self._port.fault()
         if fault:
+            self._coasting = True
             raise TroubleError("spindle", fault)
-        if abs(self.measured) > self._allowed(now):
+        self._coasting = self._coasting and not self.stopped and self.command == 0.0
+        if not self._coasting and abs(self.measured) > self._allowed(now):
             raise TroubleError("ignores-stop", f"{self.measured:.0f} rpm, {self.command:.0f} asked")
 
     def at_speed(self, now: float) -> bool:

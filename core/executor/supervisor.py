@@ -38,8 +38,7 @@ class Supervisor:
         how = Stop.RAMP_OFF if reaction is Reaction.OFF else Stop.RAMP_HOLD
         steps: list[Callable[[], None]] = [
             lambda: ports.axes.stop(how),
-            self._bench.spindle.stop,
-            ports.spindle.coast if reaction is Reaction.OFF else lambda: None,
+            self._bench.spindle.coast if reaction is Reaction.OFF else self._bench.spindle.stop,
             ports.io.safe,
         ]
         for step in steps:

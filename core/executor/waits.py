@@ -109,14 +109,23 @@ def _start_spindle(block: Block, bench: Bench) -> None:
 
 
 def _move_collet(closed: bool, bench: Bench) -> Wait:
-    if not closed and not bench.spindle.stopped and not bench.machine.interlocks.unclamp_while_turning:
+    """Where the machine file forbids unclamping at speed, opening waits until the spindle has run down."""
+    waits = not closed and not bench.machine.interlocks.unclamp_while_turning
+    if waits and bench.spindle.asked:
         raise TroubleError("unclamp", f"the spindle turns at {bench.spindle.measured:.0f} rpm")
-    bench.ports.io.write("collet", closed)
     timing = bench.machine.timing
     time = timing.collet_close if closed else timing.collet_open
+    moved_at: list[float] = []
 
     def done(passed: float) -> bool:
+        if not moved_at:
+            if waits and not bench.spindle.stopped:
+                return False
+            bench.ports.io.write("collet", closed)
+            moved_at.append(passed)
+            return False
         switch = bench.inputs.get("collet_closed")
-        return passed >= time if switch is None else switch == closed
+        return passed - moved_at[0] >= time if switch is None else switch == closed
 
-    return Wait(lambda: "COLLET", done, bench.now, time + _COLLET_LATE, "collet")
+    limit = time + _COLLET_LATE + (bench.machine.spindle.timeout if waits else 0.0)
+    return Wait(lambda: "COLLET" if moved_at else "SPINDLE STOP", done, bench.now, limit, "collet")

@@ -33,7 +33,7 @@ class Plant:
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
         tolerance = Tolerance(
-            position=(0.001,) * len(self.names), velocity=tuple(axis.corner for axis in config.axes)
+            position=(0.001,) * len(self.names), velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes)
         )
         self.queue = SetpointQueue(self.names, self._readings(), config.commit, tolerance)
         self.enabled = False

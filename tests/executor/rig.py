@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -10,8 +11,11 @@ from app.compose.machine import control_limits
 from app.compose.simulated import simulated
 from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
+from core.executor.feed import Pass
+from core.executor.interpret import interpret
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Event, Snapshot, State
+from core.interpreter.blocks import Block
 from core.interpreter.setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
@@ -29,12 +33,16 @@ class Rig:
     machine: Machine = field(default_factory=load_machine)
     events: list[Event] = field(default_factory=list)
     watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
+    made: list[Block] | None = None  # run these instead of interpreting
 
     def __post_init__(self) -> None:
         self.clock = StepClock()
         self.sim: Simulation = simulated(self.machine, self.clock)
-        self.executor = Executor(self.machine, self.sim.ports, self.events.append)
+        self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
         self.executor.tick()
+
+    def _passes(self, job: Job, setup: Setup) -> Pass:
+        return interpret(job, setup) if self.made is None else Pass(iter(self.made), list)
 
     @property
     def shot(self) -> Snapshot:
@@ -96,6 +104,7 @@ class Rig:
         """Drives on, program loaded, Cycle Start."""
         if self.state is State.DISABLED:
             self.ready()
+        self.run(0.3)  # no bounce of the last start
         self.load(text, tools)
         self.post(CycleStart())
 
@@ -108,3 +117,11 @@ def off_line(shot: Snapshot, a: tuple[float, float], b: tuple[float, float]) -> 
     x, z, _ = shot.demand
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     return abs((b[0] - a[0]) * (z - a[1]) - (b[1] - a[1]) * (x - a[0])) / length
+
+
+def unhomed_machine() -> Machine:
+    """The shipped lathe with a Z that only counts and has to be homed."""
+    machine = load_machine()
+    x, z, c = machine.axes
+    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    return dataclasses.replace(machine, axes=(x, z, c))

@@ -1,0 +1,507 @@
+"""Faults of machine and host: each with its reaction, and within its time."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
+from core.executor.snapshot import Snapshot, State
+from core.executor.thread import ExecutorThread
+from core.interpreter.actions import Collet, Dwell, SpindleRun
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from drivers.simulated import RealClock
+from tests.executor.made import Maker
+from tests.executor.rig import INCH, Rig, unhomed_machine
+
+LONG = "G90G94F300\nX3Z-4\nX0Z0\nX3Z-4\nX0Z0\nM30\n"
+BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG02X1.5Z-1.5I1.5K-1\nG04F1\nM13\nM12\nX0Z0\nM30\n"
+
+
+def alarm(rig: Rig, code: str, limit: float = 20.0) -> float:
+    """Run into an alarm and check what every alarm means."""
+    took = rig.until(State.FAULT, limit=limit)
+    assert rig.shot.alarms[0].code == code
+    assert rig.shot.rpm_command == 0.0
+    assert not {"coolant", "catcher", "live1"} & rig.shot.outputs
+    assert rig.said("alarm")
+    rig.run(0.2)
+    stood = rig.shot.demand
+    rig.run(2.0)
+    assert rig.shot.demand == stood
+    assert rig.state is State.FAULT
+    return took
+
+
+# --- host ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stall", [0.5, 5.0])
+def test_a_stalled_host_leaves_the_slides_on_their_path_without_a_fault(stall: float) -> None:
+    rig = Rig()
+    text = "G90G94F300\nG01F300\n" + "X3Z-4\nX0Z0\n" * 10 + "M30\n"
+    rig.start(text)
+    rig.run(0.5)
+    began = rig.clock.now()
+    off = 0.0
+    while rig.clock.now() < began + stall:  # the axes go on, nobody ticks
+        rig.clock.advance(0.005)
+        x, z, _ = rig.sim.ports.axes.sample().demand
+        off = max(off, abs(4 * x + 3 * z) / 5)
+    rig.run(0.1)
+    assert off < 0.005
+    assert rig.shot.alarms == ()
+    assert any("away" in text for text in rig.said("starved"))
+    if stall > 2:
+        assert rig.state is State.HOLD
+        assert rig.shot.waiting_for == "SETPOINTS RAN LOW"
+        assert rig.shot.underruns == 1
+        rig.run(1.0)
+        assert rig.state is State.HOLD
+        rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+def test_a_stalled_host_in_one_long_move_stops_too() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F5Z-5\nM30\n")
+    rig.run(1.0)
+    rig.clock.advance(10.0)
+    at = rig.sim.ports.axes.sample()
+    assert not at.moving
+    # 1.25 s queued and a little braking: nowhere near the 5 in of the block
+    assert -at.actual[1] < 5 * INCH / 60 * 3.0
+    rig.run(0.1)
+    assert rig.state is State.HOLD
+    rig.post(CycleStart())
+    rig.until(State.IDLE, limit=90)
+    assert rig.shot.demand[1] == pytest.approx(-5 * INCH)
+
+
+class BrokenError(Exception):
+    """Something nobody thought of."""
+
+
+def test_an_exception_in_the_worker_stops_the_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    rig.start(BUSY)
+    rig.run(3.0)
+    assert rig.shot.rpm_actual > 900
+
+    def burst() -> None:
+        raise BrokenError("at the worst moment")
+
+    monkeypatch.setattr(rig.executor, "_go_on", burst)
+    alarm(rig, "internal")
+    assert "BrokenError: at the worst moment" in rig.shot.alarms[0].cause
+    assert not rig.sim.ports.axes.sample().enabled
+
+
+def test_a_dead_driver_is_an_alarm_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    rig.start(LONG)
+    rig.run(0.5)
+
+    def dead() -> None:
+        raise BrokenError("cable")
+
+    monkeypatch.setattr(rig.sim.ports.axes, "sample", dead)
+    rig.tick()
+    assert rig.state is State.FAULT
+    assert rig.shot.alarms[0].code == "internal"
+
+
+def test_the_thread_ticks_and_leaves_nothing_on() -> None:
+    rig = Rig()
+    clock = RealClock()
+    thread = ExecutorThread(rig.executor, clock, tick=0.001)
+    rig.executor.post(EnableDrives())
+    thread.start()
+    while rig.executor.snapshot.state is not State.IDLE:
+        clock.sleep_until(clock.now() + 0.001)
+    assert thread.alive
+    thread.close()
+    assert not thread.alive
+    assert rig.executor.snapshot.state is State.DISABLED
+
+
+# --- axes ---------------------------------------------------------------------------------------------------
+
+
+def test_a_jammed_slide_stops_all() -> None:
+    rig = Rig()
+    rig.start(LONG)
+    rig.run(0.4)
+    rig.sim.machine.jam("X")
+    # window .08 in at 3 in/s in X, 20 ms, one tick
+    assert alarm(rig, "axis") < 0.0267 + 0.02 + 0.03
+    assert "X: following error" in rig.shot.alarms[0].cause
+    assert not rig.sim.ports.axes.sample().enabled
+    rig.sim.machine.jam("X", False)
+    rig.post(Reset())
+    assert rig.state is State.DISABLED
+    rig.run(1.0)
+    assert rig.state is State.DISABLED
+    rig.post(EnableDrives())
+    assert rig.state is State.IDLE
+    assert rig.shot.block == 0
+
+
+def test_a_stuck_encoder_and_a_drive_fault_stop_all() -> None:
+    for break_it in (
+        lambda rig: rig.sim.machine.encoder_stuck("Z"),
+        lambda rig: rig.sim.machine.drive_fault("Z", "overcurrent"),
+    ):
+        rig = Rig()
+        rig.start(LONG)
+        rig.run(0.4)
+        break_it(rig)
+        alarm(rig, "axis")
+        assert rig.shot.alarms[0].cause.startswith("Z: ")
+
+
+def test_reset_does_not_clear_a_fault_that_stays() -> None:
+    rig = Rig()
+    rig.start(LONG)
+    rig.run(0.4)
+    rig.sim.machine.jam("X")
+    alarm(rig, "axis")
+    rig.post(Reset())
+    rig.post(EnableDrives())
+    rig.load("G90G94F300\nX-3\nM30\n")
+    rig.run(0.4)
+    rig.post(CycleStart())
+    alarm(rig, "axis")
+
+
+# --- spindle and collet -------------------------------------------------------------------------------------
+
+
+def test_a_spindle_that_does_not_reach_its_speed() -> None:
+    rig = Rig()
+    rig.sim.machine.spindle_bog(0.6)
+    rig.start("G90G94F300\nM03S1000\nX1\nG01F10Z-1\nM30\n")
+    assert alarm(rig, "at-speed") == pytest.approx(5.4, abs=0.3)
+    assert rig.shot.actual[1] == 0.0
+
+
+def test_a_bogged_spindle_holds_feed_per_revolution_and_not_feed_per_minute() -> None:
+    for code, state in (("G95F.005", State.HOLD), ("G94F5", State.RUN)):
+        rig = Rig()
+        rig.start(f"G90G94F300\nM03S1000\nG01{code}Z-1\nM30\n")
+        rig.run(3.0)
+        rig.sim.machine.spindle_bog(0.4)
+        rig.run(1.5)
+        assert rig.state is state
+        if state is State.HOLD:
+            assert rig.shot.waiting_for == "SPINDLE BELOW HALF ITS SPEED"
+            rig.post(CycleStart())
+            assert rig.state is State.HOLD
+            assert rig.shot.start_refused == "the spindle is not at its speed"
+            rig.sim.machine.spindle_bog(1.0)
+            rig.run(2.0)
+            rig.post(CycleStart())
+            assert rig.state is State.RUN
+
+
+def test_a_spindle_drive_fault() -> None:
+    rig = Rig()
+    rig.start(BUSY)
+    rig.run(3.0)
+    rig.sim.machine.spindle_fault("overvoltage")
+    alarm(rig, "spindle")
+    assert rig.shot.alarms[0].cause == "overvoltage"
+
+
+def test_a_spindle_that_ignores_its_stop() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S2000\nG04F3\nM05\nG04F9\nM30\n")
+    rig.run(3.0)
+    rig.sim.machine.spindle_ignores_stop()
+    rig.until_true(lambda shot: shot.rpm_command == 0.0)
+    assert alarm(rig, "ignores-stop") < 1.2
+    assert "E-STOP" in rig.shot.alarms[0].remedy
+
+
+def test_the_spindle_switch_stops_and_keeps_the_command() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S1000\nG04F20\nM30\n")
+    rig.run(2.0)
+    rig.sim.machine.set_spindle_auto(False)
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == 0.0
+    assert not rig.shot.spindle_auto
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == 1000.0
+
+
+def test_waiting_for_speed_with_the_switch_off_is_no_alarm() -> None:
+    rig = Rig()
+    rig.sim.machine.set_spindle_auto(False)
+    rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
+    rig.run(20.0)
+    assert rig.state is State.WAIT
+    assert rig.shot.waiting_for == "SPINDLE SWITCH OFF"
+    assert rig.shot.actual[1] == 0.0
+    rig.sim.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: shot.actual[1] < -0.1)
+
+
+def test_spindle_start_with_the_collet_open_is_refused() -> None:
+    rig = Rig()
+    rig.sim.machine.collet_sensor_stuck()
+    rig.sim.machine.set_input("collet_closed", False)
+    rig.start("G90G94F300\nM03S1000\nG04F1\nM30\n")
+    alarm(rig, "collet-open")
+    assert rig.sim.machine.spindle_rpm() == 0.0
+
+
+def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None:
+    rig = Rig(strict_machine())
+    rig.start("G90G94F300\nM03S1000\nG04F3\nM05\nM13\nM12\nM30\n")
+    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    assert "collet" in rig.shot.outputs
+    assert rig.shot.rpm_actual > 300
+    rig.until_true(lambda shot: "collet" not in shot.outputs)
+    assert rig.shot.rpm_actual < 5
+    rig.until(State.IDLE)
+
+
+def test_unclamping_a_running_spindle_is_an_alarm_where_the_machine_file_says_so() -> None:
+    rig = Rig(strict_machine())
+    maker = Maker()
+    maker.rpm = 300.0
+    rig.made = maker.act(SpindleRun(300.0)).act(Dwell(2.0)).act(Collet(closed=False)).end()
+    rig.start("G90\nM30\n")
+    alarm(rig, "unclamp")
+    assert "collet" in rig.shot.outputs
+
+
+def strict_machine() -> Machine:
+    machine = load_machine()
+    locks = dataclasses.replace(machine.interlocks, unclamp_while_turning=False)
+    return dataclasses.replace(machine, interlocks=locks)
+
+
+def test_a_collet_that_does_not_answer() -> None:
+    rig = Rig()
+    rig.sim.machine.collet_sensor_stuck()
+    rig.start("G90G94F300\nM13\nX1\nM30\n")
+    assert alarm(rig, "collet") == pytest.approx(2.25, abs=0.1)
+    assert rig.shot.actual[0] == 0.0
+
+
+def test_a_collet_that_opens_by_itself() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S1000\nG04F9\nM30\n")
+    rig.run(2.0)
+    rig.sim.machine.collet_sensor_stuck()
+    rig.sim.machine.set_input("collet_closed", False)
+    assert alarm(rig, "collet-lost") < 0.7
+
+
+# --- threads ------------------------------------------------------------------------------------------------
+
+PASS_X = (11.9, 11.7, 11.55, 11.45)
+OUT_X = 14.0
+
+
+def threading(rig: Rig, passes: tuple[float, ...] = PASS_X) -> None:
+    """Passes of lead 1.27 mm at 600 rpm from z 5 to z -25, then straight out, and back."""
+    maker = Maker()
+    maker.rpm = 600.0
+    maker.act(SpindleRun(600.0)).rapid(OUT_X, 5.0)
+    for x in passes:
+        maker.rapid(x, 5.0).thread(x, -25.0, 1.27).rapid(OUT_X, -25.0).rapid(OUT_X, 5.0)
+    rig.made = maker.end()
+    rig.start("G90\nM30\n")
+
+
+def in_thread(rig: Rig) -> None:
+    rig.until_true(lambda shot: shot.block_text == "thread" and shot.actual[1] < -5.0, limit=30)
+
+
+def test_passes_enter_at_one_angle_of_the_spindle() -> None:
+    rig = Rig()
+    threading(rig)
+    seen: list[float] = []
+    before = [0.0, 0.0]
+
+    def look(shot: Snapshot) -> None:
+        z, turns = shot.demand[1], rig.sim.ports.spindle.angle()
+        assert turns is not None
+        if shot.block_text == "thread" and before[0] > 0.0 >= z:
+            share = before[0] / (before[0] - z)
+            seen.append((before[1] + share * (turns[1] - before[1])) % 1.0)
+        before[:] = [z, turns[1]]
+
+    rig.watch.append(look)
+    rig.until(State.IDLE)
+    assert len(seen) == len(PASS_X)
+    assert max(seen) - min(seen) < 0.01  # of a turn: 13 µm of lead
+
+
+def test_a_pass_keeps_its_lead_under_feed_override() -> None:
+    rig = Rig()
+    rig.sim.machine.set_feed_pot(0.5)
+    rig.run(1.0)
+    threading(rig, (11.9,))
+    in_thread(rig)
+    assert rig.shot.velocity == pytest.approx(1.27 * 10, rel=0.02)
+
+
+@pytest.mark.parametrize("how", ["button", "override"])
+def test_hold_in_a_thread_waits_for_the_pull_out(how: str) -> None:
+    rig = Rig()
+    threading(rig)
+    in_thread(rig)
+    if how == "button":
+        rig.post(FeedHold())
+        assert rig.state is State.HOLDING
+        rig.until(State.HOLD)
+    else:
+        rig.sim.machine.set_feed_pot(0.0)
+        rig.until(State.WAIT)
+    assert rig.shot.demand[:2] == pytest.approx((OUT_X, -25.0))
+    rig.run(1.0)
+    rig.sim.machine.set_feed_pot(1.0)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_single_block_does_not_stop_in_the_groove() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("single_block", True))
+    threading(rig, (11.9,))
+    stops = []
+    for _ in range(5):
+        rig.until(State.BLOCK_END)
+        stops.append(rig.shot.demand[:2])
+        rig.run(0.4)
+        rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert stops == [
+        pytest.approx(stop) for stop in [(0.0, 0.0), (OUT_X, 5.0), (11.9, 5.0), (OUT_X, -25.0), (OUT_X, 5.0)]
+    ]
+
+
+@pytest.mark.parametrize("kill", ["bog", "trip"])
+def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(kill: str) -> None:
+    rig = Rig()
+    threading(rig)
+    in_thread(rig)
+    inside = rig.shot.block
+    if kill == "bog":
+        rig.sim.machine.spindle_bog(0.3)
+    else:
+        rig.sim.machine.set_spindle_auto(False)
+    rig.until(State.FAULT)
+    assert rig.shot.alarms[0].code == "thread-lost"
+    assert rig.shot.alarms[0].line == inside
+    rig.run(0.3)
+    assert rig.shot.demand[0] == pytest.approx(OUT_X)
+    assert -25.0 < rig.shot.demand[1] < -5.0
+    assert rig.shot.rpm_command == 0.0
+    stood = rig.shot.demand
+    rig.run(3.0)
+    assert rig.shot.demand == stood
+
+
+def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
+    threading(rig)
+    alarm(rig, "program")
+    assert rig.shot.demand[:2] == pytest.approx((11.9, 5.0))
+
+
+# --- station ------------------------------------------------------------------------------------------------
+
+
+def test_a_silent_station_keeps_its_pots_and_holds() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F30Z-5\nM30\n")
+    rig.run(1.0)
+    rig.sim.machine.set_feed_pot(0.8)
+    rig.run(0.5)
+    rig.sim.machine.station_silent()
+    rig.run(0.29)
+    assert rig.state is State.RUN
+    rig.until(State.HOLD, limit=0.3)
+    assert rig.shot.feed_override == pytest.approx(0.8)
+    assert rig.shot.waiting_for == "OPERATOR STATION SILENT"
+
+
+def test_a_jumping_pot_never_speeds_up_and_holds() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F30Z-5\nM30\n")
+    rig.run(1.0)
+    fastest = []
+    rig.watch.append(lambda shot: fastest.append(shot.velocity))
+    rig.sim.machine.pot_noise(0.5)
+    rig.until(State.HOLD, limit=1.0)
+    assert rig.shot.waiting_for == "OVERRIDE POT JUMPS"
+    assert max(fastest) <= 30 * INCH / 60 * 1.2 + 0.2
+
+
+def test_a_pot_that_leaps_up_is_believed_only_when_it_stands() -> None:
+    rig = Rig()
+    rig.sim.machine.set_feed_pot(0.2)
+    rig.run(0.5)
+    rig.sim.machine.set_feed_pot(1.2)
+    rig.run(0.25)
+    assert rig.shot.feed_override == pytest.approx(0.2)
+    rig.run(0.2)
+    assert rig.shot.feed_override == pytest.approx(1.2)
+    rig.sim.machine.set_feed_pot(0.1)
+    rig.tick()
+    assert rig.shot.feed_override == pytest.approx(0.1)
+
+
+# --- E-stop -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("after", [0.02, 0.05, 0.31, 0.7, 1.3, 2.0, 3.3, 4.9, 6.2, 7.7, 8.5, 9.05, 9.4])
+def test_estop_at_any_moment(after: float) -> None:
+    rig = Rig()
+    rig.start(BUSY)
+    rig.run(after)
+    rig.sim.machine.press_estop()
+    rig.tick()
+    assert rig.state is State.ESTOP
+    assert not {"coolant", "catcher"} & rig.shot.outputs
+    rig.run(0.3)
+    assert not rig.sim.ports.axes.sample().enabled
+    assert not rig.sim.ports.axes.sample().moving
+    rig.run(4.0)
+    assert rig.sim.machine.spindle_rpm() == 0.0
+    stood = rig.sim.machine.true_position()
+    rig.sim.machine.release_estop()
+    rig.run(2.0)
+    assert rig.state is State.DISABLED
+    rig.post(EnableDrives())
+    rig.run(2.0)
+    assert rig.state is State.IDLE
+    assert rig.sim.machine.true_position() == pytest.approx(stood, abs=0.01)
+    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.shot.parts == 0
+    assert not {"coolant", "catcher"} & rig.shot.outputs
+    rig.post(CycleStart())
+    assert rig.shot.line in {0, 1, 2}
+
+
+def test_estop_loses_the_home_of_axes_that_only_count() -> None:
+    rig = Rig(unhomed_machine())
+    rig.ready()
+    rig.post(Home())
+    rig.until(State.IDLE)
+    assert rig.shot.homed == (True, True, True)
+    rig.sim.machine.press_estop()
+    rig.run(0.5)
+    assert rig.shot.homed == (True, False, True)

@@ -1,0 +1,264 @@
+"""What Cycle Start refuses, with a reason and without any movement."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    GiveProof,
+    LoadJob,
+    Reset,
+    SpindleLimit,
+)
+from core.executor.job import Proof, make_job
+from core.executor.snapshot import State
+from core.executor.states import TRANSITIONS, TransitionError, demand_allowed
+from core.language.source import Source
+from core.machine.load import load_machine
+from tests.executor.rig import Rig, unhomed_machine
+
+TEXT = "G90G94F300\nX1\nM30\n"
+
+
+def nothing_moved(rig: Rig) -> bool:
+    rig.run(1.0)
+    return rig.sim.machine.true_position() == (0.0, 0.0, 0.0) and rig.sim.machine.spindle_rpm() == 0.0
+
+
+def refused(rig: Rig) -> str:
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state not in {State.RUN, State.WAIT}
+    assert rig.said("refused")[-1] == rig.shot.start_refused
+    assert nothing_moved(rig)
+    return rig.shot.start_refused
+
+
+def test_without_a_program() -> None:
+    rig = Rig()
+    rig.ready()
+    assert refused(rig) == "no program is loaded"
+
+
+def test_without_a_proof_until_it_comes() -> None:
+    rig = Rig()
+    rig.ready()
+    job = make_job(Source("PART", TEXT), rig.load(TEXT).setup)
+    rig.post(LoadJob(job))
+    assert rig.shot.proof_wanted
+    assert "not proved" in refused(rig)
+    rig.post(GiveProof(Proof(job.digest, ())))
+    assert not rig.shot.proof_wanted
+    rig.post(CycleStart())
+    assert rig.state is State.RUN
+
+
+def test_with_a_proof_of_another_program() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(TEXT)
+    other = make_job(Source("PART", TEXT.replace("X1", "X2")), job.setup)
+    rig.post(LoadJob(other, Proof(job.digest, ())))
+    assert "another program" in refused(rig)
+
+
+def test_with_offsets_changed_since_the_proof() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(TEXT)
+    other = make_job(job.source, dataclasses.replace(job.setup, block_delete=True))
+    assert other.digest != job.digest
+    rig.post(LoadJob(other, Proof(job.digest, ())))
+    assert "other offsets" in refused(rig)
+
+
+def test_with_errors_in_the_proof() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(TEXT)
+    rig.post(GiveProof(Proof(job.digest, ("line 2: no",))))
+    assert refused(rig) == "the program has errors: line 2: no"
+
+
+def test_with_a_tool_that_was_never_set() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(TEXT)
+    rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4))))
+    assert refused(rig) == "tool offset T3, T4 has never been set"
+
+
+def test_with_drives_off() -> None:
+    rig = Rig()
+    rig.load(TEXT)
+    assert "drives are off" in refused(rig)
+
+
+def test_in_estop_and_after_its_release() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(TEXT)
+    rig.sim.machine.press_estop()
+    assert "E-stop" in refused(rig)
+    rig.post(EnableDrives())
+    assert rig.state is State.ESTOP
+    rig.sim.machine.release_estop()
+    rig.run(0.5)
+    assert rig.state is State.DISABLED
+    assert "drives are off" in refused(rig)
+    rig.post(EnableDrives())
+    rig.post(CycleStart())
+    assert rig.state is State.RUN
+
+
+def test_with_an_alarm_until_reset() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(TEXT)
+    rig.sim.machine.drive_fault("Z")
+    rig.run(0.2)
+    assert rig.state is State.FAULT
+    assert "alarm" in refused(rig)
+    rig.post(EnableDrives())
+    assert rig.state is State.FAULT
+    rig.post(Reset())
+    assert rig.state is State.DISABLED
+    assert rig.shot.alarms == ()
+
+
+def test_with_an_axis_that_is_not_homed() -> None:
+    rig = Rig(unhomed_machine())
+    rig.ready()
+    rig.load(TEXT)
+    assert refused(rig) == "Z must be homed first"
+
+
+def test_with_a_silent_station() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(TEXT)
+    rig.sim.machine.station_silent()
+    assert refused(rig) == "operator station silent"
+
+
+def test_one_button_is_not_two_hands_on_a_real_machine() -> None:
+    rig = Rig(dataclasses.replace(load_machine(), backend="canopen"))
+    rig.ready()
+    rig.load(TEXT)
+    assert refused(rig) == "press both palm buttons"
+    rig.sim.machine.press_start()
+    rig.tick()
+    assert rig.state is State.RUN
+
+
+def test_two_starts_within_a_bounce_are_one_cycle() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load("G90G94F300\nX.01\nM30\n")
+    rig.run(0.4)
+    rig.sim.machine.press_start()
+    rig.run(0.12)
+    rig.sim.machine.press_start()
+    rig.run(1.0)
+    assert rig.shot.parts == 1
+    assert rig.said("start") == ["PART"]
+
+
+def test_start_while_running_is_nothing() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nX3\nX0\nM30\n")
+    for _ in range(3):
+        rig.run(0.35)
+        rig.sim.machine.press_start()
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.said("refused") == []
+
+
+def test_another_program_during_a_cycle_is_refused() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nX3\nM00\nM30\n")
+    digest = rig.shot.program
+    rig.load("G90G94F300\nX-3\nM30\n")
+    assert "under way" in rig.said("refused")[-1]
+    rig.until(State.PROGRAM_STOP)
+    rig.load("G90G94F300\nX-3\nM30\n")
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] == pytest.approx(3 * 25.4)
+    assert rig.shot.program == digest
+
+
+@pytest.mark.parametrize("state", [State.ESTOP, State.DISABLED, State.FAULT])
+@pytest.mark.parametrize("command", [CycleStart(), SpindleLimit(1000.0)])
+def test_nothing_moves_in_dead_states(state: State, command: Command) -> None:
+    rig = Rig()
+    rig.load(TEXT)
+    if state is State.ESTOP:
+        rig.sim.machine.press_estop()
+    if state is State.FAULT:
+        rig.sim.machine.drive_fault("X")
+    rig.run(0.4)
+    assert rig.state is state
+    rig.post(command)
+    assert rig.state is state
+    assert nothing_moved(rig)
+
+
+@pytest.mark.parametrize("rpm", [-1.0, 0.0, 3501.0])
+def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
+    rig = Rig()
+    rig.post(SpindleLimit(rpm))
+    assert "spindle limit" in rig.said("refused")[0]
+    rig.start("G90G94F300\nM03S3000\nG04F1\nM30\n")
+    rig.run(0.5)
+    assert rig.shot.rpm_command == 3000
+
+
+def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
+    rig = Rig()
+    rig.post(SpindleLimit(1200.0))
+    rig.start("G90G94F300\nM03S3000\nG04F9\nM30\n")
+    rig.run(3.0)
+    assert rig.shot.rpm_actual == 1200
+    rig.post(SpindleLimit(None))
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == 3000
+
+
+ALLOWED = sorted((old, new) for old, after in TRANSITIONS.items() for new in after)
+FORBIDDEN = sorted((old, new) for old in State for new in State if new not in TRANSITIONS[old])
+
+
+@pytest.mark.parametrize(("old", "new"), ALLOWED)
+def test_allowed_transitions(old: State, new: State) -> None:
+    demand_allowed(old, new)
+
+
+@pytest.mark.parametrize(("old", "new"), FORBIDDEN)
+def test_forbidden_transitions(old: State, new: State) -> None:
+    with pytest.raises(TransitionError, match=f"{old.value} cannot become {new.value}"):
+        demand_allowed(old, new)
+
+
+def test_nothing_leads_from_dead_states_into_motion() -> None:
+    moving = {State.RUN, State.WAIT, State.HOLDING, State.JOG, State.HOME}
+    for dead in (State.ESTOP, State.DISABLED, State.FAULT):
+        assert not TRANSITIONS[dead] & moving
+    assert TRANSITIONS[State.ESTOP] == {State.DISABLED}
+
+
+def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nX3\nM30\n")
+    rig.run(0.3)
+    monkeypatch.setitem(TRANSITIONS, State.RUN, frozenset())
+    rig.until(State.FAULT)
+    assert rig.shot.alarms[0].code == "internal"
+    rig.run(0.5)
+    assert not rig.sim.ports.axes.sample().enabled
