@@ -24,11 +24,6 @@ class Count(NamedTuple):
     lines: int = 0
     worst: int = 0
 
-    @property
-    def too_many(self) -> bool:
-        """Whether a program of this size is refused."""
-        return self.blocks > MOST_BLOCKS or self.lines > MOST_LINES
-
 
 def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
     """The error for a program that would execute too much, or None.

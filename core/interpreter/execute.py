@@ -14,14 +14,14 @@ from core.interpreter.mcodes import after_motion, before_motion
 from core.interpreter.moves import statement_move
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
-from core.interpreter.statement import FineMove, PlainMove, Statement
+from core.interpreter.statement import Statement, Step
 from core.interpreter.tools import ToolUse, frame, secondary, tool_change
 from core.language.diagnostics import ProgramError
 
 _SHORTEST_DWELL = 0.1  # s
 _LONGEST_DWELL = 3600.0
 
-Ahead = Sequence[PlainMove | FineMove | Statement | None]
+Ahead = Sequence[Step]
 
 
 def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first: bool) -> Iterator[Block]:

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from core.interpreter import units
 from core.interpreter.log import refusal
 from core.interpreter.spindle import rpm_at
-from core.interpreter.state import State
-from core.interpreter.statement import FineMove, PlainMove, Statement
+from core.interpreter.state import HIGH_FEED, State
+from core.interpreter.statement import Statement, Step
 from core.language.diagnostics import ProgramError
 
 _LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
 _MOST_PER_REV = 0.2 * units.MM_PER_INCH, 1.0 * units.MM_PER_INCH, 2.0 * units.MM_PER_INCH
-_CRASH_PER_REV = 0.05 * units.MM_PER_INCH
 _SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
 _TAPPING_LINES = 6  # so soon after the feed the spindle turns back
 _ROUNDING = 1 + 1e-9
@@ -69,11 +68,12 @@ def _rapid(state: State, made: Statement) -> None:
 
 def _feed(state: State, made: Statement, value: float, column: int, *, first: bool) -> None:
     modal = state.modal
-    feed = value * units.per_unit(metric=modal.metric) / (1 if modal.per_rev else 60)
+    feed = state.feed_word(value)
     most = _MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
     state.title_rapid = 0
     state.told.discard("feed-missing")
-    kept = min(max(feed, _LEAST / 60), most)  # after an error too, so that the rest can be judged
+    least = _LEAST if modal.per_rev else _LEAST / 60
+    kept = min(max(feed, least), most)  # after an error too, so that the rest can be judged
     if first and not modal.per_rev:
         state.first_feed = kept
         state.adopt(state.modal._replace(feed=kept, rapid=False, rapid_rate=kept))
@@ -84,7 +84,6 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         state.adopt(state.modal._replace(feed=kept, rapid=False))
     else:
         state.adopt(state.modal._replace(feed=kept, rapid=False, cut_feed=kept, cut_per_rev=modal.per_rev))
-    least = _LEAST if modal.per_rev else _LEAST / 60
     if not least / _ROUNDING <= feed <= most * _ROUNDING:
         low = units.feed(least, per_rev=modal.per_rev, metric=modal.metric)
         high = units.feed(most, per_rev=modal.per_rev, metric=modal.metric)
@@ -94,21 +93,19 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         raise ProgramError(refusal(made.line, column, "feed-range", message, hint))
 
 
-def warn_of_crash_feed(
-    state: State, made: Statement, ahead: Sequence[PlainMove | FineMove | Statement | None]
-) -> None:
+def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[Step]) -> None:
     """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
     modal, word = state.modal, made.words.get("F")
     if word is None or made.one_shot == 4 or not modal.per_rev or modal.coarse or modal.feed is None:
         return
-    if modal.feed <= _CRASH_PER_REV * _ROUNDING or _taps(modal.spindle, ahead):
+    if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return
     shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
     hint = "Look for a lost decimal point."
     state.log.warn(made.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
 
 
-def _taps(spindle: int, ahead: Sequence[PlainMove | FineMove | Statement | None]) -> bool:
+def _taps(spindle: int, ahead: Sequence[Step]) -> bool:
     back = {1: 4, -1: 3}.get(spindle)
     return any(isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES])
 

@@ -10,7 +10,7 @@ from core.interpreter.feeds import check_move
 from core.interpreter.log import refusal
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import FineMove, PlainMove, Statement
+from core.interpreter.statement import PlainMove, Statement
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word, lex_line
 
@@ -117,13 +117,14 @@ def on_step(state: State, made: Statement, letter: str) -> float | None:
     return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
 
 
-def rounded(state: State, line: int, text: str, step: FineMove) -> PlainMove:
-    """A line of X and Z alone on the control's step, with a warning for each word that was not."""
-    x, z, _ = step
+def rounded(state: State, line: int, text: str, x: float | None, z: float | None) -> PlainMove:
+    """X and Z of a line on the control's step, with a warning for each word that was not."""
     new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
     new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
     if x_finer or z_finer:
         for word in lex_line(line, text).words:
+            if word.letter not in {"X", "Z"}:
+                continue
             value, finer = _nearest_step(state, word.letter, word.value or 0.0)
             if finer:
                 _warn_of_finer(state, line, word, value)

@@ -6,22 +6,17 @@ import re
 from dataclasses import dataclass
 
 from core.interpreter import codes
+from core.interpreter.plain import read_move
 from core.interpreter.reading import statement, unreadable
-from core.interpreter.statement import FineMove, PlainMove, Statement
+from core.interpreter.statement import Statement, Step
 from core.interpreter.structure import Structure, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
 from core.language.source import Source
 
-_NUMBER = r"([-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,5})?|\.[0-9]{1,5}))"
-_PLAIN = re.compile(f"(?:[Xx]{_NUMBER})?(?:[Zz]{_NUMBER})?")
-_FIVE_PLACES = re.compile(r"\.[0-9]{5}")
 _MOST_PROBLEMS = 100
 _PLANE_END = re.compile(r"\s*\(\s*END\s*\)\s*", re.IGNORECASE)
-
-Step = PlainMove | FineMove | Statement | None
-"""A line to run: X and Z alone, anything else, or nothing at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,17 +51,10 @@ class _Reader:
         self._in_plane = False
 
     def read(self) -> None:
-        plain = _PLAIN.fullmatch
-        fine = _FIVE_PLACES.search
         append = self.steps.append
         for text in self.source.lines:
-            match = plain(text)
-            if match is None or not text:
-                append(self._statement(text))
-                continue
-            x, z = match.groups()
-            move = None if x is None else float(x), None if z is None else float(z)
-            append((*move, True) if fine(text) else move)
+            move = read_move(text)
+            append(self._statement(text) if move is None else move)
 
     def _statement(self, text: str) -> Statement | None:
         number = len(self.steps) + 1

@@ -13,14 +13,17 @@ from core.interpreter.flow import Flow
 from core.interpreter.log import Log, refusal
 from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
-from core.interpreter.moves import fast_move, go, on_step, plain_move, rounded
-from core.interpreter.program import Program, Step
+from core.interpreter.moves import fast_move, go, on_step, plain_move
+from core.interpreter.plain import plain
+from core.interpreter.program import Program
+from core.interpreter.reading import statement
 from core.interpreter.setup import Setup
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import UNREADABLE, Statement
+from core.interpreter.statement import UNREADABLE, Statement, Step
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.omniturn import lex_line
 
 _AHEAD = 8
 
@@ -94,12 +97,14 @@ class Interpreter:
                 break
             try:
                 if isinstance(step, tuple):
-                    if len(step) == 3:
-                        step = rounded(state, at + 1, lines[at], step)
-                    if state.fast:
-                        yield fast_move(state, at + 1, lines[at], step)
+                    move = step if len(step) == 2 else plain(state, at + 1, lines[at], step)
+                    if move is None:
+                        step = steps[at] = statement(lex_line(at + 1, lines[at]))
+                        yield from self._statement(step)
+                    elif state.fast:
+                        yield fast_move(state, at + 1, lines[at], move)
                     else:
-                        yield plain_move(state, at + 1, lines[at], step)
+                        yield plain_move(state, at + 1, lines[at], move)
                 elif step is not None:
                     yield from self._statement(step)
             except ProgramError as problem:

@@ -9,6 +9,9 @@ from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
 from core.interpreter.units import MM_PER_INCH
 
+HIGH_FEED = 0.05 * MM_PER_INCH * (1 + 1e-9)
+"""Feed, mm/rev, above which F003 was hardly meant and F.003 was."""
+
 
 class State:
     """Position and modal state. mm, X a radius; ``x z`` the point reached, ``px pz`` the one programmed,
@@ -38,6 +41,7 @@ class State:
         "scale_z",
         "setup",
         "slow_length",
+        "steady_feed",
         "title_rapid",
         "told",
         "tool_line",
@@ -78,6 +82,9 @@ class State:
         self.feed = modal.rapid_rate if modal.rapid else (modal.feed or 0.0)
         self.per_rev = modal.per_rev and not modal.rapid
         self.rpm = modal.rpm * modal.spindle
+        steady = not modal.rapid and (modal.feed, modal.per_rev) == (modal.cut_feed, modal.cut_per_rev)
+        steady = steady and not (modal.per_rev and (modal.feed or 0.0) > HIGH_FEED)  # each of those is told
+        self.steady_feed = modal.feed if steady else None  # where G01 and this F again would change nothing
         self.slow_length = 0.0  # a longer move under this feed takes too long to be meant
         self.fast = False  # whether the next plain move needs no check: set by a move that passed all
 
@@ -86,6 +93,10 @@ class State:
         if modal.per_rev or modal.feed is None or self.first_feed is None:
             return False
         return abs(modal.feed - self.first_feed) <= 1e-9 * self.first_feed
+
+    def feed_word(self, value: float) -> float:
+        """F in mm/s under G94, in mm/rev under G95."""
+        return value * self.scale_z / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: Modal) -> None:
         """Change the frame under a machine point that stays where it is."""

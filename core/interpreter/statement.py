@@ -10,8 +10,8 @@ from core.language.omniturn import Word
 PlainMove = tuple[float | None, float | None]
 """X and Z as written of a line that holds nothing else: most lines of a long program."""
 
-FineMove = tuple[float | None, float | None, bool]
-"""The same with a fifth decimal, which may be finer than the control's step."""
+CodedMove = tuple[float | None, float | None, bool, int, float | None]
+"""X, Z, whether one of them has a fifth decimal, 0 or 1 for G00 or G01 (-1: none), F; all as written."""
 
 UNREADABLE = "unreadable"
 
@@ -59,3 +59,7 @@ class Statement:
     def part(self, name: str) -> str:
         """Text of one of the blocks that the line makes."""
         return self.text if self.parts is None else self.parts.get(name, self.text)
+
+
+Step = PlainMove | CodedMove | Statement | None
+"""A line to run: a move of plain numbers, anything else, or nothing at all."""

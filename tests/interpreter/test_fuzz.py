@@ -69,3 +69,30 @@ def test_any_text(text: str) -> None:
 def test_text_of_the_languages_letters(text: str) -> None:
     for block in passed(text).blocks:
         check(block)
+
+
+CUT = st.sampled_from(["", "F20", "F.06", "F300", "F400", "F.00125", "F0"])
+COORDINATE = st.sampled_from(["0", "1", "-.5", ".12345", ".00001", "2.12344", "9."])
+MOVE = st.builds(
+    "{}X{}Z{}{}".format, st.sampled_from(["", "G00", "G01"]), COORDINATE, COORDINATE, CUT
+) | st.builds("{}Z{}{}".format, st.sampled_from(["", "G00", "G01"]), COORDINATE, CUT)
+MODES = ["G90", "G91", "G71", "G72", "G73", "G94F20", "G95F.003", "G95", "G00(A)", "G96S300", "G97S800"]
+MODE = st.sampled_from([*MODES, "M03", "M05", "T1", "D1", "LS2", "LF"])
+
+
+def figures(block: Block) -> tuple[object, ...]:
+    own = (block.n, block.line, block.kind, block.x, block.z, block.x0, block.z0, block.feed, block.per_rev)
+    return (*own, block.rpm, block.css, block.offset_x, block.offset_z, block.modal)
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.lists(MOVE | MODE, max_size=25))
+def test_moves_read_as_numbers_do_what_they_do_as_words(program: list[str]) -> None:
+    """A blank makes a line one that is read word by word; nothing else may come of it."""
+    numbers = passed(lines("G90G94F300", "M03S500", *program, "M30"), setup(secondary={1: (0.1, -0.2)}))
+    words = passed(
+        lines("G90G94F300", "M03S500", *(f"{line} " for line in program), "M30"),
+        setup(secondary={1: (0.1, -0.2)}),
+    )
+    assert [figures(block) for block in numbers.blocks] == [figures(block) for block in words.blocks]
+    assert numbers.interpreter.diagnostics == words.interpreter.diagnostics

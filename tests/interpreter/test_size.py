@@ -10,6 +10,7 @@ import pytest
 from core.interpreter import run
 from core.interpreter.program import read_program
 from core.interpreter.run import Interpreter
+from core.language.omniturn import Line, lex_line
 from core.language.source import Source
 from tests.interpreter.programs import body, lines, passed, setup
 
@@ -78,10 +79,14 @@ def test_a_million_passes_start_at_once_and_keep_no_memory() -> None:
 
 
 def test_lines_are_not_lexed_again_in_a_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    program = read_program(Source("A", body("LS50", "X1.23455Z1", "G01X2F20", "LF")))
+    program = read_program(Source("A", body("LS50", "X1.23455Z1", "G01X2F20", "G00X1", "X3M08", "LF")))
+    lexed: list[int] = []
 
-    def never(_number: int, _text: str) -> None:
-        raise AssertionError("lexed while running")
+    def counted(number: int, text: str) -> Line:
+        lexed.append(number)
+        return lex_line(number, text)
 
-    monkeypatch.setattr("core.interpreter.moves.lex_line", never)
-    assert sum(1 for _ in Interpreter(program, setup()).blocks()) == 102
+    monkeypatch.setattr("core.interpreter.moves.lex_line", counted)
+    monkeypatch.setattr(run, "lex_line", counted)
+    assert sum(1 for _ in Interpreter(program, setup()).blocks()) == 252
+    assert len(lexed) == len(set(lexed))

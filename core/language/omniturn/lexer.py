@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic
 from core.language.omniturn import faults
 from core.language.omniturn.words import BARE, Line, Word
 
@@ -171,8 +171,3 @@ class _Scanner:
 
     def _column(self, at: int) -> int:
         return self._code.columns[at]
-
-
-def is_error(line: Line) -> bool:
-    """Whether the line could not be read."""
-    return any(error.severity is Severity.ERROR for error in line.errors)
