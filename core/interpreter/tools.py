@@ -68,6 +68,7 @@ def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Bloc
         )
     )
     state.tool_line = made.line if number else 0
+    state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
     secondary(state, made)
     return state.action(made.line, made.part("tool"), ToolChange(number), rpm_at(state, state.x))
 

@@ -73,6 +73,7 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("G72X1Z1", "G02X1Z1I0K0"), (4, 1, "arc-no-radius")),
     # tools and frames
     (("T1", "X1"), (4, 0, "tool-first-move")),
+    (("T1", "X1Z1", "X2Z2", "T1", "X1"), (7, 0, "tool-first-move")),
     (("T1Z1",), (3, 0, "tool-first-move")),
     (("T1", "G02X1R1"), (4, 0, "tool-first-move")),
     (("T1", "G10X0Z0", "Z1"), (5, 0, "tool-first-move")),
