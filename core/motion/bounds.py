@@ -12,20 +12,43 @@ from core.motion.limits import CENTRIPETAL_SHARE, OVERRIDE_MAX, FloatArray, Moti
 from core.motion.pieces import Pieces
 
 
+def piece_limits(
+    pieces: Pieces, limits: MotionLimits, *, more: bool
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Speed cap (n,) and acceleration (n,) of pieces, squared speed limit (n+1,) of their joints.
+
+    ``more`` says that pieces will follow. The joints at both ends are endless.
+    """
+    cap = speed_caps(pieces, limits)
+    speeds = expected_speeds(pieces, cap)
+    corner = np.full(len(pieces) + 1, np.inf)
+    if not len(pieces):
+        return cap, cap, corner
+    turns = corner_turns(pieces)
+    corner[1:-1] = corner_caps(pieces, turns, limits)
+    spare = spare_for_chords(pieces, speeds, turns, corner[1:-1], limits, more=more)
+    return cap, np.minimum(accelerations(pieces, speeds, limits), spare), corner
+
+
 def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
-    """Speed (n,) no override may exceed, mm/s: axes, centripetal acceleration, OVERRIDE_MAX × rate."""
+    """Speed (n,) that axes and centripetal acceleration allow on each piece, mm/s."""
     caps = _least_ratio(limits.speeds, pieces.direction)
     arc = pieces.curvature != 0.0
     centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
     caps[arc] = np.minimum(caps[arc], np.minimum(limits.plane_speed, centripetal))
+    return caps
+
+
+def expected_speeds(pieces: Pieces, caps: FloatArray) -> FloatArray:
+    """The fastest (n,) that a piece will be run with any override, mm/s; acceleration is laid out for it."""
     return np.minimum(caps, OVERRIDE_MAX * pieces.rate)
 
 
-def accelerations(pieces: Pieces, caps: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Acceleration (n,) along each piece, mm/s²; on arcs what the vector sum leaves at the speed cap."""
+def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Acceleration (n,) along each piece, mm/s²; on arcs what the vector sum leaves at ``speeds``."""
     along = _least_ratio(limits.accelerations, pieces.direction)
     arc = pieces.curvature != 0.0
-    centripetal = caps[arc] ** 2 * np.abs(pieces.curvature[arc])
+    centripetal = speeds[arc] ** 2 * np.abs(pieces.curvature[arc])
     along[arc] = np.minimum(along[arc], np.sqrt(limits.plane_acceleration**2 - centripetal**2))
     return along
 
@@ -64,23 +87,33 @@ def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Floa
 
 
 def spare_for_chords(
-    pieces: Pieces, caps: FloatArray, turns: FloatArray, corners: FloatArray, limits: MotionLimits
+    pieces: Pieces,
+    speeds: FloatArray,
+    turns: FloatArray,
+    corners: FloatArray,
+    limits: MotionLimits,
+    *,
+    more: bool,
 ) -> FloatArray:
     """Acceleration (n,) that chords shorter than one interval may use besides following their curve.
 
     Chords passed within one setpoint interval are a curve to the machine: v²·|Δu|/ℓ of each axis is spoken
-    for, and (amax - that)/|u| remains. At least a fifth of amax does, by the limit on corners. Endless for
-    longer lines and for arcs.
+    for, and (amax - that)/|u| remains. At least a fifth of amax does, by the limit on corners; where ``more``
+    pieces will follow, the last one gets that, so that no later corner can take what a plan has built on.
+    Endless for longer lines and for arcs.
     """
+    amax = limits.accelerations
     spare = np.full(len(pieces), np.inf)
-    short = (pieces.length < caps * limits.interval) & (pieces.curvature == 0.0)
-    if len(pieces) < 2 or not short.any():
+    short = (pieces.length < speeds * limits.interval) & (pieces.curvature == 0.0)
+    if not short.any():
         return spare
     bend = turns / (0.5 * (pieces.length[:-1] + pieces.length[1:]))[:, None]
     taken = np.zeros((len(pieces), 3))
-    taken[1:] = bend * np.minimum(caps[1:] ** 2, corners)[:, None]
-    np.maximum(taken[:-1], bend * np.minimum(caps[:-1] ** 2, corners)[:, None], out=taken[:-1])
-    left = limits.accelerations - taken[short]
+    taken[1:] = bend * np.minimum(speeds[1:] ** 2, corners)[:, None]
+    np.maximum(taken[:-1], bend * np.minimum(speeds[:-1] ** 2, corners)[:, None], out=taken[:-1])
+    if more:
+        taken[-1] = CENTRIPETAL_SHARE * amax
+    left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)
     share = np.abs(pieces.direction[short])
     ratio = np.divide(left, share, out=np.full(share.shape, np.inf), where=share > 0.0)
     spare[short] = ratio.min(axis=1)

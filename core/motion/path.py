@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.motion.bounds import accelerations, corner_caps, corner_turns, spare_for_chords, speed_caps
+from core.motion.bounds import piece_limits
 from core.motion.errors import MotionError
 from core.motion.limits import FloatArray, IntArray, MotionLimits
 from core.motion.pieces import Pieces, joined, make_pieces
@@ -70,12 +70,15 @@ class Path:
 class PathBuilder:
     """Makes paths of blocks that come in one after the other.
 
-    ``rpm_max`` is the highest spindle speed that can be reached now: the machine's, or the operator's limit.
+    ``rpm_max`` is the highest spindle speed that can be reached now: the machine's, or the operator's limit;
+    it may be changed and counts for blocks that are added afterwards. A path stays good while it grows: from
+    any state of a plan on it, a plan on the longer path is possible.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
         self._limits = limits
-        self._rpm_max = rpm_max
+        self.rpm_max = rpm_max
+        self._closed = False
         self._parts: list[Pieces] = []
         self._blocks: list[IntArray] = []
         self._counts: list[IntArray] = []
@@ -94,7 +97,9 @@ class PathBuilder:
         batch = list(blocks)
         if not batch:
             return
-        words = read_words(batch, self._rpm_max)
+        if self._closed:
+            raise MotionError(f"Block {batch[0].n} comes after the end of the path; begin another path.")
+        words = read_words(batch, self.rpm_max)
         _demand_unbroken(words, self._end)
         pieces, counts = _pieces(words)
         if self._start is None:
@@ -110,6 +115,10 @@ class PathBuilder:
         if self._path is None:
             self._path = self._make()
         return self._path
+
+    def close(self) -> None:
+        """Say that the path ends here, in an exact stop: its last short piece need not be kept in hand."""
+        self._closed, self._path = True, None
 
     def drop_before(self, n: int) -> None:
         """Forget the blocks before block ``n`` but the last with a length: corners need a neighbour."""
@@ -131,7 +140,7 @@ class PathBuilder:
         if self._start is None:
             raise MotionError("There is no block to plan a path of; add the blocks first.")
         pieces = joined(self._parts)
-        cap, a, corner = _limits(pieces, self._limits)
+        cap, a, corner = piece_limits(pieces, self._limits, more=not self._closed)
         return Path(
             pieces=pieces,
             s=self._s0 + np.concatenate([[0.0], np.cumsum(pieces.length)]),
@@ -149,18 +158,8 @@ def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: 
     """The path of ``blocks``; see ``PathBuilder``. Raises MotionError when a block cannot be moved."""
     builder = PathBuilder(limits, rpm_max=rpm_max)
     builder.add(blocks)
+    builder.close()
     return builder.path()
-
-
-def _limits(pieces: Pieces, limits: MotionLimits) -> tuple[FloatArray, FloatArray, FloatArray]:
-    cap = speed_caps(pieces, limits)
-    a = accelerations(pieces, cap, limits)
-    corner = np.full(len(pieces) + 1, np.inf)
-    if len(pieces) > 1:
-        turns = corner_turns(pieces)
-        corner[1:-1] = corner_caps(pieces, turns, limits)
-        a = np.minimum(a, spare_for_chords(pieces, cap, turns, corner[1:-1], limits))
-    return cap, a, corner
 
 
 def _pieces(words: Words) -> tuple[Pieces, IntArray]:

@@ -73,6 +73,7 @@ class ChunkPlanner:
     def finish(self) -> Iterator[Chunk]:
         """Come to rest at the end of the last block: an exact stop. Blocks may be added again afterwards."""
         if self._builder.holds_blocks:
+            self._builder.close()
             yield self._accept(self._plan(), None)
         self._builder = PathBuilder(self._limits, rpm_max=self._rpm_max)
         self._s, self._v, self._waiting = None, 0.0, 0

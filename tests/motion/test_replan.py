@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -166,6 +167,52 @@ def test_more_blocks_are_taken_up_without_a_stop() -> None:
     after = plan(builder.path(), start_s=s, start_v=v)
     assert after.duration == pytest.approx(whole.duration - 0.3, rel=1e-9)
     assert after.position(after.duration)[0] == pytest.approx([0.0, 100.0, 0.0])
+
+
+@settings(max_examples=100, deadline=None)
+@given(programs(most=20), st.lists(moment, min_size=20, max_size=20))
+def test_a_growing_path_never_leads_into_a_state_without_a_future(
+    blocks: list[Block], moments: list[float]
+) -> None:
+    """Each block comes in at any moment of the plan so far, also in the middle of its last braking."""
+    builder = PathBuilder(LIMITS)
+    builder.add(blocks[:1])
+    profile = plan(builder.path())
+    for block, when in zip(blocks[1:], moments, strict=False):
+        (s,), (v,) = profile.at(when * profile.duration)
+        builder.add([block])
+        profile = plan(builder.path(), start_s=s, start_v=v)
+    builder.close()
+    (s,), (v,) = profile.at(moments[-1] * profile.duration)
+    assert plan(builder.path(), start_s=s, start_v=v).end_s == pytest.approx(profile.end_s, abs=1e-9)
+
+
+def test_a_corner_that_comes_in_late_takes_nothing_from_the_braking_under_way() -> None:
+    """At the start of a last chord of 0.05 mm, braking for its end, a right angle into another is added."""
+    builder = PathBuilder(LIMITS)
+    blocks = polyline([(0, 0), (0, 10), (0, 10.05), (0.05, 10.05)], 100.0)
+    builder.add(blocks[:2])
+    path = builder.path()
+    (v,) = plan(path).at(plan(path).time_at(path.s[1:2]))[1]
+    builder.add(blocks[2:])
+    assert plan(builder.path(), start_s=10.0, start_v=v).end_s == pytest.approx(10.1)
+
+
+def test_less_feed_than_before_is_braked_down_to_even_beyond_the_override() -> None:
+    """The operator's spindle limit takes a feed per revolution to a tenth while the slide runs at 50 mm/s."""
+    block = replace(line((0, 0), (0, 100), 1.0), per_rev=True, rpm=3000.0)
+    slow = build_path([block], LIMITS, rpm_max=300.0)
+    after = plan(slow, start_s=20.0, start_v=50.0)
+    assert after.at(45.0 / A)[1][0] == pytest.approx(5.0)
+    assert after.duration > 79.0 / 5.0
+
+
+def test_nothing_can_be_added_behind_the_end() -> None:
+    builder = PathBuilder(LIMITS)
+    builder.add([line((0, 0), (0, 10), n=1)])
+    builder.close()
+    with pytest.raises(MotionError, match="Block 2 comes after the end"):
+        builder.add([line((0, 10), (0, 20), n=2)])
 
 
 def test_dropping_keeps_the_corner_behind() -> None:

@@ -1,0 +1,69 @@
+"""What planning costs and how near its time is to the ideal: ``python -m tests.benchmarks.bench_planner``.
+
+Half a circle of R 50 mm in 0.02 mm chords at 100 mm/s, no tolerance spent, and the same circle run through
+many times. Ideal is the way at full feed with one slide's ramp up and down; on a slant both slides
+ramp together, so that a path may end a little faster.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+import time
+from collections.abc import Callable
+
+from core.interpreter.blocks import Block
+from core.motion.limits import MotionLimits
+from core.motion.path import build_path
+from core.motion.plan import plan
+from core.motion.timeline import ChunkPlanner
+from tests.motion.moves import chords
+
+RADIUS, CHORD, FEED, PAIRS = 50.0, 0.02, 100.0, 7
+LIMITS = MotionLimits()
+
+
+def median_ms(work: Callable[[], object], times: int) -> float:
+    """Median cpu time of ``work``, ms."""
+    taken = []
+    for _ in range(times):
+        begin = time.process_time()
+        work()
+        taken.append(time.process_time() - begin)
+    return 1000.0 * statistics.median(taken)
+
+
+def row(count: int, times: int) -> str:
+    """One line of the table: pieces, planned and ideal time, and what building and planning cost."""
+    angle = count * CHORD / RADIUS
+    blocks = chords(RADIUS, angle, count, FEED)
+    path = build_path(blocks, LIMITS)
+    planned = plan(path).duration
+    ideal = path.length / FEED + FEED / LIMITS.plane_acceleration
+    building = median_ms(lambda: build_path(blocks, LIMITS), max(times // 2, 1))
+    planning = median_ms(lambda: plan(path), times)
+    windows = median_ms(lambda: _in_windows(blocks), 1)
+    return (
+        f"{count:>9} {planned:>11.4f} {ideal:>11.4f} {planned / ideal:>8.5f}"
+        f" {planning:>9.1f} {building:>9.1f} {windows:>11.1f}\n"
+    )
+
+
+def _in_windows(blocks: list[Block]) -> None:
+    planner = ChunkPlanner(LIMITS)
+    for _ in planner.add(blocks):
+        pass
+    for _ in planner.finish():
+        pass
+
+
+def main() -> None:
+    """Print the table."""
+    sys.stdout.write("   pieces   planned s     ideal s    ratio   plan ms  build ms  windows ms\n")
+    for count, times in ((round(math.pi * RADIUS / CHORD), PAIRS), (100_000, PAIRS), (1_000_000, 3)):
+        sys.stdout.write(row(count, times))
+
+
+if __name__ == "__main__":
+    main()
