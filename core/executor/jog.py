@@ -84,11 +84,12 @@ class Jogger:
 
 
 def _room(axis: Axis, at: float, speed: float) -> float:
-    """How far the axis may go in this direction."""
+    """How far the axis may go in this direction; less than a count is nothing."""
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
-    return max((high - at if speed > 0.0 else at - low) - _MARGIN, 0.0)
+    room = (high - at if speed > 0.0 else at - low) - _MARGIN
+    return room if room > axis.count else 0.0
 
 
 def _ride(v0: float, v1: float, a: float, time: float, room: float) -> list[tuple[float, float, float]]:
@@ -105,8 +106,8 @@ def _ride(v0: float, v1: float, a: float, time: float, room: float) -> list[tupl
     top = max(min(top, reach, here + a * max(time, 0.0)), 0.0) if top > here else min(top, reach)
     change = abs(top - here) / a
     way = change * (here + top) / 2.0 + top * top / (2.0 * a)
-    cruise = max(time - change, 0.0)
-    if top > 0.0 and math.isfinite(room):
+    cruise = max(time - change, 0.0) if top > 0.0 else 0.0
+    if cruise and math.isfinite(room):
         cruise = min(cruise, max(room - way, 0.0) / top)
     pieces = [
         (change, v0, sign * math.copysign(a, top - here)),

@@ -17,6 +17,7 @@ from drivers.simulated.terminals import Terminals
 from drivers.straight import straight
 
 _NEVER = float("inf")
+_PAST = 0.1  # s of setpoints that may still be asked for
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
 
 
@@ -33,7 +34,8 @@ class Plant:
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
         tolerance = Tolerance(
-            position=(0.001,) * len(self.names), velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes)
+            position=(0.001,) * len(self.names),
+            velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes),
         )
         self.queue = SetpointQueue(self.names, self._readings(), config.commit, tolerance)
         self.enabled = False
@@ -57,7 +59,7 @@ class Plant:
             last = int(now / self.config.step + 1e-6)
             if last > self._k:
                 self._slides(last)
-                self.queue.trim(self.t)
+                self.queue.trim(self.t - _PAST)
         return now
 
     def splice(self, segments: Segments) -> None:

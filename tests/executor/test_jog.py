@@ -1,0 +1,229 @@
+"""Jog is a lease, and homing comes first where an axis only counts."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, JogStop, Reset
+from core.executor.snapshot import State
+from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
+
+AMAX = 120 * INCH
+FAST = 100 * INCH / 60  # manual rapid
+
+
+def ready() -> Rig:
+    rig = Rig()
+    rig.ready()
+    return rig
+
+
+@pytest.mark.parametrize("lease", [0.05, 0.2, 0.25])
+@pytest.mark.parametrize("speed", [1.0, 20.0, FAST])
+def test_a_lease_that_nobody_renews_ends_the_jog(lease: float, speed: float) -> None:
+    rig = ready()
+    rig.executor.post(Jog("Z", -speed, lease))
+    rig.executor.tick()
+    began = rig.clock.now()
+    rig.until(State.IDLE)
+    assert rig.clock.now() - began < lease + 0.1
+    run = -rig.shot.demand[1]
+    assert 0 < run <= lease * speed + speed * speed / (2 * AMAX) + 1e-9
+
+
+def test_a_dead_host_ends_a_jog_as_well() -> None:
+    rig = ready()
+    rig.post(Jog("X", FAST, 0.2))
+    rig.clock.advance(5.0)
+    sample = rig.sim.ports.axes.sample()
+    assert not sample.moving
+    assert sample.actual[0] <= 0.2 * FAST + FAST * FAST / (2 * AMAX) + 0.002
+    rig.tick()
+    assert rig.shot.alarms == ()
+    rig.tick()
+    assert rig.state is State.IDLE
+
+
+def test_a_renewed_lease_goes_on_at_one_speed() -> None:
+    rig = ready()
+    rig.post(Jog("X", 10.0, 0.2))
+    rig.run(0.1)
+    speeds = []
+    for _ in range(10):
+        rig.post(Jog("X", 10.0, 0.2))
+        rig.run(0.1)
+        speeds.append(rig.shot.velocity)
+    assert speeds == pytest.approx([10.0] * 10, rel=0.02)
+    rig.post(JogStop())
+    stood = rig.shot.demand[0]
+    assert rig.until(State.IDLE) < 0.05
+    assert rig.shot.demand[0] - stood < 10.0 * 0.04
+
+
+def test_reversing_passes_through_standstill() -> None:
+    rig = ready()
+    rig.post(Jog("X", 40.0, 0.2))
+    rig.run(0.15)
+    rig.post(Jog("X", -40.0, 0.2))
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+
+
+@pytest.mark.parametrize(
+    ("axis", "speed", "limit"), [("X", FAST, 4.0), ("X", -FAST, -4.0), ("Z", 500.0, 6.0)]
+)
+def test_soft_limits_end_a_jog(axis: str, speed: float, limit: float) -> None:
+    rig = ready()
+    index = "XZ".index(axis)
+    for _ in range(600):
+        rig.executor.post(Jog(axis, speed, 0.2))
+        rig.tick()
+    assert rig.state is State.IDLE
+    assert rig.shot.alarms == ()
+    assert abs(rig.shot.demand[index] - limit * INCH) < 0.011
+    assert abs(rig.shot.demand[index]) < abs(limit) * INCH
+    rig.post(Jog(axis, -speed, 0.2))
+    rig.until(State.IDLE)
+    assert abs(rig.shot.demand[index]) < abs(limit) * INCH - 1.0
+
+
+def test_jog_is_never_faster_than_the_manual_rapid() -> None:
+    rig = ready()
+    fastest = []
+    rig.watch.append(lambda shot: fastest.append(shot.velocity))
+    rig.post(Jog("Z", 500.0, 1.0))
+    rig.until(State.IDLE)
+    assert max(fastest) == pytest.approx(FAST, rel=0.04)  # the slide swings a little over its setpoint
+
+
+@pytest.mark.parametrize(
+    ("jog", "why"),
+    [
+        (Jog("B", 1.0, 0.2), "no axis B"),
+        (Jog("X", 1.0, 0.0), "lease above 0"),
+        (Jog("X", 1.0, -1.0), "lease above 0"),
+        (Jog("X", math.nan, 0.2), "lease above 0"),
+        (Jog("X", 1.0, math.inf), "lease above 0"),
+    ],
+)
+def test_jogs_without_sense_are_refused(jog: Jog, why: str) -> None:
+    rig = ready()
+    rig.post(jog)
+    rig.run(0.5)
+    assert why in rig.said("refused")[0]
+    assert rig.shot.demand == (0.0, 0.0, 0.0)
+
+
+def test_no_lease_is_longer_than_a_second() -> None:
+    rig = ready()
+    rig.post(Jog("X", 1.0, 3600.0))
+    assert rig.until(State.IDLE) < 1.2
+
+
+def test_jog_with_the_drives_off_or_a_cycle_running_is_refused() -> None:
+    rig = Rig()
+    rig.post(Jog("X", 1.0, 0.2))
+    assert "DRIVES OFF" in rig.said("refused")[0]
+    rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
+    rig.run(0.2)
+    rig.post(Jog("X", 10.0, 0.2))
+    assert "RUNNING" in rig.said("refused")[1]
+    rig.until(State.PROGRAM_STOP)
+    rig.post(Jog("X", 10.0, 0.2))
+    rig.run(0.5)
+    assert "PROGRAM STOP" in rig.said("refused")[2]
+    assert rig.shot.demand[0] == 0.0
+
+
+def test_another_axis_ends_the_jog() -> None:
+    rig = ready()
+    rig.post(Jog("X", 10.0, 1.0))
+    rig.run(0.2)
+    rig.post(Jog("Z", 10.0, 1.0))
+    assert rig.until(State.IDLE) < 0.1
+    assert rig.shot.demand[1] == 0.0
+    assert "still being jogged" in rig.said("refused")[0]
+
+
+@pytest.mark.parametrize("stopper", [FeedHold(), Reset(), JogStop()])
+def test_everything_that_stops_ends_a_jog(stopper: FeedHold | Reset | JogStop) -> None:
+    rig = ready()
+    rig.post(Jog("X", 10.0, 1.0))
+    rig.run(0.2)
+    rig.post(stopper)
+    assert rig.until(State.IDLE) < 0.03 + 10.0 / AMAX + 2 * TICK + 0.001
+
+
+def test_the_hold_button_refuses_jogs() -> None:
+    rig = ready()
+    rig.sim.machine.press_hold()
+    rig.run(0.05)
+    rig.post(Jog("X", 10.0, 0.2))
+    assert "feed hold" in rig.said("refused")[0]
+    assert rig.state is State.IDLE
+
+
+def test_cycle_start_while_jogging_is_refused() -> None:
+    rig = ready()
+    rig.load("G90G94F300\nX1\nM30\n")
+    rig.run(0.4)
+    rig.post(Jog("X", 1.0, 1.0))
+    rig.post(CycleStart())
+    assert rig.state is State.JOG
+    assert rig.shot.start_refused == "the machine is being jogged"
+
+
+def test_estop_ends_a_jog() -> None:
+    rig = ready()
+    rig.post(Jog("X", FAST, 1.0))
+    rig.run(0.2)
+    rig.sim.machine.press_estop()
+    rig.tick()
+    assert rig.state is State.ESTOP
+    rig.run(0.3)
+    assert not rig.sim.ports.axes.sample().moving
+
+
+def test_an_axis_that_is_not_homed_jogs_slowly_and_homes() -> None:
+    rig = Rig(unhomed_machine())
+    rig.ready()
+    fastest = []
+    rig.watch.append(lambda shot: fastest.append(shot.velocity))
+    rig.post(Jog("Z", FAST, 0.5))
+    rig.until(State.IDLE)
+    assert max(fastest) == pytest.approx(0.1 * FAST, rel=0.05)
+    rig.post(Home())
+    assert rig.state is State.HOME
+    rig.until(State.IDLE)
+    assert rig.shot.homed == (True, True, True)
+    assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.002)
+
+
+def test_homing_that_makes_no_sense_is_refused() -> None:
+    rig = Rig(unhomed_machine())
+    rig.post(Home())
+    assert rig.state is State.DISABLED
+    rig.post(EnableDrives(), Home("B"))
+    rig.post(Home("X"))
+    assert rig.state is State.IDLE
+    assert [text.split(": ")[1] for text in rig.said("refused")] == [
+        "state DRIVES OFF",
+        "this machine has no axis B to home",
+        "every axis knows its position",
+    ]
+
+
+def test_hold_ends_homing() -> None:
+    rig = Rig(unhomed_machine())
+    rig.ready()
+    rig.post(Jog("Z", -FAST, 0.9))
+    rig.until(State.IDLE)
+    rig.post(Home())
+    rig.run(0.1)
+    rig.post(FeedHold())
+    assert rig.state is State.IDLE
+    rig.run(0.5)
+    assert not rig.shot.homed[1]
+    assert not rig.sim.ports.axes.sample().moving
