@@ -107,7 +107,9 @@ def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[Step]) -> 
 
 def _taps(spindle: int, ahead: Sequence[Step]) -> bool:
     back = {1: 4, -1: 3}.get(spindle)
-    return any(isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES])
+    return back is not None and any(
+        isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES]
+    )
 
 
 def check_move(state: State, line: int, x0: float, x: float, length: float) -> None:

@@ -67,6 +67,7 @@ def test_feed_over_revolutions_at_its_limit() -> None:
         (("G95F.0625Z-.5", "M04", "Z.1"), []),  # tapping
         (("G95", "Z-.5F.1", "G04F.5", "M04", "Z.1"), []),
         (("G95F.0625Z-.5", "M03", "Z.1"), [(3, 4, "feed-high")]),
+        (("M05", "G95F.06", "M03", "X1"), [(4, 4, "feed-high")]),
         (("F.1X.04",), []),  # 24 s
         (("F.1X.06",), [(3, 0, "feed-low")]),  # 36 s
         (("G95F.00005X.1",), [(3, 0, "feed-low")]),  # .05 in/min

@@ -1,0 +1,63 @@
+"""A program as it was read, before anything runs."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.plain import read_move
+from core.interpreter.program import read_program
+from core.language.source import Source
+from tests.interpreter.programs import lines
+
+
+def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
+    program = read_program(Source("A", lines("G90F300", "X1Z2", "", "M30")))
+    assert [word.text for word in program.line(2).words] == ["X1", "Z2"]
+    made = program.statement(2)
+    assert made is not None
+    assert (made.value("X"), made.column("Z"), made.value("F"), made.column("F")) == (1, 3, None, 0)
+    assert program.statement(3) is None
+    end = program.statement(4)
+    assert end is not None
+    assert end.m == 30
+
+
+@pytest.mark.parametrize(
+    ("text", "move"),
+    [
+        ("X.1234Z-.5678", (0.1234, -0.5678)),
+        ("z+1.", (None, 1.0)),
+        ("X1.00005", (1.00005, None, True, -1, None)),
+        ("G01X1F.003", (1.0, None, False, 1, 0.003)),
+        ("g00z1", (None, 1.0, False, 0, None)),
+        ("X1Z2F3", (1.0, 2.0, False, -1, 3.0)),
+    ],
+)
+def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
+    assert read_move(text) == move
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "G00", "F20", "G01F2", "Z1X1", "X 1", "X1.000001", "X12345", "X1F0", "G02X1", "X1.2.3", "X", "X1X1"],
+)
+def test_everything_else_is_read_word_by_word(text: str) -> None:
+    assert read_move(text) is None
+
+
+def test_a_flood_of_warnings_hides_no_error() -> None:
+    inside = [f"X1(C{n})" for n in range(150)]
+    program = read_program(Source("A", lines("G90F300", "LS2", *inside, "LF", "X1N5", "M30")))
+    assert len(program.diagnostics) == 100
+    assert [found.code for found in program.diagnostics][-1] == "n-word"
+
+
+def test_a_flood_of_errors_is_cut_too() -> None:
+    program = read_program(Source("A", lines("G90F300", *["N5X1"] * 300, "M30")))
+    assert [found.code for found in program.diagnostics] == ["n-word"] * 100
+
+
+def test_reading_raises_nothing_for_a_program_of_faults() -> None:
+    program = read_program(Source("A", "G2\n}1\nLF\n(\n)\nM99\nLS0\n"))
+    codes = {found.code for found in program.diagnostics}
+    assert {"g-digits", "no-end", "loop-unopened", "comment-open", "comment-close", "loop-count"} <= codes
