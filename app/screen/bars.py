@@ -36,6 +36,16 @@ class TitleLine(Panel):
         super().__init__(look, parent)
         self._shown = ("", "STARTING", Tone.OFF, "", "")
 
+    @property
+    def program(self) -> str:
+        """The program's name."""
+        return self._shown[0]
+
+    @property
+    def state(self) -> str:
+        """The state in words."""
+        return self._shown[1]
+
     def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
         """What stands in the line."""
         if (program, state, tone, machine, clock) != self._shown:

@@ -41,6 +41,11 @@ class FilePrompt(Panel):
         self.edit.installEventFilter(self)
         self.hide()
 
+    @property
+    def message(self) -> str:
+        """What it has to say about the name; empty while all is well."""
+        return NOT_FOUND if self.not_found else ""
+
     def ask(self) -> None:
         """Come up empty, with the keyboard."""
         self.not_found = False

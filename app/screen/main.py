@@ -31,7 +31,8 @@ def run_screen(
     the composed one). What building raises is raised here, after the window is gone.
     """
     app = _application(theme)
-    window = MainWindow(Look(PALETTES[theme]))
+    app.setQuitOnLastWindowClosed(False)  # it posts a quit that would outlive this loop
+    window = MainWindow(Look(PALETTES[theme]), app.quit)
     window.resize(*START_SIZE)
     screen = app.primaryScreen()
     if screen is not None and screen.availableGeometry().width() < 2 * START_SIZE[0]:
@@ -41,6 +42,8 @@ def run_screen(
     start = _Start(window, build or (lambda: _composed(machine)), program)
     QTimer.singleShot(0, start.run)
     status = app.exec()
+    window.hide()
+    window.deleteLater()
     start.close()
     return status
 
@@ -64,7 +67,6 @@ class _Start:
     def _failed(self, error: Exception) -> None:
         """Nothing may be raised into Qt's loop: it is carried past its end."""
         self._trouble = error
-        self._window.close()
         QApplication.exit(1)
 
     def close(self) -> None:

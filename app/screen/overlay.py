@@ -24,16 +24,16 @@ class Notice(Panel):
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self._message = ""
+        self.message = ""
         self._go_on = ""
         self._alarm: Alarm | None = None
         self.hide()
 
     def show_notice(self, message: str, go_on: str, alarm: Alarm | None) -> None:
         """An alarm goes before a message; with neither the notice is gone."""
-        if (message, go_on, alarm) == (self._message, self._go_on, self._alarm):
+        if (message, go_on, alarm) == (self.message, self._go_on, self._alarm):
             return
-        self._message, self._go_on, self._alarm = message, go_on, alarm
+        self.message, self._go_on, self._alarm = message, go_on, alarm
         self.setVisible(bool(message or alarm))
         self.update()
 
@@ -61,7 +61,7 @@ class Notice(Panel):
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
-        self._wrapped(painter, room, self._message, 6.0, "text")
+        self._wrapped(painter, room, self.message, 6.0, "text")
         painter.setPen(self.look.colour("accent"))
         painter.setFont(self.look.fit(self._go_on, 2.2, foot.width(), bold=True))
         put(painter, foot, LEFT, self._go_on)
@@ -102,24 +102,24 @@ class AlarmList(Panel):
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self._entries: tuple[Entry, ...] = ()
+        self.entries: tuple[Entry, ...] = ()
         self.hide()
 
     def show_entries(self, entries: Sequence[Entry]) -> None:
         """The log as it stands."""
-        if tuple(entries) != self._entries:
-            self._entries = tuple(entries)
+        if tuple(entries) != self.entries:
+            self.entries = tuple(entries)
             self.update()
 
     def draw(self, painter: QPainter) -> None:
         look, u = self.look, self.look.u
         room = self.inside()
-        if not self._entries:
+        if not self.entries:
             painter.setPen(look.colour("soft"))
             painter.setFont(look.font(2.0))
             put(painter, QRectF(room.x(), room.y(), room.width(), 3 * u), LEFT, "No alarm since the start.")
         y = room.y()
-        for entry in self._entries:
+        for entry in self.entries:
             if y + 5.0 * u > room.bottom():
                 break
             self._entry(painter, QRectF(room.x(), y, room.width(), 5.0 * u), entry)

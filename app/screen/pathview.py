@@ -42,6 +42,11 @@ class PathView(Panel):
         self._tip = Tip()
         self._drag: QPointF | None = None
 
+    @property
+    def view(self) -> Frame | None:
+        """What is looked at."""
+        return self._frame
+
     def show_picture(self, picture: Picture | None) -> None:
         """Another program's path, or none."""
         if picture is not self._picture:

@@ -20,6 +20,11 @@ class PositionPanel(Panel):
         super().__init__(look, parent)
         self._view: PositionView | None = None
 
+    @property
+    def readout(self) -> str:
+        """What the large figures are."""
+        return self._view.readout.value if self._view else ""
+
     def show_position(self, view: PositionView) -> None:
         """All figures at once: they belong to one instant and one unit."""
         if view != self._view:

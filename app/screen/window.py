@@ -20,11 +20,16 @@ from app.screen.theme import DARK, LIGHT
 FRAME_MS = 16  # at most 60 pictures a second
 
 
+def _nobody() -> None:
+    """Nobody has to be told."""
+
+
 class MainWindow(QWidget):
     """One page at a time; without a desk yet it shows that it is starting."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: Look, closed: Callable[[], None] = _nobody) -> None:
         super().__init__()
+        self._closed = closed
         self.look = look
         self.page: AutomaticPage | None = None
         self._keys: dict[str, Callable[[], None]] = {}
@@ -142,8 +147,10 @@ class MainWindow(QWidget):
         page = self.page
         if page is not None and page.desk.snapshot().state in UNDER_WAY:
             page.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
+            self.refresh()
             event.ignore()
             return
         self._timer.stop()
         self.let_go()
         event.accept()
+        self._closed()

@@ -181,3 +181,7 @@ class FakeMachine:
 
     def set_feed_pot(self, fraction: float) -> None:
         self.now = replace(self.now, feed_override=fraction)
+
+    def idle(self) -> None:
+        """Whatever was, the machine is at rest now, so that the window lets itself be closed."""
+        self.now = replace(self.now, state=State.IDLE)

@@ -1,0 +1,77 @@
+"""Screen tests run without a display, and leave nothing behind."""
+
+from __future__ import annotations
+
+import gc
+import os
+import threading
+from collections.abc import Iterator
+
+os.environ["QT_QPA_PLATFORM"] = "offscreen"
+
+import pytest
+import shiboken6
+from PySide6.QtCore import QCoreApplication, QEvent, QThread, QTimer
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.screen.look import Look, dress, load_fonts
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands
+
+
+def left_over() -> list[str]:
+    """Windows, running timers and threads that nobody has put away."""
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    gc.collect()
+    found = [f"thread {thread.name}" for thread in threading.enumerate() if thread.name.startswith("loading")]
+    for thing in shiboken6.getAllValidWrappers():
+        if isinstance(thing, QTimer) and thing.isActive():
+            found.append(f"timer of {thing.parent()}")
+        elif isinstance(thing, QThread) and thing.isRunning() and thing is not QThread.currentThread():
+            found.append(f"thread {thing}")
+        elif isinstance(thing, QWidget) and thing.isWindow() and thing.isVisible():
+            found.append(f"window {thing}")
+    return found
+
+
+@pytest.fixture(autouse=True)
+def nothing_left(qapp: QApplication) -> Iterator[None]:
+    """Fails a test that leaks; set up first, so that it looks last."""
+    before = set(left_over())
+    yield
+    leaked = [name for name in left_over() if name not in before]
+    assert not leaked, f"left over: {leaked}"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def dressed(qapp: QApplication) -> None:
+    """Fonts and palette as in the product."""
+    load_fonts()
+    dress(DARK)
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    """The scripted machine."""
+    return FakeMachine()
+
+
+@pytest.fixture
+def hands(qtbot: QtBot, machine: FakeMachine) -> Iterator[Hands]:
+    """An operator in front of an open desk."""
+    desk = desk_on(machine)
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield Hands(qtbot, window, desk, machine)
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()

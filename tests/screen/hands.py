@@ -1,0 +1,78 @@
+"""An operator who has nothing but the keyboard and his eyes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.desk.desk import Desk
+from app.screen.page import AutomaticPage
+from app.screen.window import MainWindow
+from core.executor.snapshot import State
+from tests.screen.fake import FakeMachine
+
+Key = Qt.Key
+LIMIT = 8000  # ms after which what should have happened has not
+
+
+@dataclass
+class Hands:
+    """Presses keys where the keyboard is, and waits for what is to be seen."""
+
+    qtbot: QtBot
+    window: MainWindow
+    desk: Desk
+    machine: FakeMachine
+
+    @property
+    def page(self) -> AutomaticPage:
+        """What he looks at."""
+        assert self.window.page is not None
+        return self.window.page
+
+    def key(self, key: Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
+        """Press and release one key."""
+        QTest.keyClick(QApplication.focusWidget() or self.window, key, modifier)
+
+    def type(self, text: str) -> None:
+        """Type a name."""
+        QTest.keyClicks(QApplication.focusWidget() or self.window, text)
+
+    def down(self, key: Key) -> None:
+        """Press a key and keep it."""
+        QTest.keyPress(QApplication.focusWidget() or self.window, key)
+
+    def up(self, key: Key) -> None:
+        """Let it go."""
+        QTest.keyRelease(QApplication.focusWidget() or self.window, key)
+
+    def both_palms(self) -> None:
+        """Cycle start as it is meant."""
+        self.down(Key.Key_F11)
+        self.down(Key.Key_F12)
+        self.up(Key.Key_F11)
+        self.up(Key.Key_F12)
+
+    def sees(self, true: Callable[[], bool]) -> None:
+        """Wait until something is to be seen."""
+        self.qtbot.waitUntil(true, timeout=LIMIT)
+
+    def sees_state(self, state: State) -> None:
+        """Wait for a state in the title line."""
+        self.sees(lambda: self.page.title.state == state.value)
+
+    def prompt(self) -> str:
+        """The prompt line."""
+        return self.page.prompt.text
+
+    def load(self, name: str) -> None:
+        """Pick a program by its name and wait until it may start."""
+        self.key(Key.Key_F2)
+        self.type(name)
+        self.key(Key.Key_Return)
+        self.sees(lambda: self.prompt().startswith("TO START"))

@@ -1,0 +1,129 @@
+"""The station under fingers and mouse."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QTouchEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.screen.dock import StationDock
+from app.screen.main import run_screen
+from core.executor.commands import CycleStart
+from core.executor.snapshot import State
+from tests.screen.hands import Hands
+
+
+def dock_of(hands: Hands) -> StationDock:
+    dock = hands.page.dock
+    assert dock is not None
+    hands.window.move(-300, 0)  # the offscreen screen is 800 pixels wide, and touches beyond it are dropped
+    dock.grab()  # drawing declares the controls
+    return dock
+
+
+def middle(dock: StationDock, number: int) -> QPoint:
+    return dock.controls[number].box.center().toPoint()
+
+
+class Fingers:
+    """Fingers on the dock, by number."""
+
+    def __init__(self, dock: StationDock) -> None:
+        self._dock = dock
+        self.device = QTest.createTouchDevice()
+        self._down: set[int] = set()
+
+    def press(self, finger: int, at: QPoint) -> None:
+        """One more goes down; the others stay."""
+        sequence = QTest.touchEvent(self._dock, self.device, False)
+        for other in self._down:
+            sequence.stationary(other)
+        sequence.press(finger, at, self._dock)
+        sequence.commit(True)
+        self._down.add(finger)
+
+    def move(self, finger: int, at: QPoint) -> None:
+        """One slides."""
+        sequence = QTest.touchEvent(self._dock, self.device, False)
+        sequence.move(finger, at, self._dock)
+        sequence.commit(True)
+
+    def release(self, **at: QPoint) -> None:
+        """All come up."""
+        sequence = QTest.touchEvent(self._dock, self.device, False)
+        for finger, where in zip(sorted(self._down), at.values(), strict=True):
+            sequence.release(finger, where, self._dock)
+        sequence.commit(True)
+        self._down.clear()
+
+
+def test_a_touch_that_is_taken_away_lets_the_palm_go(hands: Hands) -> None:
+    dock = dock_of(hands)
+    fingers = Fingers(dock)
+    fingers.press(0, middle(dock, -2))
+    assert hands.machine.palms == {"left"}
+    QApplication.sendEvent(dock, QTouchEvent(QEvent.Type.TouchCancel, fingers.device))
+    assert hands.machine.palms == set()
+    fingers.release(left=middle(dock, -2))
+
+
+def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
+    dock = dock_of(hands)
+    fingers = Fingers(dock)
+    track = dock.controls[9].box  # E-stop, twist, OFF, AUTO, less, more, spindle pot, less, more, feed pot
+    end = QPointF(track.left(), track.center().y()).toPoint()
+    fingers.press(0, track.center().toPoint())
+    assert hands.desk.feed_pot == 0.75
+    fingers.move(0, end)
+    assert hands.desk.feed_pot == 0.0
+    fingers.release(at=end)
+
+
+def test_two_fingers_on_the_palms_start(hands: Hands) -> None:
+    hands.load("pin")
+    dock = dock_of(hands)
+    fingers, left, right = Fingers(dock), middle(dock, -2), middle(dock, -1)
+    fingers.press(0, left)
+    assert CycleStart() not in hands.machine.posted
+    fingers.press(1, right)
+    assert hands.machine.palms == {"left", "right"}
+    fingers.release(left=left, right=right)
+    assert CycleStart() in hands.machine.posted
+    assert hands.machine.palms == set()
+
+
+def test_the_mouse_alone_cannot_start(hands: Hands) -> None:
+    hands.load("pin")
+    dock = dock_of(hands)
+    for number in (-2, -1):
+        QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, number))
+    assert CycleStart() not in hands.machine.posted
+
+
+def test_the_mushroom_latches_and_is_twisted_out_beside_it(hands: Hands) -> None:
+    dock = dock_of(hands)
+    QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 0))
+    hands.sees_state(State.ESTOP)
+    QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 0))
+    assert hands.machine.now.state is State.ESTOP
+    QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 1))
+    hands.sees_state(State.DISABLED)
+
+
+def test_a_finger_that_leaves_with_the_window_lets_the_palm_go(hands: Hands) -> None:
+    dock = dock_of(hands)
+    dock.controls[-1].down(QPointF())
+    assert hands.machine.palms == {"right"}
+    hands.window.let_go()
+    assert hands.machine.palms == set()
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str) -> None:
+    def broken() -> None:
+        raise ValueError("lathe.toml: no axis X")
+
+    with pytest.raises(ValueError, match="no axis X"):
+        run_screen(theme=theme, build=broken)  # type: ignore[arg-type]

@@ -1,0 +1,62 @@
+"""The page at every size: nothing overlaps, nothing is cut off, targets fit a finger."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import pytest
+
+from app.screen.layout import LEAST, Rect, places, unit
+
+SIZES = [
+    LEAST,
+    (1024, 768),
+    (1280, 720),
+    (1280, 1024),
+    (1920, 1080),
+    (2560, 1080),
+    (3840, 2160),
+    (1080, 1920),
+]
+
+
+def apart(one: Rect, other: Rect) -> bool:
+    """Whether two rectangles share no pixel."""
+    return one.right <= other.x or other.right <= one.x or one.bottom <= other.y or other.bottom <= one.y
+
+
+@pytest.mark.parametrize("dock", [True, False])
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) -> None:
+    at = places(*size, dock)
+    parts = [(name, rect) for name, rect in at._asdict().items() if dock or name != "dock"]
+    for name, rect in parts:
+        assert rect.w > 0, name
+        assert rect.h > 0, name
+        assert rect.x >= 0, name
+        assert rect.y >= 0, name
+        assert rect.right <= size[0], name
+        assert rect.bottom <= size[1], name
+    for (name, one), (other, two) in combinations(parts, 2):
+        assert apart(one, two), (name, other)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
+    at, u = places(*size, dock=True), unit(*size)
+    assert at.position.h >= 27 * u - 1
+    assert at.feed.w >= 24 * u
+    assert at.listing.h >= 18 * u
+    assert at.path.w >= 40 * u
+    assert at.path.h >= 26 * u
+
+
+def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
+    at = places(*LEAST, dock=True)
+    assert at.keys.h >= 40
+    assert at.strip.h >= 36
+    assert (at.keys.w / 10) >= 80
+
+
+def test_without_a_dock_its_room_goes_to_the_path() -> None:
+    assert places(1920, 1080, dock=False).path.w > places(1920, 1080, dock=True).path.w + 200

@@ -1,0 +1,82 @@
+"""The program window: which rows it shows, when it follows, and that it paints only those."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import overload
+
+import pytest
+from PySide6.QtGui import QPixmap
+from pytestqt.qtbot import QtBot
+
+from app.screen.listing import Listing
+from app.screen.look import Look
+from app.screen.theme import DARK
+
+
+class Counted(Sequence[str]):
+    """A million lines that count how often one is asked for."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def __len__(self) -> int:
+        return 1_000_000
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[str]: ...
+    def __getitem__(self, index: int | slice) -> str | Sequence[str]:
+        self.asked += 1
+        return [f"X{index}"] if isinstance(index, slice) else f"X{index}"
+
+
+@pytest.fixture
+def listing(qtbot: QtBot) -> Listing:
+    listing = Listing(Look(DARK, 8.0))
+    qtbot.addWidget(listing)
+    listing.resize(400, 250)  # nine rows of 23 pixels
+    return listing
+
+
+def painted(listing: Listing) -> QPixmap:
+    return listing.grab()
+
+
+def test_a_million_lines_cost_what_is_seen(listing: Listing) -> None:
+    lines = Counted()
+    listing.show_source(lines, {})
+    listing.show_run(500_000, "X1", "")
+    lines.asked = 0
+    painted(listing)
+    assert 0 < lines.asked <= listing.rows
+
+
+def test_the_current_line_is_in_the_window(listing: Listing) -> None:
+    listing.show_source([f"X{n}" for n in range(100)], {})
+    for line in (1, 2, 50, 99, 100):
+        listing.show_run(line, "X1", "X2")
+        assert listing.top < line <= listing.top + listing.rows
+
+
+def test_scrolling_stops_the_following_until_it_is_asked_for(listing: Listing) -> None:
+    listing.show_source([f"X{n}" for n in range(100)], {})
+    listing.show_run(50, "", "")
+    listing.look_at(-1000)
+    assert (listing.top, listing.follows) == (0, False)
+    listing.show_run(51, "", "")
+    assert listing.top == 0
+    listing.look_at(1000)
+    assert listing.top == 100 - listing.rows
+    listing.follow()
+    assert listing.top < 51 <= listing.top + listing.rows
+
+
+def test_a_refused_program_opens_at_its_first_error(listing: Listing) -> None:
+    listing.show_source([f"X{n}" for n in range(100)], {80: "no", 90: "no"})
+    assert listing.top < 80 <= listing.top + listing.rows
+
+
+def test_an_empty_window_paints(listing: Listing) -> None:
+    assert not painted(listing).isNull()

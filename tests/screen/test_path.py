@@ -1,0 +1,151 @@
+"""The path view: which way is up, what zooming keeps, what is drawn where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtGui import QColor, QImage
+
+from app.desk.picture import Picture, Stroke
+from app.screen.layers import Layers
+from app.screen.look import Look
+from app.screen.plot import Frame, fitted, polygon, runs, scale_length, travelled
+from app.screen.theme import DARK
+
+FRAME = Frame(z=0.0, x=0.0, scale=10.0, width=400, height=200)
+
+
+def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> Picture:
+    """A picture of (z, x, stroke) points and where blocks end."""
+    z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
+    blocks = len(first) - 1
+    return Picture(
+        z=z.astype(float),
+        x=x.astype(float),
+        stroke=stroke.astype(np.uint8),
+        first=np.array(first),
+        ends=np.arange(blocks + 1.0),
+        chord=np.ones(blocks),
+        bounds=(float(z.min()), float(z.max()), float(x.min()), float(x.max())),
+    )
+
+
+SHAFT = picture(
+    [(5, 8, Stroke.JUMP), (5, 4, Stroke.RAPID), (-10, 4, Stroke.TURN), (-10, 8, Stroke.TURN)], [0, 2, 3, 4]
+)
+
+
+def test_x_goes_down_and_z_goes_right() -> None:
+    assert FRAME.down(4.0) > FRAME.down(0.0)
+    assert FRAME.across(4.0) > FRAME.across(0.0)
+    assert (FRAME.across(0.0), FRAME.down(0.0)) == (200, 100)
+
+
+def test_fitting_shows_both_sides_of_the_centre_line() -> None:
+    frame = fitted((-10.0, 5.0, 0.0, 8.0), 400, 200, 10)
+    assert frame.down(8.0) <= 190
+    assert frame.down(-8.0) >= 10
+    assert frame.across(-10.0) >= 10
+    assert frame.across(5.0) <= 390
+
+
+def test_fitting_nothing_still_gives_a_frame() -> None:
+    assert fitted((0.0, 0.0, 0.0, 0.0), 400, 200, 10).scale > 0
+
+
+def test_zooming_keeps_what_is_under_the_pointer() -> None:
+    near = FRAME.zoomed(3.0, 300.0, 40.0)
+    assert near.across(10.0) == pytest.approx(300.0)  # z = 10 was at column 300
+    assert near.down(-6.0) == pytest.approx(40.0)
+    assert near.scale == pytest.approx(30.0)
+
+
+def test_zooming_has_ends() -> None:
+    assert FRAME.zoomed(1e9, 0, 0).scale == 5000.0
+    assert FRAME.zoomed(1e-9, 0, 0).scale == 0.02
+
+
+def test_neighbouring_strokes_of_a_kind_are_one_run() -> None:
+    found = list(runs(SHAFT, FRAME, 0, 4))
+    assert [run.stroke for run in found] == [Stroke.RAPID, Stroke.TURN]
+    assert found[1].columns.tolist() == [250, 100, 100]
+    assert found[1].rows.tolist() == [140, 140, 180]
+
+
+def test_slices_join_without_a_gap() -> None:
+    assert [run.columns.tolist() for run in runs(SHAFT, FRAME, 2, 3)] == [[250, 100]]
+
+
+def test_a_jump_is_not_drawn() -> None:
+    jumps = picture(
+        [(0, 1, Stroke.JUMP), (1, 1, Stroke.TURN), (5, 5, Stroke.JUMP), (6, 5, Stroke.TURN)], [0, 2, 4]
+    )
+    assert [run.columns.tolist() for run in runs(jumps, FRAME, 0, 4)] == [[200, 210], [250, 260]]
+
+
+def test_what_falls_on_one_pixel_is_thinned_out_and_the_ends_stay() -> None:
+    z = np.linspace(0, 10, 100_001)
+    dense = picture([(float(k), 1.0, Stroke.TURN if k else Stroke.JUMP) for k in z], [0, 100_001])
+    (run,) = runs(dense, FRAME, 0, 100_001)
+    assert len(run.columns) < 500
+    assert run.columns[-1] == 300
+
+
+def test_what_lies_beyond_an_edge_is_left_out() -> None:
+    assert list(runs(SHAFT, FRAME.moved(5000, 0), 0, 4)) == []
+
+
+def test_polygon_holds_the_points() -> None:
+    shape = polygon(np.array([1.0, 2.5]), np.array([3.0, 4.0]))
+    assert [(point.x(), point.y()) for point in shape] == [(1.0, 3.0), (2.5, 4.0)]
+
+
+def test_travelled_ends_at_the_tip() -> None:
+    run = travelled(SHAFT, FRAME, 2, -4.0, 4.0)
+    assert run is not None
+    assert (run.columns.tolist(), run.rows.tolist()) == ([250, 160], [140, 140])
+    assert travelled(SHAFT, FRAME, 0, 0, 0) is None
+    assert travelled(SHAFT, FRAME, 4, 0, 0) is None
+
+
+@pytest.mark.parametrize(
+    ("most", "metric", "shown"),
+    [(25.4, False, "1 in"), (60.0, False, "2 in"), (9.9, True, "5 mm"), (0.13, True, "0.1 mm")],
+)
+def test_scale_bar_is_a_round_length_that_fits(most: float, metric: bool, shown: str) -> None:
+    length, text = scale_length(most, metric)
+    assert text == shown
+    assert length <= most * 1.0001
+
+
+def colour(image: QImage, z: float, x: float) -> str:
+    """The palette's colour that a pixel is nearest to: smoothing mixes it with the ground."""
+    pixel = image.pixelColor(round(float(FRAME.across(z))), round(float(FRAME.down(x))))
+    candidates = (DARK.panel, DARK.todo, DARK.done, DARK.rapid, DARK.ghost)
+    return min(candidates, key=lambda name: _distance(pixel, QColor(name)))
+
+
+def _distance(one: QColor, other: QColor) -> int:
+    return sum(abs(a - b) for a, b in zip(one.getRgb(), other.getRgb(), strict=True))
+
+
+def drawn(layers: Layers) -> QImage:
+    while layers.advance():
+        pass
+    return layers.image
+
+
+def test_done_is_drawn_over_to_come_and_a_new_cycle_starts_again() -> None:
+    layers = Layers(Look(DARK, 12.0), SHAFT, FRAME)
+    assert colour(drawn(layers), -2.0, 4.0) == DARK.todo
+    layers.want(2)
+    assert colour(drawn(layers), -2.0, 4.0) == DARK.done
+    assert colour(layers.image, -10.0, 6.0) == DARK.todo
+    layers.want(0)
+    assert colour(drawn(layers), -2.0, 4.0) == DARK.todo
+
+
+def test_the_far_side_shows_what_is_turned_and_no_rapid() -> None:
+    image = drawn(Layers(Look(DARK, 12.0), SHAFT, FRAME))
+    assert colour(image, -2.0, -4.0) == DARK.ghost
+    assert colour(image, 5.0, -6.0) == DARK.panel

@@ -1,0 +1,257 @@
+"""A shift at the Automatic page, by keys alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QApplication
+
+from app.desk.prompts import GIVE_UP, NOT_FOUND, ONE_PALM
+from app.desk.session import Phase
+from core.executor.commands import CycleStart, FeedHold, Reset
+from core.executor.snapshot import Alarm, State
+from tests.screen.hands import Hands, Key
+
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
+    hands.load("bushing")
+    assert hands.page.title.program == "bushing.nc"
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+    hands.sees(lambda: hands.machine.now.line > 4)
+    hands.key(Key.Key_H)
+    hands.sees_state(State.HOLD)
+    assert hands.prompt().startswith("TO GO ON")
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+    hands.key(Key.Key_S)
+    hands.sees_state(State.BLOCK_END)
+    block = hands.machine.at
+    hands.both_palms()
+    hands.sees(lambda: hands.machine.at > block and hands.machine.now.state is State.BLOCK_END)
+    hands.key(Key.Key_E)
+    hands.sees_state(State.ESTOP)
+    hands.key(Key.Key_D)
+    assert "STILL PRESSED" in hands.prompt()
+    hands.key(Key.Key_E, SHIFT)
+    hands.sees_state(State.DISABLED)
+    hands.key(Key.Key_D)
+    hands.sees_state(State.IDLE)
+    hands.key(Key.Key_S)
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+
+
+def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
+    hands.machine.step = 0.5
+    hands.load("grooves")
+    hands.both_palms()
+    hands.sees(lambda: hands.machine.now.parts == 1)
+    hands.sees_state(State.IDLE)
+    hands.sees(lambda: hands.page.times.value[0] == ("PARTS", "1"))
+
+
+def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
+    hands.machine.step = 1.0
+    hands.load("bushing")
+    hands.key(Key.Key_O)
+    hands.both_palms()
+    hands.sees_state(State.PROGRAM_STOP)
+    hands.sees(hands.page.notice.isVisible)
+    assert hands.page.notice.message == "GAUGE THE OUTSIDE AND CORRECT D1"
+    hands.both_palms()
+    hands.sees(lambda: not hands.page.notice.isVisible())
+
+
+def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
+    hands.key(Key.Key_F2)
+    hands.type("nosuch")
+    hands.key(Key.Key_Return)
+    assert hands.page.files.message == NOT_FOUND
+    hands.key(Key.Key_X)
+    assert hands.page.files.message == ""
+    assert hands.page.files.edit.text() == "nosuch"
+    hands.type("knob")  # what was wrong is marked and typed over
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    assert hands.desk.session.now.name == "knob.nc"
+
+
+def test_escape_keeps_the_program_that_is_there(hands: Hands) -> None:
+    hands.load("pin")
+    hands.key(Key.Key_F2)
+    hands.type("knob")
+    hands.key(Key.Key_Escape)
+    assert not hands.page.files.isVisible()
+    assert hands.desk.session.now.name == "pin.nc"
+    hands.key(Key.Key_S)  # the keyboard is the page's again
+    hands.sees(lambda: hands.machine.now.single_block)
+
+
+def test_the_list_is_picked_from_by_arrows(hands: Hands) -> None:
+    hands.key(Key.Key_F2)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Up)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    assert hands.desk.session.now.name == "grooves.nc"
+
+
+@pytest.mark.parametrize("palm", [Key.Key_F11, Key.Key_F12])
+def test_one_palm_is_no_start(hands: Hands, palm: Key) -> None:
+    hands.load("pin")
+    hands.down(palm)
+    hands.up(palm)
+    assert CycleStart() not in hands.machine.posted
+    assert hands.prompt() == ONE_PALM
+
+
+def test_palms_that_repeat_by_being_held_are_one_press(hands: Hands) -> None:
+    hands.load("pin")
+    hands.down(Key.Key_F11)
+    for _ in range(5):
+        again = QKeyEvent(
+            QEvent.Type.KeyPress, Key.Key_F12, Qt.KeyboardModifier.NoModifier, autorep=True, count=1
+        )
+        QApplication.sendEvent(hands.window, again)
+    assert CycleStart() not in hands.machine.posted
+    hands.up(Key.Key_F11)
+
+
+def test_losing_the_keyboard_lets_a_palm_go(hands: Hands) -> None:
+    hands.load("pin")
+    hands.down(Key.Key_F11)
+    assert hands.machine.palms == {"left"}
+    hands.window.let_go()
+    assert hands.machine.palms == set()
+    hands.down(Key.Key_F12)
+    assert CycleStart() not in hands.machine.posted
+    hands.up(Key.Key_F12)
+
+
+def test_no_start_without_a_program(hands: Hands) -> None:
+    hands.both_palms()
+    hands.sees(lambda: hands.prompt() == "NO START: NO PROVED PROGRAM")
+
+
+def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
+    hands.load("pin")
+    hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
+    hands.sees_state(State.FAULT)
+    hands.both_palms()
+    hands.sees(lambda: hands.prompt() == "NO START: AN ALARM STANDS")
+    assert hands.page.notice.isVisible()
+    hands.key(Key.Key_R)
+    hands.sees_state(State.DISABLED)
+    assert not hands.page.notice.isVisible()
+    hands.key(Key.Key_F7)
+    assert hands.page.log.isVisible()
+    assert [entry.alarm.code for entry in hands.page.log.entries] == ["following"]
+    hands.key(Key.Key_Escape)
+    assert not hands.page.log.isVisible()
+
+
+def test_a_program_with_errors_is_shown_and_refused(
+    hands: Hands, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    bad = tmp_path_factory.mktemp("programs") / "bad.nc"
+    bad.write_text("G90G94F300\nX1Z0\nG2X2Z1R5\nM30\n")
+    hands.key(Key.Key_F2)
+    hands.type(str(bad))
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.prompt().startswith("WILL NOT RUN: LINE 3"))
+    hands.both_palms()
+    hands.sees(lambda: hands.prompt() == "NO START: THE PROGRAM HAS ERRORS")
+
+
+def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
+    hands.load("pin")
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+    hands.key(Key.Key_R)
+    assert "FEED HOLD FIRST" in hands.prompt()
+    hands.key(Key.Key_Space)
+    hands.sees_state(State.HOLD)
+    hands.key(Key.Key_R)
+    assert hands.prompt() == GIVE_UP
+    hands.key(Key.Key_R)
+    assert Reset() in hands.machine.posted
+    hands.sees_state(State.IDLE)
+
+
+def test_no_other_program_and_no_leaving_while_one_runs(hands: Hands) -> None:
+    hands.load("pin")
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+    hands.key(Key.Key_F2)
+    assert not hands.page.files.isVisible()
+    hands.window.close()
+    assert hands.window.isVisible()
+    assert "BEFORE LEAVING" in hands.prompt()
+
+
+def test_a_cycle_started_at_the_station_takes_the_keyboard_from_the_question(hands: Hands) -> None:
+    hands.load("pin")
+    hands.key(Key.Key_F2)
+    hands.machine.post(CycleStart())
+    hands.sees(lambda: not hands.page.files.isVisible())
+    hands.key(Key.Key_H)
+    assert FeedHold() in hands.machine.posted
+
+
+def test_palm_keys_do_nothing_while_a_name_is_typed(hands: Hands) -> None:
+    hands.load("pin")
+    hands.key(Key.Key_F2)
+    hands.both_palms()
+    assert CycleStart() not in hands.machine.posted
+
+
+def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Hands) -> None:
+    hands.load("knob")
+    hands.sees(lambda: hands.page.path.view is not None)
+    before = hands.page.path.view
+    hands.key(Key.Key_Left)
+    assert hands.page.path.view == before
+    hands.key(Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
+    assert hands.page.path.view != before
+    hands.key(Key.Key_F5)
+    assert hands.page.path.view == before
+
+
+@pytest.mark.parametrize("key", [Key.Key_F1, Key.Key_F3, Key.Key_F6, Key.Key_F8, Key.Key_F9, Key.Key_F10])
+def test_pages_to_come_say_so(hands: Hands, key: Key) -> None:
+    hands.key(key)
+    assert hands.prompt().endswith("WITH A LATER VERSION")
+    hands.key(Key.Key_Escape)
+    assert hands.prompt() == "PRESS F2 TO CHOOSE A PROGRAM"
+
+
+def test_block_delete_proves_the_program_again(hands: Hands) -> None:
+    hands.load("grooves")
+    whole = hands.desk.session.now.picture
+    hands.key(Key.Key_Slash)
+    hands.sees(lambda: hands.machine.now.block_delete and hands.desk.session.now.phase is Phase.READY)
+    shorter = hands.desk.session.now.picture
+    assert whole is not None
+    assert shorter is not None
+    assert shorter.blocks < whole.blocks
+
+
+def test_drives_off_asks_for_the_drives(hands: Hands) -> None:
+    hands.machine.now = replace(hands.machine.now, state=State.DISABLED)
+    hands.sees(lambda: hands.prompt() == "DRIVES ARE OFF: PRESS D FOR DRIVES ON")
+
+
+def test_readout_and_theme_change_by_key(hands: Hands) -> None:
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: hands.page.position.readout == "DISTANCE TO GO")
+    hands.key(Key.Key_T)
+    assert hands.window.look.palette.name == "light"
+    hands.key(Key.Key_T)
+    assert hands.window.look.palette.name == "dark"
