@@ -20,7 +20,8 @@ from core.executor.job import Job, make_job
 from core.executor.thread import ExecutorThread
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
-from drivers.simulated import RealClock
+from core.ports import Clock
+from drivers.simulated import RealClock, StepClock
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture
@@ -31,16 +32,26 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
 
     Raises CommandError for a bad machine file and for a machine that is not simulated.
     """
+    clock = RealClock()
+    desk, executor = desk_and_executor(machine_file, offsets, clock)
+    thread = ExecutorThread(executor, clock)
+    desk.shut = thread.close
+    thread.start()
+    return desk
+
+
+def desk_and_executor(
+    machine_file: str | None, offsets: Callable[[], Offsets], clock: Clock
+) -> tuple[Desk, Executor]:
+    """Both, with nobody ticking the executor yet."""
     machine = read_machine(machine_file)
     if machine.backend != "sim":
         raise CommandError(
             f"{machine.source}: the screen drives simulated machines only, not {machine.backend}"
         )
-    clock = RealClock()
     simulation = simulated(machine, clock)
     heard: list[Desk] = []
     executor = Executor(machine, simulation.ports, lambda event: heard[0].hear(event) if heard else None)
-    thread = ExecutorThread(executor, clock)
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
@@ -50,11 +61,14 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         machine=f"{machine.name} · SIMULATED",
-        shut=thread.close,
     )
     heard.append(desk)
-    thread.start()
-    return desk
+    return desk, executor
+
+
+def step_clock() -> StepClock:
+    """A clock for scripts that move time themselves."""
+    return StepClock()
 
 
 def workshop(machine: Machine, offsets: Callable[[], Offsets]) -> Workshop:

@@ -128,7 +128,7 @@ class CommentLine(Panel):
     def draw(self, painter: QPainter) -> None:
         look, u = self.look, self.look.u
         painter.setPen(look.colour("accent"))
-        room = self.area().adjusted(1.4 * u, 1.7 * u, -1.2 * u, -0.3 * u)
+        room = self.area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
         painter.setFont(look.fit(self.text, 2.0, room.width()))
         put(painter, room, LEFT, self.text)
 

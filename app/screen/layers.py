@@ -10,18 +10,19 @@ import time
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QImage, QPainter, QPen
+from PySide6.QtGui import QColor, QImage, QPainter, QPen
 
 from app.desk.picture import Stroke
+from app.screen import raster
 from app.screen.look import Look
-from app.screen.plot import Frame, Run, runs, stroke_run
+from app.screen.plot import Frame, Run, points, runs, stroke_run
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture
 
-SLICE = 20_000  # points drawn at a time
+SMOOTH_TO = 3_000  # points up to which lines are smoothed, wide and dashed; above that they are pixels
+SMOOTH_SLICE, SLICE = 150, 50_000  # points drawn at a time
 BUDGET = 0.006  # seconds a frame may give to drawing
-SMOOTH_TO = 30_000  # points up to which lines are smoothed and rapids dashed
 
 
 class Layers:
@@ -32,6 +33,7 @@ class Layers:
         self.frame = frame
         self._look = look
         self._smooth = len(picture.z) <= SMOOTH_TO
+        self._slice = SMOOTH_SLICE if self._smooth else SLICE
         size = QSize(max(1, frame.width), max(1, frame.height))
         self._base = QImage(size, QImage.Format.Format_RGB32)
         self._base.fill(look.colour("panel"))
@@ -47,11 +49,11 @@ class Layers:
 
     def want(self, blocks: int) -> None:
         """So many blocks are behind. Fewer than before: a new cycle, from the image of what is to come."""
-        points = self.picture.points_done(blocks)
-        if points < self._wanted:
+        wanted = self.picture.points_done(blocks)
+        if wanted < self._wanted:
             self._done = 0
             self.image = self._base
-        self._wanted = points
+        self._wanted = wanted
 
     def advance(self) -> bool:
         """Draw on for a slice of a frame's time; True when anything was drawn."""
@@ -60,7 +62,9 @@ class Layers:
         until = time.perf_counter() + BUDGET
         while not self.complete and time.perf_counter() < until:
             if self._drawn < len(self.picture.z):
-                self._draw_base()
+                end = min(self._drawn + self._slice, len(self.picture.z))
+                self._draw(self._base, self._drawn, end, done=False)
+                self._drawn = end
             else:
                 self._draw_done()
         return True
@@ -69,43 +73,49 @@ class Layers:
         """The pen of each stroke."""
         look = self._look
         rapid = look.pen("rapid", 0.10)
-        if self._smooth:
-            rapid.setStyle(Qt.PenStyle.SolidLine if done else Qt.PenStyle.DashLine)
+        rapid.setStyle(Qt.PenStyle.SolidLine if done else Qt.PenStyle.DashLine)
         cut = look.pen("done", 0.26) if done else look.pen("todo", 0.15)
         for pen in (cut, rapid):
-            pen.setCapStyle(Qt.PenCapStyle.RoundCap if self._smooth else Qt.PenCapStyle.FlatCap)
-            pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin if self._smooth else Qt.PenJoinStyle.BevelJoin)
+            pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+            pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
         return {Stroke.RAPID: rapid, Stroke.TURN: cut, Stroke.MILL: cut}
-
-    def _draw_base(self) -> None:
-        end = min(self._drawn + SLICE, len(self.picture.z))
-        painter = self._painter(self._base)
-        pens = self.pens(done=False)
-        found = list(runs(self.picture, self.frame, self._drawn, end))
-        painter.setPen(self._look.pen("ghost", 0.12))
-        middle = 2 * float(self.frame.down(0.0))
-        for run in found:
-            if run.stroke == Stroke.TURN:
-                stroke_run(painter, Run(run.stroke, run.columns, middle - run.rows))
-        for run in found:
-            painter.setPen(pens[run.stroke])
-            stroke_run(painter, run)
-        painter.end()
-        self._drawn = end
 
     def _draw_done(self) -> None:
         if self.image is self._base:
             self.image = self._base.copy()
-        end = min(self._done + SLICE, self._wanted)
-        painter = self._painter(self.image)
-        pens = self.pens(done=True)
-        for run in runs(self.picture, self.frame, self._done, end):
+        end = min(self._done + self._slice, self._wanted)
+        self._draw(self.image, self._done, end, done=True)
+        self._done = end
+
+    def _draw(self, image: QImage, start: int, end: int, *, done: bool) -> None:
+        (self._draw_smooth if self._smooth else self._draw_pixels)(image, start, end, done)
+
+    def _draw_smooth(self, image: QImage, start: int, end: int, done: bool) -> None:
+        painter = QPainter(image)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        pens = self.pens(done)
+        found = list(runs(self.picture, self.frame, start, end))
+        if not done:
+            painter.setPen(self._look.pen("ghost", 0.12))
+            for run in found:
+                if run.stroke == Stroke.TURN:
+                    stroke_run(painter, Run(run.stroke, run.columns, self._middle - run.rows))
+        for run in found:
             painter.setPen(pens[run.stroke])
             stroke_run(painter, run)
         painter.end()
-        self._done = end
 
-    def _painter(self, image: QImage) -> QPainter:
-        painter = QPainter(image)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, self._smooth)
-        return painter
+    def _draw_pixels(self, image: QImage, start: int, end: int, done: bool) -> None:
+        shape = points(self.picture, self.frame, start, end)
+        look = self._look
+        if not done:
+            far_side = shape._replace(rows=self._middle - shape.rows)
+            raster.draw(image, self.frame, far_side, {Stroke.TURN: look.colour("ghost")})
+        cut = look.colour("done" if done else "todo")
+        inks: dict[int, QColor] = {Stroke.RAPID: look.colour("rapid"), Stroke.TURN: cut, Stroke.MILL: cut}
+        raster.draw(image, self.frame, shape, inks)
+
+    @property
+    def _middle(self) -> float:
+        """Twice the row of X0: what a row is taken from to mirror it."""
+        return 2 * float(self.frame.down(0.0))

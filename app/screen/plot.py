@@ -11,6 +11,8 @@ import numpy.typing as npt
 import shiboken6
 from PySide6.QtGui import QPainter, QPolygonF
 
+from app.screen.raster import Shape
+
 if TYPE_CHECKING:
     from app.desk.picture import Picture
 
@@ -69,8 +71,8 @@ class Run:
     rows: Floats
 
 
-def runs(picture: Picture, frame: Frame, start: int, end: int) -> Iterator[Run]:
-    """The strokes that end in points ``start`` … ``end - 1``, thinned out to the pixel, cut to the frame."""
+def points(picture: Picture, frame: Frame, start: int, end: int) -> Shape:
+    """Points ``start`` … ``end - 1`` and the one before, thinned out to the pixel."""
     low = max(0, start - 1)
     columns = np.asarray(frame.across(picture.z[low:end]), dtype=np.float64)
     rows = np.asarray(frame.down(picture.x[low:end]), dtype=np.float64)
@@ -78,7 +80,12 @@ def runs(picture: Picture, frame: Frame, start: int, end: int) -> Iterator[Run]:
     if start > 0 and len(stroke):
         stroke[0] = 0
     keep = _telling(columns, rows, stroke)
-    columns, rows, stroke = columns[keep], rows[keep], stroke[keep]
+    return Shape(columns[keep], rows[keep], stroke[keep])
+
+
+def runs(picture: Picture, frame: Frame, start: int, end: int) -> Iterator[Run]:
+    """The strokes that end in points ``start`` … ``end - 1``, thinned out to the pixel, cut to the frame."""
+    columns, rows, stroke = points(picture, frame, start, end)
     stroke[1:][_outside(columns, rows, frame)] = 0
     edges = np.flatnonzero(np.diff(stroke)) + 1
     for a, b in zip(np.append(0, edges), np.append(edges, len(stroke)), strict=True):

@@ -96,6 +96,12 @@ class MainWindow(QWidget):
         if self.page is not None and not self.page.escape():
             self.page.desk.escape()
 
+    def put_away(self) -> None:
+        """Stop polling and go, without asking; for scripts that only look."""
+        self._timer.stop()
+        self.hide()
+        self.deleteLater()
+
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:

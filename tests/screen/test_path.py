@@ -7,9 +7,10 @@ import pytest
 from PySide6.QtGui import QColor, QImage
 
 from app.desk.picture import Picture, Stroke
-from app.screen.layers import Layers
+from app.screen.layers import SMOOTH_TO, Layers
 from app.screen.look import Look
 from app.screen.plot import Frame, fitted, polygon, runs, scale_length, travelled
+from app.screen.raster import Ends, clipped, stepped
 from app.screen.theme import DARK
 
 FRAME = Frame(z=0.0, x=0.0, scale=10.0, width=400, height=200)
@@ -149,3 +150,47 @@ def test_the_far_side_shows_what_is_turned_and_no_rapid() -> None:
     image = drawn(Layers(Look(DARK, 12.0), SHAFT, FRAME))
     assert colour(image, -2.0, -4.0) == DARK.ghost
     assert colour(image, 5.0, -6.0) == DARK.panel
+
+
+def zigzag(blocks: int) -> Picture:
+    """More strokes than are drawn smoothly: cuts and rapids by turns, along X = 4 and back along X = 6."""
+    made = [(0.0, 4.0, Stroke.JUMP)]
+    for k in range(blocks):
+        z = -10 * (k + 1) / blocks
+        made.append((z, 4.0, Stroke.TURN) if k % 2 else (z, 6.0, Stroke.RAPID))
+    return picture(made, list(range(1, blocks + 2)))
+
+
+def test_many_strokes_are_drawn_too() -> None:
+    many = zigzag(2 * SMOOTH_TO)
+    layers = Layers(Look(DARK, 12.0), many, FRAME)
+    seen = {colour(drawn(layers), -5.0, x) for x in np.linspace(4.2, 5.8, 33)}
+    assert seen <= {DARK.todo, DARK.rapid}
+    assert colour(layers.image, -5.0, -5.0) == DARK.ghost
+    layers.want(many.blocks)
+    assert DARK.done in {colour(drawn(layers), z, 5.0) for z in np.linspace(-9, -1, 60)}
+
+
+def test_lines_are_cut_at_the_edges_of_the_image() -> None:
+    ends = Ends(
+        c0=np.array([-50.0, 5.0, 0.0, 30.0]),
+        r0=np.array([5.0, -9.0, 20.0, 5.0]),
+        c1=np.array([50.0, 5.0, 0.0, 40.0]),
+        r1=np.array([5.0, 90.0, 30.0, 5.0]),
+    )
+    cut, inside = clipped(ends, right=10, bottom=8)
+    assert inside.tolist() == [True, True, False, False]
+    assert (cut.c0.tolist(), cut.c1.tolist()) == ([0.0, 5.0], [10.0, 5.0])
+    assert (cut.r0.tolist(), cut.r1.tolist()) == ([5.0, 0.0], [5.0, 8.0])
+
+
+def test_a_line_has_no_holes() -> None:
+    column, row, which = stepped(Ends(*(np.array([v]) for v in (0.0, 0.0, 7.0, 3.0))))
+    assert column.tolist() == list(range(8))
+    assert row.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    assert set(which.tolist()) == {0}
+
+
+def test_a_point_is_one_pixel() -> None:
+    column, row, _which = stepped(Ends(*(np.array([v]) for v in (2.2, 3.4, 2.2, 3.4))))
+    assert (column.tolist(), row.tolist()) == ([2], [3])
