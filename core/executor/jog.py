@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from core.executor.bench import Bench
 from core.machine.model import Axis
-from core.ports import Segments
+from core.ports import DriverError, Segments
+
+_Piece = tuple[float, float, float]  # seconds, speed at its start, acceleration
 
 _UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
 _LONGEST = 1.0  # s; no lease is longer, whoever asks
+_MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the clock and queueing
 _MARGIN = 0.01  # mm or degrees kept from the soft limit
 
 
@@ -48,35 +52,52 @@ class Jogger:
         homed = bench.sample.homed[index]
         top = min(axis.vmax, self._slowest(axis, homed))
         speed = math.copysign(min(abs(velocity), top), velocity)
-        start = bench.ports.axes.now() + bench.ports.axes.commit
-        until = max(bench.now + min(lease, _LONGEST), start)
-        p, v = bench.ports.axes.demand_at(start)
-        room = _room(axis, p[index], speed) if homed else math.inf
-        pieces = _ride(v[index], speed, axis.amax, until - start, room)
-        if not pieces:
-            return False
-        bench.ports.axes.splice(_segments(start, np.asarray(p), index, pieces))
-        self._axis = index
-        return True
+        until = bench.now + min(lease, _LONGEST)
+
+        def ride(start: float, p: float, v: float) -> list[_Piece]:
+            room = _room(axis, p, speed) if homed else math.inf
+            return _ride(v, speed, axis.amax, max(until - start, 0.0), room)
+
+        moves = self._splice(index, ride)
+        if moves:
+            self._axis = index
+        return moves
 
     def stop(self) -> None:
         """The lease is given back, or taken away."""
-        if self._axis < 0:
-            return
-        axes = self._bench.ports.axes
-        start = axes.now() + axes.commit
-        p, v = axes.demand_at(start)
-        pieces = _ride(v[self._axis], 0.0, self._bench.machine.axes[self._axis].amax, 0.0, math.inf)
-        if pieces:
-            axes.splice(_segments(start, np.asarray(p), self._axis, pieces))
+        if self._axis >= 0:
+            amax = self._bench.machine.axes[self._axis].amax
+            self._splice(self._axis, lambda _start, _p, v: _ride(v, 0.0, amax, 0.0, math.inf))
 
     def over(self) -> bool:
         """Whether it has come to rest."""
         axes = self._bench.ports.axes
-        if axes.horizon() > axes.now() + 1e-9:
+        horizon = axes.horizon()
+        if horizon > axes.now() + 1e-9:
             return False
         self._axis = -1
         return True
+
+    def _splice(self, index: int, ride: Callable[[float, float, float], list[_Piece]]) -> bool:
+        """Queue what ``ride`` makes of (start, position, velocity); a little later when the clock was faster.
+
+        False when it makes nothing. Raises DriverError.
+        """
+        axes = self._bench.ports.axes
+        for margin in _MARGINS:
+            start = axes.now() + axes.commit + margin
+            p, v = axes.demand_at(start)
+            pieces = ride(start, p[index], v[index])
+            if not pieces:
+                return False
+            try:
+                axes.splice(_segments(start, np.asarray(p), index, pieces))
+            except DriverError:
+                if margin == _MARGINS[-1] or axes.now() + axes.commit <= start:
+                    raise
+            else:
+                return True
+        return False
 
     def _slowest(self, axis: Axis, homed: bool) -> float:
         rapid = axis.vmax if axis.travel is None else self._bench.machine.manual_rapid
@@ -92,7 +113,7 @@ def _room(axis: Axis, at: float, speed: float) -> float:
     return room if room > axis.count else 0.0
 
 
-def _ride(v0: float, v1: float, a: float, time: float, room: float) -> list[tuple[float, float, float]]:
+def _ride(v0: float, v1: float, a: float, time: float, room: float) -> list[_Piece]:
     """(seconds, speed at start, acceleration): to ``v1``, on for the rest of ``time``, then to rest.
 
     A ride that ``room`` is too short for goes less fast or less long. Braking alone takes v0²/2a.
@@ -121,7 +142,7 @@ def _segments(
     start: float,
     p: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
     axis: int,
-    pieces: list[tuple[float, float, float]],
+    pieces: list[_Piece],
 ) -> Segments:
     n = len(pieces)
     dt = np.array([piece[0] for piece in pieces])

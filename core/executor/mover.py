@@ -35,7 +35,7 @@ class Mover:
     @property
     def moving(self) -> bool:
         """Whether anything still moves."""
-        return self.player.active and not self.player.at_rest(self._bench.now)
+        return self.player.active and not self.player.at_rest()
 
     @property
     def block(self) -> Block | None:

@@ -117,9 +117,10 @@ class Player:
             return self._stretch.stoppable(last, -np.inf)
         return self._stretch.stoppable(last, self._plan_stop(self._lead(now), None).end_s)
 
-    def at_rest(self, now: float) -> bool:
-        """Nothing that was queued moves any more."""
-        return self._axes.horizon() <= now + 1e-9
+    def at_rest(self) -> bool:
+        """Nothing that was queued moves any more. The clock goes on between two questions: ask it last."""
+        horizon = self._axes.horizon()
+        return horizon <= self._axes.now() + 1e-9
 
     def complete(self) -> bool:
         """Whether what is queued ends where the stretch does."""

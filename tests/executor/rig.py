@@ -26,6 +26,14 @@ INCH = 25.4
 TICK = 0.01
 
 
+class CreepingClock(StepClock):
+    """A clock that goes on with every look at it, as a real one does."""
+
+    def now(self) -> float:
+        self.advance(20e-6)
+        return super().now()
+
+
 @dataclass
 class Rig:
     """Drive it with ``post``, ``run`` and the simulated hands of ``sim.machine``."""
@@ -33,10 +41,11 @@ class Rig:
     machine: Machine = field(default_factory=load_machine)
     events: list[Event] = field(default_factory=list)
     watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
+    clock_kind: type[StepClock] = StepClock
     made: list[Block] | None = None  # run these instead of interpreting
 
     def __post_init__(self) -> None:
-        self.clock = StepClock()
+        self.clock = self.clock_kind()
         self.sim: Simulation = simulated(self.machine, self.clock)
         self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
         self.executor.tick()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import CycleStart, SetSwitch
+from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
 from core.executor.snapshot import State
-from tests.executor.rig import INCH, Rig
+from tests.executor.rig import INCH, CreepingClock, Rig
 
 LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
 
@@ -202,3 +202,20 @@ def test_feed_per_revolution_with_a_still_spindle_moves_nothing() -> None:
     rig.until(State.FAULT)
     assert rig.shot.actual[1] == 0.0
     assert rig.shot.alarms[0].code in {"spindle-still", "program"}
+
+
+def test_a_clock_that_never_stands_still_changes_nothing() -> None:
+    rig = Rig(clock_kind=CreepingClock)
+    rig.start("G90G94F300\nM03S1000\nX1Z-1\nG01F100X2\nZ-2\nG04F.2\nX0Z0\nM30\n")
+    for wait in (0.2, 1.5, 0.4):
+        rig.run(wait)
+        rig.post(FeedHold())
+        rig.until(State.HOLD, limit=1.0)
+        rig.run(0.4)
+        rig.post(FeedOverride(0.8), CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+    assert rig.shot.parts == 1
+    assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
+    rig.post(Jog("X", 10.0, 0.2))
+    rig.until(State.IDLE, limit=1.0)
