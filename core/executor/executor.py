@@ -26,6 +26,7 @@ from core.motion.errors import MotionError
 from core.ports import DriverError, MachinePorts
 
 _STALL = 0.2  # s between two ticks that tell of a stalled host
+_TOLD = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
@@ -53,6 +54,7 @@ class Executor:
         self._conductor = Conductor(self._bench, passes)
         self._orders = Orders(self._bench, self._conductor, self._station)
         self._publisher = Publisher()
+        self._told = 1.0
         self.snapshot: Snapshot = self._publish()
 
     def post(self, command: Command) -> None:
@@ -84,10 +86,18 @@ class Executor:
         bench.inputs = dict(self._ports.io.inputs())
         bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
         bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
+        self._tell_override()
         if self._conductor.state in ACTIVE:
             self._conductor.counters.cycle += bench.now - before
             if bench.now - before > _STALL:
                 bench.say("starved", f"the control was away for {bench.now - before:.2f} s")
+
+    def _tell_override(self) -> None:
+        """A turned pot goes to the log in steps worth reading."""
+        fraction = self._bench.feed_override
+        if abs(fraction - self._told) >= _TOLD or (fraction == 0.0) != (self._told == 0.0):
+            self._told = fraction
+            self._bench.say("override", f"feed {100 * fraction:.0f} %")
 
     def _obey(self) -> None:
         """E-stop first, then what was posted, then the station's buttons."""

@@ -110,7 +110,6 @@ class Orders:
             self._bench.say("refused", f"feed override {fraction} is not between 0 and 1.5")
             return
         self._bench.soft_override = fraction
-        self._bench.say("override", f"feed {100 * fraction:.0f} %")
 
     def _limit(self, rpm: float | None) -> None:
         highest = self._bench.machine.spindle.rpm_max

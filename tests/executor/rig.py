@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
 from app.compose.machine import control_limits
@@ -42,7 +42,7 @@ class Rig:
     events: list[Event] = field(default_factory=list)
     watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
     clock_kind: type[StepClock] = StepClock
-    made: list[Block] | None = None  # run these instead of interpreting
+    made: Iterable[Block] | None = None  # run these instead of interpreting
 
     def __post_init__(self) -> None:
         self.clock = self.clock_kind()

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import count
+
 import pytest
 
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import State
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
 from tests.executor.rig import INCH, TICK, Rig, off_line
 
 RAPID = "G90G94F300\nX3Z-4\nX0Z0\nM30\n"
 END = (3 * INCH, -4 * INCH)
+AMAX = 120 * INCH
 STEP_OFF = 0.00254  # mm, the path may be left by two counts
 
 
@@ -262,3 +268,43 @@ def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
     rig.until_true(lambda shot: shot.block == 1)
     rig.until(State.IDLE)
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+def test_the_log_tells_of_overrides_once() -> None:
+    rig = Rig()
+    rig.post(FeedOverride(0.5))
+    rig.run(1.0)
+    rig.sim.machine.set_feed_pot(0.0)
+    rig.run(1.0)
+    assert rig.said("override") == ["feed 50 %", "feed 0 %"]
+
+
+def test_a_million_blocks_do_not_keep_a_hold_waiting() -> None:
+    rig = Rig()
+    pulled = 0
+
+    def many() -> Iterator[Block]:
+        nonlocal pulled
+        for block in endless():
+            pulled += 1
+            yield block
+
+    rig.made = many()
+    rig.start("G90\nM30\n")
+    rig.run(1.0)
+    assert rig.shot.velocity == pytest.approx(100.0, rel=0.03)
+    assert pulled < 16_000  # a second done, a second and a half read ahead, 5000 blocks each
+    rig.post(FeedHold())
+    # 30 ms commit, v/a = 33 ms, a tick to see it
+    assert rig.until(State.HOLD) <= 0.03 + 100.0 / AMAX + 2 * TICK
+    assert rig.shot.underruns == 0
+
+
+def endless() -> Iterator[Block]:
+    """Chords of .02 mm at 100 mm/s, up and down X."""
+    x, modal = 0.0, Modal()
+    for n in count(1):
+        end = x + (0.02 if (n // 4000) % 2 == 0 else -0.02)
+        z0, z = -0.00001 * (n - 1), -0.00001 * n
+        yield Block(n, n, Kind.FEED, "", x, z0, 0.0, end, z, 0.0, 0.0, 0.0, modal, feed=100.0)
+        x = end
