@@ -19,7 +19,7 @@ from core.interpreter.modal import Modal
 
 _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
 _ACTIONS = 50  # carried out in one tick at most
-_BUFFER = 1.5  # of the look-ahead: seconds of motion kept read
+_BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _GOING = frozenset({State.RUN, State.WAIT})
 
 
