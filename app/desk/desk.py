@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
+from app.desk.hands import OVERRIDE_MOST, StationHands, stepped
 from app.desk.session import Loaded, Session
 from app.desk.shelf import Shelf
-from app.desk.station import Palms, Pot, StationPanel
+from app.desk.station import StationPanel
 from app.desk.view import Readout, View, view_of
 from core.executor.commands import (
     Command,
@@ -28,8 +29,6 @@ from core.executor.commands import (
 )
 from core.executor.snapshot import Event, Snapshot, State
 
-OVERRIDE_STEP = 0.1
-OVERRIDE_MOST = 1.5
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
 HEARD = 100  # events that wait for the next frame; older ones are in the log
 UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
@@ -64,23 +63,20 @@ class Desk:
     time_of_day: Callable[[], str] = _time_of_day
     readout: Readout = Readout.POSITION
     notice: str = ""
-    palms: Palms = field(default_factory=Palms)
-    estop_pressed: bool = False
-    spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
-    feed_knob: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
+    hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     _giving_up: bool = False
     _refused: str = ""
     _noticed_in: State | None = None
-    _looked: float | None = None
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
+        self.hands = StationHands(self.station, self.clock, self.say, self.clear, self._starting)
 
     def look(self) -> tuple[Snapshot, View, Loaded]:
         """One snapshot, and what the page shows of it; called once a frame."""
-        self._turn_knobs()
+        self.hands.turn_knobs()
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
         self._answer(snapshot)
@@ -168,11 +164,6 @@ class Desk:
         self.post(FeedHold())
         self.clear()
 
-    def override(self, steps: int) -> None:
-        """Change the feed override by so many steps of ten percent."""
-        at = self.feed_pot if self.station else self.snapshot().feed_override
-        self.set_feed_pot(round(at / OVERRIDE_STEP + steps) * OVERRIDE_STEP)
-
     def reset(self) -> None:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
@@ -215,86 +206,30 @@ class Desk:
 
     # --- station -------------------------------------------------------------------------------------
 
-    def palm(self, side: str, down: bool) -> None:
-        """A palm button goes down or up; the station's relay decides whether that is a start."""
-        station = self.station
-        if station is None:
-            return
-        if down and side not in self.palms.down:
-            self.clear()
-            if self.palms.press(side, self.clock()):
-                self._refused = ""  # the same refusal again is worth saying again
-            (station.press_left if side == "left" else station.press_right)()
-        elif not down and side in self.palms.down:
-            (station.release_left if side == "left" else station.release_right)()
-            if self.palms.release(side):
-                self.say(prompts.ONE_PALM)
-
     def start_button(self) -> None:
         """Cycle start of a machine with one button."""
         if not self.two_hand:
             self.clear()
             self.post(CycleStart())
 
-    def let_go(self) -> None:
-        """Hands off: the window has lost the keyboard, so no release would ever arrive."""
-        for side in tuple(self.palms.down):
-            self.palm(side, down=False)
-
-    def hold_button(self, down: bool) -> None:
-        """The station's feed hold button."""
-        if self.station:
-            (self.station.press_hold if down else self.station.release_hold)()
-
-    def estop(self, pressed: bool) -> None:
-        """Hit the mushroom, or twist it out."""
-        if self.station and pressed is not self.estop_pressed:
-            self.estop_pressed = pressed
-            self.clear()
-            (self.station.press_estop if pressed else self.station.release_estop)()
-
-    def set_spindle_auto(self, auto: bool) -> None:
-        """The spindle switch AUTO/OFF."""
-        if self.station:
-            self.station.set_spindle_auto(auto)
-
     def turn_spindle_switch(self) -> None:
         """The spindle switch to its other side."""
-        self.set_spindle_auto(not self.snapshot().spindle_auto)
+        self.hands.set_spindle_auto(not self.snapshot().spindle_auto)
 
-    def turn_spindle_pot(self, steps: int) -> None:
-        """The spindle pot by so many steps of ten percent."""
-        self.set_spindle_pot(round(self.spindle_pot / OVERRIDE_STEP + steps) * OVERRIDE_STEP)
+    def override(self, steps: int) -> None:
+        """Change the feed override by so many steps of ten percent.
 
-    @property
-    def spindle_pot(self) -> float:
-        """Where the spindle override pot shall stand, 0…1."""
-        return self.spindle_knob.wanted
-
-    def set_spindle_pot(self, fraction: float) -> None:
-        """The spindle override pot, 0…1."""
-        self.spindle_knob.set(fraction)
-
-    @property
-    def feed_pot(self) -> float:
-        """Where the feed override pot shall stand, 0…1.5."""
-        return self.feed_knob.wanted
-
-    def set_feed_pot(self, fraction: float) -> None:
-        """Feed override 0…1.5: the station's pot where there is one, so that knob and value never differ."""
-        self.feed_knob.set(fraction)
-        if self.station is None:
-            self.post(FeedOverride(self.feed_pot))
-
-    def _turn_knobs(self) -> None:
-        now = self.clock()
-        passed = min(0.1, now - self._looked) if self._looked is not None else 0.0
-        self._looked = now
+        Where there is a station its pot is turned, so that knob and value never differ.
+        """
         if self.station is not None:
-            if self.spindle_knob.turn(passed):
-                self.station.set_spindle_pot(self.spindle_knob.value)
-            if self.feed_knob.turn(passed):
-                self.station.set_feed_pot(self.feed_knob.value)
+            self.hands.set_feed_pot(stepped(self.hands.feed_pot, steps))
+            return
+        wanted = stepped(self.snapshot().feed_override, steps)
+        self.post(FeedOverride(max(0.0, min(OVERRIDE_MOST, wanted))))
+
+    def _starting(self) -> None:
+        """A start is tried: the same refusal again is worth saying again."""
+        self._refused = ""
 
     def close(self) -> None:
         """End the loading and whatever drives the machine."""

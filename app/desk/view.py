@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from app.desk import formats
+from app.desk.lamps import TURNING, Lamp, lamps_of, modes_of
 from core.executor.snapshot import Alarm, Snapshot, State
 
 
@@ -49,7 +50,6 @@ TONES = {
     State.HOME: Tone.RUN,
     State.FAULT: Tone.ALARM,
 }
-TURNING = 1.0  # rpm above which a spindle is said to turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,16 +99,6 @@ class SpindleView:
 
 
 @dataclass(frozen=True, slots=True)
-class Lamp:
-    """A lit word, and the key that switches it, if one does."""
-
-    word: str
-    lit: bool
-    key: str = ""
-    warn: bool = False
-
-
-@dataclass(frozen=True, slots=True)
 class View:
     """Everything on the page that comes from the machine."""
 
@@ -149,8 +139,8 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool) -> View:
         secondary=f"D{modal.secondary}",
         feed=_feed(snapshot),
         spindle=_spindle(snapshot),
-        modes=_modes(snapshot),
-        lamps=_lamps(snapshot),
+        modes=modes_of(snapshot),
+        lamps=lamps_of(snapshot),
         parts=str(snapshot.parts),
         cycle=formats.duration(snapshot.cycle_elapsed),
         last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
@@ -237,42 +227,6 @@ def _spindle(snapshot: Snapshot) -> SpindleView:
         override=snapshot.spindle_override,
         auto=snapshot.spindle_auto,
     )
-
-
-def _modes(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    return (
-        Lamp("SINGLE BLOCK", snapshot.single_block, "S"),
-        Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
-        Lamp("BLOCK DELETE", snapshot.block_delete, "/"),
-        Lamp("CYCLE REPEAT", snapshot.cycle_repeat, "C"),
-    )
-
-
-def _lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …)."""
-    return (
-        _spindle_lamp(snapshot),
-        Lamp("COOLANT", "coolant" in snapshot.outputs),
-        _collet_lamp(snapshot),
-        Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs)),
-    )
-
-
-def _spindle_lamp(snapshot: Snapshot) -> Lamp:
-    """Turning is told from the measured speed: one that coasts is as dangerous as one that is driven."""
-    turning = abs(snapshot.rpm_actual) > TURNING
-    if turning and snapshot.rpm_command == 0:
-        return Lamp("SPINDLE COASTS", lit=True, warn=True)
-    if turning:
-        return Lamp("SPINDLE REV" if snapshot.rpm_actual < 0 else "SPINDLE FWD", lit=True)
-    return Lamp("SPINDLE", lit=False)
-
-
-def _collet_lamp(snapshot: Snapshot) -> Lamp:
-    """The output decides, not the program's word: it is what holds the bar."""
-    if "collet" in snapshot.outputs:
-        return Lamp("COLLET CLOSED", lit=True)
-    return Lamp("COLLET OPEN", lit=True, warn=True)
 
 
 def _message(snapshot: Snapshot) -> str:

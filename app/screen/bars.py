@@ -104,8 +104,6 @@ class PromptLine(Panel):
         painter.fillRect(area, look.colour("pause" if self._answer else "panel"))
         painter.setPen(look.colour("on_state" if self._answer else "text"))
         font = look.fit(self.text, 2.3, area.width() - 3 * u, bold=True)
-        if font.pixelSize() < 1.7 * u:  # never so small that it cannot be read: the end is elided instead
-            font = look.font(1.7, bold=True)
         painter.setFont(font)
         put(painter, area.adjusted(1.4 * u, 0, -1.4 * u, 0), LEFT, self.text)
 

@@ -10,7 +10,8 @@ from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
-from app.desk.desk import OVERRIDE_MOST, Desk
+from app.desk.desk import Desk
+from app.desk.hands import OVERRIDE_MOST
 from app.screen.fingers import Control, FingerPanel
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from core.executor.snapshot import Snapshot
@@ -33,8 +34,8 @@ class StationDock(FingerPanel):
         """Where its switches and buttons stand."""
         desk = self._desk
         self._auto = snapshot.spindle_auto
-        palms = frozenset(desk.palms.down)
-        shown = (desk.estop_pressed, self._auto, desk.spindle_pot, desk.feed_pot, palms)
+        palms = frozenset(desk.hands.palms.down)
+        shown = (desk.hands.estop_pressed, self._auto, desk.hands.spindle_pot, desk.hands.feed_pot, palms)
         if shown != self._shown:
             self._shown = shown
             self.update()
@@ -45,7 +46,7 @@ class StationDock(FingerPanel):
         if self._feed_box().contains(event.position()):
             self._desk.override(steps)
         elif self._spindle_box().contains(event.position()):
-            self._desk.turn_spindle_pot(steps)
+            self._desk.hands.turn_spindle_pot(steps)
 
     def _row(self, y: float, high: float) -> QRectF:
         u = self.look.u
@@ -63,10 +64,12 @@ class StationDock(FingerPanel):
         desk = self._desk
         self._mushroom(painter)
         self._switch(painter)
-        self._label(painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(desk.spindle_pot), "text")
-        self._pot(painter, self._spindle_box(), (",", "."), desk.spindle_pot, 1.0)
-        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(desk.feed_pot), "text")
-        self._pot(painter, self._feed_box(), ("−", "+"), desk.feed_pot, OVERRIDE_MOST)
+        self._label(
+            painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(desk.hands.spindle_pot), "text"
+        )
+        self._pot(painter, self._spindle_box(), (",", "."), desk.hands.spindle_pot, 1.0)
+        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(desk.hands.feed_pot), "text")
+        self._pot(painter, self._feed_box(), ("−", "+"), desk.hands.feed_pot, OVERRIDE_MOST)
         self._hold(painter)
         self._start(painter)
 
@@ -80,9 +83,9 @@ class StationDock(FingerPanel):
 
     def _mushroom(self, painter: QPainter) -> None:
         look, u, desk = self.look, self.look.u, self._desk
-        box, pressed = self._row(2.6, 15.0), self._desk.estop_pressed
+        box, pressed = self._row(2.6, 15.0), self._desk.hands.estop_pressed
         painter.fillRect(box, look.colour("estop_plate"))
-        side = min(box.width() - 7.0 * u, box.height() - 1.6 * u)
+        side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("estop_rim"))
@@ -94,7 +97,7 @@ class StationDock(FingerPanel):
         for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "E", 1.8, 1.6)):
             painter.setFont(look.font(size, bold=True))
             put(painter, head.translated(0, down * u), CENTRE, text)
-        self.controls.append(Control(head, lambda _at: desk.estop(pressed=True)))
+        self.controls.append(Control(head, lambda _at: desk.hands.estop(pressed=True)))
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
         out.setRight(box.right() - 0.6 * u)
         self._release(painter, out, pressed)
@@ -109,7 +112,7 @@ class StationDock(FingerPanel):
         for number, word in enumerate(("TWIST", "OUT", "SHIFT E")):
             painter.setFont(look.fit(word, 1.7, box.width() - 0.6 * u, bold=True))
             put(painter, QRectF(box.x(), box.y() + number * high, box.width(), high), CENTRE, word)
-        self.controls.append(Control(box, lambda _at: desk.estop(pressed=False)))
+        self.controls.append(Control(box, lambda _at: desk.hands.estop(pressed=False)))
 
     def _switch(self, painter: QPainter) -> None:
         look = self.look
@@ -128,11 +131,11 @@ class StationDock(FingerPanel):
             self.controls.append(Control(at, self._switcher(word == "AUTO")))
 
     def _switcher(self, auto: bool) -> Callable[[QPointF], None]:
-        return lambda _at: self._desk.set_spindle_auto(auto)
+        return lambda _at: self._desk.hands.set_spindle_auto(auto)
 
     def _pot(self, painter: QPainter, box: QRectF, keys: tuple[str, str], value: float, most: float) -> None:
         look, u = self.look, self.look.u
-        turn = self._desk.override if most > 1 else self._desk.turn_spindle_pot
+        turn = self._desk.override if most > 1 else self._desk.hands.turn_spindle_pot
         less = QRectF(box.x(), box.y(), 4.6 * u, box.height())
         more = QRectF(box.right() - 4.6 * u, box.y(), 4.6 * u, box.height())
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
@@ -146,7 +149,7 @@ class StationDock(FingerPanel):
         painter.setBrush(look.colour("panel"))
         painter.drawRect(track)
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), value / most)
-        setter = self._desk.set_feed_pot if most > 1 else self._desk.set_spindle_pot
+        setter = self._desk.hands.set_feed_pot if most > 1 else self._desk.hands.set_spindle_pot
 
         def slide(at: QPointF) -> None:
             setter(round((at.x() - track.x()) / track.width() * most * 20) / 20)
@@ -176,7 +179,7 @@ class StationDock(FingerPanel):
         painter.setPen(look.colour("accent"))
         painter.setFont(look.font(2.2, bold=True))
         put(painter, inner, RIGHT, "H")
-        press, release = partial(desk.hold_button, down=True), partial(desk.hold_button, down=False)
+        press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
         self.controls.append(Control(box, lambda _at: press(), None, release))
 
     def _start(self, painter: QPainter) -> None:
@@ -194,11 +197,11 @@ class StationDock(FingerPanel):
         half = box.width() / 2
         for number, (side, key) in enumerate((("left", "F11"), ("right", "F12"))):
             at = QRectF(box.x() + number * half, box.y(), half, box.height())
-            self._palm(painter, at, key, side in desk.palms.down)
+            self._palm(painter, at, key, side in desk.hands.palms.down)
             self.controls.append(self._palm_control(at, side))
 
     def _palm_control(self, at: QRectF, side: str) -> Control:
-        press, release = (partial(self._desk.palm, side, down) for down in (True, False))
+        press, release = (partial(self._desk.hands.palm, side, down) for down in (True, False))
         return Control(at, lambda _at: press(), None, release)
 
     def _palm(self, painter: QPainter, box: QRectF, key: str, down: bool) -> None:

@@ -136,7 +136,11 @@ class TimesGauge(Gauge):
             return
         room = self.inside()
         column = room.width() / len(self.value)
+        longest = max((text for _name, text in self.value), key=len)
+        font = self.look.fit(longest, 2.6, column - 0.6 * self.look.u, bold=True)
         for number, (name, text) in enumerate(self.value):
             at = QRectF(room.x() + number * column, room.y(), column - 0.6 * self.look.u, room.height())
             self.label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, CENTRE)
-            self.figure(painter, at.adjusted(0, room.height() * 0.36, 0, 0), text, 2.6, CENTRE)
+            painter.setFont(font)
+            painter.setPen(self.look.colour("text"))
+            put(painter, at.adjusted(0, room.height() * 0.36, 0, 0), CENTRE, text)

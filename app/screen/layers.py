@@ -91,19 +91,18 @@ class Layers:
         (self._draw_smooth if self._smooth else self._draw_pixels)(image, start, end, done)
 
     def _draw_smooth(self, image: QImage, start: int, end: int, done: bool) -> None:
-        painter = QPainter(image)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         pens = self.pens(done)
         found = list(runs(self.picture, self.frame, start, end))
-        if not done:
-            painter.setPen(self._look.pen("ghost", 0.12))
+        with QPainter(image) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            if not done:
+                painter.setPen(self._look.pen("ghost", 0.12))
+                for run in found:
+                    if run.stroke == Stroke.TURN:
+                        stroke_run(painter, Run(run.stroke, run.columns, self._middle - run.rows))
             for run in found:
-                if run.stroke == Stroke.TURN:
-                    stroke_run(painter, Run(run.stroke, run.columns, self._middle - run.rows))
-        for run in found:
-            painter.setPen(pens[run.stroke])
-            stroke_run(painter, run)
-        painter.end()
+                painter.setPen(pens[run.stroke])
+                stroke_run(painter, run)
 
     def _draw_pixels(self, image: QImage, start: int, end: int, done: bool) -> None:
         shape = points(self.picture, self.frame, start, end)

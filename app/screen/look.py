@@ -16,6 +16,7 @@ from app.screen.theme import Palette
 FAMILY = "B612"
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+LEAST = 1.35  # units: the smallest text
 CENTRE = Qt.AlignmentFlag.AlignCenter
 
 
@@ -71,13 +72,16 @@ class Look:
         return QPen(self.colour(name), max(1.0, width * self.u))
 
     def fit(self, text: str, size: float, width: float, *, bold: bool = False) -> QFont:
-        """The font of this size, or the largest smaller one in which ``text`` is not wider than ``width``."""
+        """The font of this size, or the largest smaller one in which ``text`` is not wider than ``width``.
+
+        Never so small that it cannot be read: text that is too long even then is elided where it is put.
+        """
         font = self.font(size, bold=bold)
         wide = QFontMetricsF(font).horizontalAdvance(text)
         if wide <= width or wide <= 0:
             return font
         smaller = QFont(font)
-        smaller.setPixelSize(max(6, int(font.pixelSize() * width / wide)))
+        smaller.setPixelSize(max(round(LEAST * self.u), int(font.pixelSize() * width / wide)))
         return smaller
 
 

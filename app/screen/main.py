@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,7 @@ from app.screen.theme import PALETTES
 from app.screen.window import MainWindow
 
 BuildDesk = Callable[[], Desk]
+_log = logging.getLogger(__name__)
 START_SIZE = (1280, 720)
 
 
@@ -40,8 +42,10 @@ def run_screen(
     else:
         window.show()
     start = _Start(window, build or (lambda: _composed(machine)), program)
+    before, sys.excepthook = sys.excepthook, start.mistake
     QTimer.singleShot(0, start.run)
     status = app.exec()
+    sys.excepthook = before
     window.hide()
     window.deleteLater()
     start.close()
@@ -68,6 +72,12 @@ class _Start:
         """Nothing may be raised into Qt's loop: it is carried past its end."""
         self._trouble = error
         QApplication.exit(1)
+
+    def mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
+        _log.error("the screen has failed", exc_info=(kind, error, trace))
+        if self._desk is not None:
+            self._desk.say(f"A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: {kind.__name__}: {error}")
 
     def close(self) -> None:
         """Stop the machine, end the threads, tell what went wrong."""

@@ -27,15 +27,14 @@ class Panel(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Qt's call to draw."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.fillRect(self.rect(), self.look.colour(self.ground))
-        self._places.clear()
-        if self.title:
-            self.frame(painter, self.title)
-        self.draw(painter)
-        painter.end()
+        """Qt's call to draw. The painter ends whatever happens: one left open takes the process with it."""
+        with QPainter(self) as painter:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.fillRect(self.rect(), self.look.colour(self.ground))
+            self._places.clear()
+            if self.title:
+                self.frame(painter, self.title)
+            self.draw(painter)
 
     def draw(self, painter: QPainter) -> None:
         """What a part of the page draws inside its frame."""

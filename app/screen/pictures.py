@@ -37,7 +37,7 @@ class Stage:
         self.desk, self._executor = desk_and_executor(
             None, lambda: read_offsets(samples / "offsets.toml"), self.clock
         )
-        self.desk.clock = self.clock.now
+        self.desk.hands.clock = self.clock.now
         self.desk.time_of_day = lambda: "09:41:07"
 
     def tick(self, until: Callable[[], bool], most: float = 120.0) -> None:
@@ -61,10 +61,10 @@ class Stage:
         self.tick(lambda: desk.snapshot().state is State.DISABLED)
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
-        desk.palm("left", down=True)
-        desk.palm("right", down=True)
+        desk.hands.palm("left", down=True)
+        desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
-        desk.let_go()
+        desk.hands.let_go()
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk.view import Lamp
+from app.desk.lamps import Lamp
 from app.screen.look import CENTRE, Look, put
 from app.screen.panel import Panel
 

@@ -73,11 +73,11 @@ class MainWindow(QWidget):
             "H": desk.feed_hold,
             "R": desk.reset,
             "D": desk.enable,
-            "E": partial(desk.estop, pressed=True),
-            "Shift E": partial(desk.estop, pressed=False),
+            "E": partial(desk.hands.estop, pressed=True),
+            "Shift E": partial(desk.hands.estop, pressed=False),
             "A": desk.turn_spindle_switch,
-            ",": partial(desk.turn_spindle_pot, -1),
-            ".": partial(desk.turn_spindle_pot, 1),
+            ",": partial(desk.hands.turn_spindle_pot, -1),
+            ".": partial(desk.hands.turn_spindle_pot, 1),
             "+": partial(desk.override, 1),
             "-": partial(desk.override, -1),
             "T": self.other_theme,
@@ -125,7 +125,7 @@ class MainWindow(QWidget):
         if self.page is not None:
             desk = self.page.desk
             if desk.two_hand:
-                desk.palm(side, down)
+                desk.hands.palm(side, down)
             elif down and side == "right":
                 desk.start_button()
             self.refresh()
@@ -141,7 +141,7 @@ class MainWindow(QWidget):
         if self.page is not None:
             if self.page.dock is not None:
                 self.page.dock.let_go()
-            self.page.desk.let_go()
+            self.page.desk.hands.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The page fills the window."""

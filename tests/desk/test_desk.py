@@ -146,32 +146,32 @@ def test_escape_holds_what_moves(desk: Desk, machine: FakeMachine) -> None:
 
 
 def test_one_palm_does_not_start_and_is_told(desk: Desk, machine: FakeMachine) -> None:
-    desk.palm("left", down=True)
-    desk.palm("left", down=False)
+    desk.hands.palm("left", down=True)
+    desk.hands.palm("left", down=False)
     assert CycleStart() not in machine.posted
     assert desk.notice == ONE_PALM
 
 
 def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:
-    desk.palm("left", down=True)
-    desk.palm("left", down=True)
-    desk.palm("left", down=False)
+    desk.hands.palm("left", down=True)
+    desk.hands.palm("left", down=True)
+    desk.hands.palm("left", down=False)
     assert machine.palms == set()
 
 
 def test_losing_the_window_lets_the_palms_go(desk: Desk, machine: FakeMachine) -> None:
-    desk.palm("left", down=True)
-    desk.let_go()
+    desk.hands.palm("left", down=True)
+    desk.hands.let_go()
     assert machine.palms == set()
-    desk.palm("right", down=True)
+    desk.hands.palm("right", down=True)
     assert CycleStart() not in machine.posted
 
 
 def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) -> None:
     for _ in range(2):
-        desk.palm("left", down=True)
-        desk.palm("right", down=True)
-        desk.let_go()
+        desk.hands.palm("left", down=True)
+        desk.hands.palm("right", down=True)
+        desk.hands.let_go()
         desk.look()
         assert desk.notice == "NO START: NO PROVED PROGRAM"
         desk.clear()
@@ -202,7 +202,7 @@ def test_pages_to_come_are_announced(desk: Desk, key: str) -> None:
 def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
     ticks = iter(range(1000))
     desk = desk_on(machine)
-    desk.clock = lambda: next(ticks) / 10
+    desk.hands.clock = lambda: next(ticks) / 10
     desk.override(-3)
     for _ in range(10):
         desk.look()
@@ -215,8 +215,8 @@ def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path
     desk = Desk(machine.post, machine.snapshot, Session(_no_workshop(), machine.post), Shelf((tmp_path,)))
     desk.override(-20)
     assert machine.posted == [FeedOverride(0.0)]
-    desk.palm("left", down=True)
-    desk.estop(pressed=True)
+    desk.hands.palm("left", down=True)
+    desk.hands.estop(pressed=True)
     assert machine.palms == set()
     assert machine.now.state is State.IDLE
     desk.close()

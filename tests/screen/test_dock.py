@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.screen.dock import StationDock
-from app.screen.main import run_screen
 from core.executor.commands import CycleStart
 from core.executor.snapshot import State
 from tests.screen.hands import Hands
@@ -75,9 +73,9 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
     track = dock.controls[9].box  # E-stop, twist, OFF, AUTO, less, more, spindle pot, less, more, feed pot
     end = QPointF(track.left(), track.center().y()).toPoint()
     fingers.press(0, track.center().toPoint())
-    assert hands.desk.feed_pot == 0.75
+    assert hands.desk.hands.feed_pot == 0.75
     fingers.move(0, end)
-    assert hands.desk.feed_pot == 0.0
+    assert hands.desk.hands.feed_pot == 0.0
     fingers.release(at=end)
 
 
@@ -118,12 +116,3 @@ def test_a_finger_that_leaves_with_the_window_lets_the_palm_go(hands: Hands) -> 
     assert hands.machine.palms == {"right"}
     hands.window.let_go()
     assert hands.machine.palms == set()
-
-
-@pytest.mark.parametrize("theme", ["dark", "light"])
-def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str) -> None:
-    def broken() -> None:
-        raise ValueError("lathe.toml: no axis X")
-
-    with pytest.raises(ValueError, match="no axis X"):
-        run_screen(theme=theme, build=broken)  # type: ignore[arg-type]

@@ -7,7 +7,7 @@ from dataclasses import fields
 import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.look import Look, load_fonts
+from app.screen.look import LEAST, Look, load_fonts
 from app.screen.theme import DARK, PALETTES, Palette, contrast
 
 TEXT = [
@@ -75,7 +75,8 @@ def test_every_sign_is_in_the_font(sign: str) -> None:
     assert QRawFont.fromFont(Look(DARK, 12.0).font(2.0)).supportsCharacter(ord(sign))
 
 
-def test_text_that_is_too_long_is_made_smaller_and_never_wider() -> None:
-    look = Look(DARK, 12.0)
-    font = look.fit("A PROGRAM NAME OF UNREASONABLE LENGTH", 3.0, 200.0, bold=True)
-    assert QFontMetricsF(font).horizontalAdvance("A PROGRAM NAME OF UNREASONABLE LENGTH") <= 200.0
+def test_text_that_is_too_long_is_made_smaller_but_never_unreadable() -> None:
+    look, text = Look(DARK, 12.0), "A PROGRAM NAME OF SOME LENGTH"
+    font = look.fit(text, 3.0, 400.0, bold=True)
+    assert QFontMetricsF(font).horizontalAdvance(text) <= 400.0
+    assert look.fit(text, 3.0, 10.0, bold=True).pixelSize() == round(LEAST * 12.0)

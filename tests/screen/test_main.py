@@ -1,0 +1,71 @@
+"""The screen as a program: how it opens, what it says when it cannot, how it ends."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
+from pytestqt.exceptions import capture_exceptions
+
+from app.desk.desk import Desk
+from app.screen.main import run_screen
+from app.screen.page import AutomaticPage
+from app.screen.window import MainWindow
+from tests.screen.desks import SAMPLES, desk_on
+from tests.screen.fake import FakeMachine
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str) -> None:
+    def broken() -> None:
+        raise ValueError("lathe.toml: no axis X")
+
+    with pytest.raises(ValueError, match="no axis X"):
+        run_screen(theme=theme, build=broken)  # type: ignore[arg-type]
+
+
+def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
+    desk, closed = desk_on(machine), []
+    desk.shut = lambda: closed.append(True)
+
+    def leave() -> None:
+        if desk.session.now.picture is None:
+            QTimer.singleShot(5, leave)
+            return
+        (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())
+        window.close()
+
+    QTimer.singleShot(0, leave)
+    assert run_screen(program=str(SAMPLES / "pin.nc"), build=lambda: desk) == 0
+    assert desk.session.now.name == "pin.nc"
+    assert closed == [True]
+
+
+def test_a_program_that_is_not_there_is_told(machine: FakeMachine) -> None:
+    desk = desk_on(machine)
+    QTimer.singleShot(50, lambda: [w.close() for w in QApplication.topLevelWidgets()])
+    assert run_screen(program="nowhere.nc", build=lambda: desk) == 0
+    assert desk.notice == "FILE NOT FOUND: nowhere.nc"
+
+
+def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
+    machine: FakeMachine, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    desk = desk_on(machine)
+
+    def broken(_desk: Desk) -> None:
+        raise KeyError("a figure that is not there")
+
+    monkeypatch.setattr(AutomaticPage, "toggle_log", broken)
+
+    def press() -> None:
+        (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())
+        QTimer.singleShot(20, window.close)
+        window.press("F7")
+
+    QTimer.singleShot(50, press)
+    with capture_exceptions() as caught:
+        assert run_screen(build=lambda: desk) == 0
+    assert caught == []
+    assert "A MISTAKE OF THE SCREEN" in desk.notice
+    assert "a figure that is not there" in caplog.text
