@@ -8,7 +8,7 @@ from functools import partial
 
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
-from core.executor.commands import Command
+from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
 from core.executor.guard import Guard
@@ -26,6 +26,8 @@ from core.motion.errors import MotionError
 from core.ports import DriverError, MachinePorts
 
 _STALL = 0.2  # s between two ticks that tell of a stalled host
+_STALE = 0.5  # s after which nobody expects a press to move the machine any more
+_STARTS = (CycleStart, EnableDrives, Home, Jog)
 _TOLD = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
@@ -44,7 +46,7 @@ class Executor:
         on_event: Callable[[Event], None],
         passes: Callable[[Job, Setup], Pass] = interpret,
     ) -> None:
-        self._commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
         spindle = SpindleControl(ports.spindle, machine.spindle)
         self._bench = Bench(
@@ -59,7 +61,7 @@ class Executor:
 
     def post(self, command: Command) -> None:
         """Ask for something; it is looked at first thing in the next tick. Never waits."""
-        self._commands.put(command)
+        self._commands.put((self._ports.clock.now(), command))
 
     def tick(self) -> None:
         """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
@@ -115,9 +117,13 @@ class Executor:
     def _posted(self) -> Iterator[Command]:
         for _ in range(_COMMANDS):
             try:
-                yield self._commands.get_nowait()
+                posted, command = self._commands.get_nowait()
             except queue.Empty:
                 return
+            if isinstance(command, _STARTS) and self._bench.now - posted > _STALE:
+                self._bench.say("refused", f"{type(command).__name__} came too late to be obeyed")
+            else:
+                yield command
 
     def _supervise(self) -> None:
         self._conductor.supervisor.look()

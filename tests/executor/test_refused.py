@@ -10,7 +10,9 @@ from core.executor.commands import (
     Command,
     CycleStart,
     EnableDrives,
+    FeedHold,
     GiveProof,
+    Jog,
     LoadJob,
     Reset,
     SpindleLimit,
@@ -229,6 +231,28 @@ def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
     rig.post(SpindleLimit(None))
     rig.run(2.0)
     assert rig.shot.rpm_actual == 3000
+
+
+@pytest.mark.parametrize("command", [CycleStart(), Jog("X", 10.0, 0.2)])
+def test_a_press_that_a_stalled_host_finds_too_late_moves_nothing(command: Command) -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(TEXT)
+    rig.executor.post(command)
+    rig.clock.advance(2.0)
+    rig.tick()
+    assert rig.state is State.IDLE
+    assert "too late" in rig.said("refused")[-1]
+    assert nothing_moved(rig)
+
+
+def test_a_hold_is_never_too_late() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F5Z-5\nM30\n")
+    rig.executor.post(FeedHold())
+    rig.clock.advance(0.8)
+    rig.tick()
+    assert rig.state is State.HOLDING
 
 
 ALLOWED = sorted((old, new) for old, after in TRANSITIONS.items() for new in after)
