@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine import setup_for
+from core.executor.bench import motion_limits
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
 from core.executor.snapshot import State
+from core.interpreter.program import read_program
+from core.interpreter.run import Interpreter
+from core.language.source import Source
+from core.motion.path import build_path
+from core.motion.plan import plan
 from tests.executor.rig import INCH, CreepingClock, Rig
 
 LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
@@ -219,3 +226,23 @@ def test_a_clock_that_never_stands_still_changes_nothing() -> None:
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
     rig.post(Jog("X", 10.0, 0.2))
     rig.until(State.IDLE, limit=1.0)
+
+
+def test_the_run_obeys_the_law_of_the_whole_path() -> None:
+    """Planned piece by piece with a second of look-ahead, played as if planned at once."""
+    zigzag = "".join(f"X{0.02 * k:.4f}Z-{0.01 * k + 0.1 * (k // 5 % 2):.4f}\n" for k in range(1, 150))
+    text = f"G90G94F300\nG01F100\n{zigzag}G02X3.2Z-2R.4\nG01X3.5Z-1\nX0Z0\nX1\nX2Z-1\nM30\n"
+    rig = Rig()
+    setup = setup_for(rig.machine, tools={}, secondary={})
+    blocks = Interpreter(read_program(Source("PART", text)), setup).blocks()
+    whole = plan(build_path([block for block in blocks if block.moves], motion_limits(rig.machine)))
+    rig.start(text)
+    began = rig.clock.now() + rig.machine.timing.commit
+    furthest = 0.0
+    while rig.state is not State.IDLE:
+        rig.tick()
+        there = rig.sim.ports.axes.demand_at(rig.clock.now())[0]
+        wanted = whole.position(rig.clock.now() - began)[0]
+        furthest = max(furthest, *(abs(a - b) for a, b in zip(there, wanted, strict=True)))
+    assert rig.shot.parts == 1
+    assert furthest < 1e-4
