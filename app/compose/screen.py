@@ -27,7 +27,22 @@ if TYPE_CHECKING:
     from app.desk.picture import Picture
 
 
-def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
+def first_offsets() -> Offsets:
+    """The store's offsets; until somebody has entered a tool, the simulated lathe comes with the samples'."""
+    tools, secondary = stored_offsets()
+    if not tools:
+        from app.cli.offset_file import read_offsets
+
+        tools, _ = read_offsets(samples() / "offsets.toml")
+    return tools, secondary
+
+
+def samples() -> Path:
+    """The folder of the sample programs and their tool offsets."""
+    return Path(str(files("resources"))) / "programs"
+
+
+def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = first_offsets) -> Desk:
     """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
 
     Raises CommandError for a bad machine file and for a machine that is not simulated.
@@ -56,7 +71,7 @@ def desk_and_executor(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
         session=Session(workshop(machine, offsets), executor.post),
-        shelf=Shelf((home() / "programs", Path(str(files("resources"))) / "programs")),
+        shelf=Shelf((home() / "programs", samples())),
         station=simulation.machine,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,

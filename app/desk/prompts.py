@@ -49,7 +49,17 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
         return "PRESS F2 TO CHOOSE A PROGRAM"
     if snapshot.proof_wanted:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
+    missing = missing_tools(loaded)
+    if missing:
+        return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (TURNDESK OFFSETS SET)"
     return f"TO START {start}"
+
+
+def missing_tools(loaded: Loaded) -> list[str]:
+    """The tools that the program on the desk asks for and nobody has set."""
+    if loaded.proof is None or loaded.job is None:
+        return []
+    return [f"T{number}" for number in sorted(set(loaded.proof.tools) - loaded.job.tools_set)]
 
 
 def refusal(loaded: Loaded) -> str:

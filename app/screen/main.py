@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,7 @@ from app.screen.window import MainWindow
 
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)
+ENDING = (signal.SIGINT, signal.SIGTERM)  # the machine is stopped and the threads are ended, as by closing
 START_SIZE = (1280, 720)
 
 
@@ -43,9 +45,12 @@ def run_screen(
         window.show()
     start = _Start(window, build or (lambda: _composed(machine)), program)
     before, sys.excepthook = sys.excepthook, start.mistake
+    handlers = [(number, signal.signal(number, lambda *_: app.quit())) for number in ENDING]
     QTimer.singleShot(0, start.run)
     status = app.exec()
     sys.excepthook = before
+    for number, handler in handlers:
+        signal.signal(number, handler)
     window.hide()
     window.deleteLater()
     start.close()

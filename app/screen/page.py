@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.session import Loaded
 from app.desk.lamps import Lamp
+from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.bars import CommentLine, FunctionKeys, PromptLine, TitleLine
 from app.screen.dock import StationDock

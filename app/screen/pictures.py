@@ -30,12 +30,11 @@ class Stage:
 
     def __init__(self) -> None:
         from app.cli.offset_file import read_offsets
-        from app.compose.screen import desk_and_executor, step_clock
+        from app.compose.screen import desk_and_executor, samples, step_clock
 
-        samples = Path(__file__).parents[2] / "resources" / "programs"
         self.clock = step_clock()
         self.desk, self._executor = desk_and_executor(
-            None, lambda: read_offsets(samples / "offsets.toml"), self.clock
+            None, lambda: read_offsets(samples() / "offsets.toml"), self.clock
         )
         self.desk.hands.clock = self.clock.now
         self.desk.time_of_day = lambda: "09:41:07"

@@ -108,6 +108,13 @@ def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
     assert refusal(loaded) == "WILL NOT RUN: LINE 7: The arc's radius is too small. (1 MORE)"
 
 
+def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
+    job = Job(Source("part.nc", "G90"), Setup(), "digest", frozenset({1}))
+    loaded = Loaded(Phase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tools=(3, 1, 2)))
+    text = prompt(Snapshot(state=State.IDLE, program="part.nc"), loaded, "PRESS", "")
+    assert text == "WILL NOT START: NO OFFSET WAS EVER SET FOR T2, T3 (TURNDESK OFFSETS SET)"
+
+
 @pytest.mark.parametrize(
     ("name", "why"), [("gone.nc", "No such file or directory"), ("broken.nc", "the reader fell over")]
 )

@@ -28,7 +28,7 @@ def desk_on(machine: FakeMachine, *folders: Path, two_hand: bool = True) -> Desk
 
     def make_job(source: Source, block_delete: bool) -> Job:
         setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
-        return Job(source, setup, digest=f"{source.name}{block_delete}")
+        return Job(source, setup, f"{source.name}{block_delete}", frozenset(TOOLS))
 
     def proved(job: Job, watch: Watch) -> Proved:
         report = prove(job.source, job.setup, lathe, watch)
