@@ -9,15 +9,16 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
 from app.desk.hands import OVERRIDE_MOST, StationHands, stepped
+from app.desk.pulse import Pulse
 from app.desk.session import Loaded, Session
 from app.desk.shelf import Shelf
 from app.desk.station import StationPanel
-from app.desk.view import Readout, View, view_of
+from app.desk.view import Readout, Tone, View, view_of
 from core.executor.commands import (
     Command,
     CycleStart,
@@ -30,6 +31,7 @@ from core.executor.commands import (
 from core.executor.snapshot import Event, Snapshot, State
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
+SILENT = "CONTROL SILENT"
 HEARD = 100  # events that wait for the next frame; older ones are in the log
 UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
 
@@ -68,6 +70,7 @@ class Desk:
     _giving_up: bool = False
     _refused: str = ""
     _noticed_in: State | None = None
+    _pulse: Pulse = field(default_factory=Pulse)
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
     def __post_init__(self) -> None:
@@ -80,10 +83,15 @@ class Desk:
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
         self._answer(snapshot)
-        return snapshot, view_of(snapshot, self.readout, self.with_c), self.session.now
+        view = view_of(snapshot, self.readout, self.with_c)
+        if self._pulse.silent(snapshot.t, self.hands.clock()):
+            view = replace(view, state=SILENT, tone=Tone.ALARM)
+        return snapshot, view, self.session.now
 
     def prompt(self, snapshot: Snapshot, loaded: Loaded) -> str:
         """The prompt line: the answer to the last key, or else what can be done now."""
+        if self._pulse.is_silent:
+            return prompts.CONTROL_SILENT
         if self.notice and snapshot.state is not self._noticed_in:
             self.clear()
         return self.notice or prompts.prompt(snapshot, loaded, self.start_words, self.release_words)

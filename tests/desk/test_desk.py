@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.desk import Desk
-from app.desk.prompts import GIVE_UP, LATER, ONE_PALM
+from app.desk.desk import SILENT, Desk
+from app.desk.prompts import CONTROL_SILENT, GIVE_UP, LATER, ONE_PALM
 from app.desk.session import Phase, Session, Workshop
 from app.desk.shelf import Shelf
+from app.desk.view import Tone
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
@@ -239,6 +240,31 @@ def test_the_log_keeps_an_alarm_that_is_over_and_counts_it_once(desk: Desk, mach
     machine.now = replace(machine.now, alarms=())
     desk.look()
     assert [(entry.at, entry.alarm.number) for entry in desk.log.entries] == [("09:41:07", 102)]
+
+
+def test_a_control_that_has_died_is_told_and_its_figures_are_not_believed(
+    desk: Desk, machine: FakeMachine
+) -> None:
+    seconds = [100.0]
+    desk.hands.clock = lambda: seconds[0]
+    at(machine, State.RUN)
+    assert desk.look()[1].tone is Tone.RUN
+    machine.alive = False
+    for _ in range(20):
+        seconds[0] += 0.1
+        snapshot, view, loaded = desk.look()
+    assert (view.state, view.tone) == (SILENT, Tone.ALARM)
+    assert desk.prompt(snapshot, loaded) == CONTROL_SILENT
+    machine.alive = True
+    assert desk.look()[1].tone is Tone.RUN
+
+
+def test_a_screen_that_was_away_does_not_blame_the_control(desk: Desk) -> None:
+    seconds = [100.0]
+    desk.hands.clock = lambda: seconds[0]
+    desk.look()
+    seconds[0] += 60.0
+    assert desk.look()[1].state == State.IDLE.value
 
 
 def test_time_left_stands_still_at_override_zero(desk: Desk, machine: FakeMachine) -> None:

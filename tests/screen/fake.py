@@ -37,12 +37,15 @@ class FakeMachine:
     palms: set[str] = field(default_factory=set)
     t: float = 0.0
     at: int = 0
+    alive: bool = True  # a dead control goes on showing its last snapshot
 
     def snapshot(self) -> Snapshot:
         """One step on, then a picture of it."""
         if self.now.state is State.RUN:
             self._run()
-        self.now = replace(self.now, proof_wanted=self.job is not None and self.proof is None)
+        wanted = self.job is not None and self.proof is None
+        beat = self.now.t + 0.01 if self.alive else self.now.t
+        self.now = replace(self.now, t=beat, proof_wanted=wanted)
         return self.now
 
     def post(self, command: Command) -> None:
