@@ -57,7 +57,6 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
-    sys.excepthook = report_crash
     argv = sys.argv[1:] if argv is None else argv
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
@@ -101,5 +100,11 @@ def _screen(args: argparse.Namespace) -> int:
     return run_screen(machine=args.machine, program=args.program)
 
 
+def console() -> int:
+    """The installed ``turndesk``: the command line, and no traceback in front of an operator."""
+    sys.excepthook = report_crash
+    return main()
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(console())

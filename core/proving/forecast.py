@@ -8,6 +8,10 @@ from core.motion.limits import MotionLimits
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08
 
+# Seconds from the end of a motion until the slides are in position and the executor goes on: the following
+# error of a 40 Hz servo dies away in 20 to 30 ms, and a decision falls on the next tick.
+SETTLING = 0.035
+
 
 class SpindleForecast:
     """The spindle as its drive ramps it: signed rpm over time, and when it will have been at speed.
@@ -38,6 +42,11 @@ class SpindleForecast:
         rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
         step = max(-rate * dt, min(rate * dt, rpm - now))
         self._from = self._to = now + step
+        self._since = t
+
+    def settle(self, t: float, rpm: float) -> None:
+        """At ``t`` the spindle turns at ``rpm``: what a move under constant surface speed has led to."""
+        self._from = self._to = rpm
         self._since = t
 
     @property

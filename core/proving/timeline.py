@@ -16,7 +16,7 @@ from core.language.source import Source
 from core.machine.model import Machine
 from core.motion.errors import MotionError
 from core.motion.timeline import Chunk, ChunkPlanner
-from core.proving.forecast import SpindleForecast, motion_limits
+from core.proving.forecast import SETTLING, SpindleForecast, motion_limits
 
 
 class Moved(NamedTuple):
@@ -107,6 +107,7 @@ class Timeline:
                 yield self._moved(start, chunk)
             for chunk in self._planner.finish():
                 yield self._moved(start, chunk)
+            yield self._rest(SETTLING)
         except MotionError as error:
             self._refuse(str(error))
 
@@ -125,7 +126,16 @@ class Timeline:
         blocks = [self._moving.popleft() for _ in range(len(chunk.n))]
         stretch = Moved(start + chunk.t, chunk, blocks)
         self.t = stretch.t1
+        if blocks and blocks[-1].css is not None:
+            self._follow(blocks[-1].rpm)
         return stretch
+
+    def _follow(self, rpm: float) -> None:
+        """Constant surface speed has led to this speed; one not reached yet is still being ramped to."""
+        if self._speed_wanted:
+            self.spindle.command(self.t, rpm)
+        else:
+            self.spindle.settle(self.t, rpm)
 
     def _at_speed(self) -> Iterator[Rested]:
         """Before a feed the spindle must have been at speed for as long as the machine file says."""

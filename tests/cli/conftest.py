@@ -1,0 +1,73 @@
+"""Commands run in this process, with a store of their own."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from app.cli.main import main
+
+CONFORMANCE = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
+
+
+class Told(NamedTuple):
+    """How a command ended and what it wrote."""
+
+    status: int
+    out: str
+    err: str
+
+    @property
+    def lines(self) -> list[dict[str, Any]]:
+        """The JSON objects on stdout, one a line."""
+        return [json.loads(line) for line in self.out.splitlines()]
+
+
+Turndesk = Callable[..., Told]
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TURNDESK_HOME", str(folder))
+    return folder
+
+
+@pytest.fixture
+def turndesk(home: Path, capsys: pytest.CaptureFixture[str]) -> Turndesk:
+    """Run the command line; usage errors end as they do for a user."""
+
+    def run(*argv: object) -> Told:
+        try:
+            status = main([str(word) for word in argv])
+        except SystemExit as end:
+            status = int(end.code or 0)
+        told = capsys.readouterr()
+        return Told(status, told.out, told.err)
+
+    return run
+
+
+@pytest.fixture
+def offsets(tmp_path: Path) -> Path:
+    """T1 to T4 on part zero at home."""
+    path = tmp_path / "offsets.toml"
+    path.write_text("".join(f"[tool.{n}]\nx = 0.0\nz = 0.0\n" for n in range(1, 5)))
+    return path
+
+
+@pytest.fixture
+def example() -> Callable[[str], Path]:
+    """A worked example by name; skips where they are absent."""
+
+    def find(name: str) -> Path:
+        path = CONFORMANCE / f"{name}.nc"
+        if not path.exists():
+            pytest.skip(f"the worked examples are not here: {path}")
+        return path
+
+    return find
