@@ -42,6 +42,7 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
     )
     parser.add_argument("--program", metavar="FILE", help="program that the screen loads at the start")
+    parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
     subparsers = parser.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", parser_class=_Parser
     )
@@ -97,7 +98,7 @@ def _screen(args: argparse.Namespace) -> int:
         return EXIT_USAGE
     from app.screen.main import run_screen
 
-    return run_screen(machine=args.machine, program=args.program)
+    return run_screen(machine=args.machine, program=args.program, offsets=args.offsets)
 
 
 def console() -> int:

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 
 if TYPE_CHECKING:
-    from core.interpreter.setup import SecondaryOffset, Setup, ToolOffset
+    from core.interpreter.setup import Setup
     from core.language.source import Source
     from core.machine.model import Machine
 
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
-    Offsets = tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]
 
 DIALECTS = ("omniturn", "klartext", "sinumerik")
 _BY_ENDING = {".h": "klartext", ".mpf": "sinumerik", ".spf": "sinumerik"}
@@ -46,9 +45,10 @@ class Circumstances:
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
     from app.compose.machine import read_machine, setup_for
+    from app.compose.offsets import chosen_offsets
 
     machine = read_machine(args.machine)
-    tools, secondary = _offsets(args.offsets)
+    tools, secondary = chosen_offsets(args.offsets)()
     inputs = input_states(args.inputs)
     setup = setup_for(
         machine,
@@ -59,16 +59,6 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
         strict=args.strict,
     )
     return Circumstances(machine, setup)
-
-
-def _offsets(path: str | None) -> Offsets:
-    from app.compose.offsets import stored_offsets
-
-    if path is None:
-        return stored_offsets()
-    from app.cli.offset_file import read_offsets
-
-    return read_offsets(Path(path))
 
 
 def input_states(path: str | None) -> dict[str, bool]:

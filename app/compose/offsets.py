@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
@@ -36,3 +39,12 @@ def offsets_of(store: Store) -> Offsets:
     tools = {n: ToolOffset(row.x, row.z, row.nose_radius) for n, row in store.tools().items()}
     secondary = {n: SecondaryOffset(row.x, row.z, row.r) for n, row in store.secondary().items()}
     return tools, secondary
+
+
+def chosen_offsets(path: str | None) -> Callable[[], Offsets]:
+    """The offsets of a file, or None: the store's, looked up each time they are asked for."""
+    if path is None:
+        return stored_offsets
+    from app.cli.offset_file import read_offsets
+
+    return partial(read_offsets, Path(path))

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
+from app.compose.journal import Journal
+from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
 from app.compose.offsets import Offsets, stored_offsets
 from app.compose.simulated import simulated
@@ -17,6 +19,7 @@ from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
+from core.executor.snapshot import Event
 from core.executor.thread import ExecutorThread
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
@@ -27,38 +30,39 @@ if TYPE_CHECKING:
     from app.desk.picture import Picture
 
 
-def first_offsets() -> Offsets:
-    """The store's offsets; until somebody has entered a tool, the simulated lathe comes with the samples'."""
-    tools, secondary = stored_offsets()
-    if not tools:
-        from app.cli.offset_file import read_offsets
-
-        tools, _ = read_offsets(samples() / "offsets.toml")
-    return tools, secondary
-
-
 def samples() -> Path:
     """The folder of the sample programs and their tool offsets."""
     return Path(str(files("resources"))) / "programs"
 
 
-def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = first_offsets) -> Desk:
+def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
     """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
 
     Raises CommandError for a bad machine file and for a machine that is not simulated.
     """
-    clock = RealClock()
-    desk, executor = desk_and_executor(machine_file, offsets, clock)
-    thread = ExecutorThread(executor, clock)
-    desk.shut = thread.close
+    clock, journal = RealClock(), Journal.at_home()
+    desk, executor = desk_and_executor(machine_file, offsets, clock, journal)
+    thread, log = ExecutorThread(executor, clock), Log()
+
+    def shut() -> None:
+        thread.close()
+        journal.close()
+        log.close()
+
+    desk.shut = shut
     thread.start()
+    if journal.trouble:
+        desk.say(f"NOTHING WILL BE KEPT: {journal.trouble}")
     return desk
 
 
 def desk_and_executor(
-    machine_file: str | None, offsets: Callable[[], Offsets], clock: Clock
+    machine_file: str | None,
+    offsets: Callable[[], Offsets],
+    clock: Clock,
+    journal: Journal | None = None,
 ) -> tuple[Desk, Executor]:
-    """Both, with nobody ticking the executor yet."""
+    """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
     if machine.backend != "sim":
         raise CommandError(
@@ -66,11 +70,18 @@ def desk_and_executor(
         )
     simulation = simulated(machine, clock)
     heard: list[Desk] = []
-    executor = Executor(machine, simulation.ports, lambda event: heard[0].hear(event) if heard else None)
+
+    def hear(event: Event) -> None:
+        for desk in heard:
+            desk.hear(event)
+        if journal is not None:
+            journal.hear(event)
+
+    executor = Executor(machine, simulation.ports, hear)
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
-        session=Session(workshop(machine, offsets), executor.post),
+        session=Session(workshop(machine, offsets, journal), executor.post),
         shelf=Shelf((home() / "programs", samples())),
         station=simulation.machine,
         two_hand=machine.interlocks.two_hand_start,
@@ -86,10 +97,12 @@ def step_clock() -> StepClock:
     return StepClock()
 
 
-def workshop(machine: Machine, offsets: Callable[[], Offsets]) -> Workshop:
+def workshop(machine: Machine, offsets: Callable[[], Offsets], journal: Journal | None = None) -> Workshop:
     """What loading needs; the offsets are those of the moment of loading."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
+        if journal is not None:
+            journal.keep(source)
         tools, secondary = offsets()
         setup = setup_for(machine, tools=tools, secondary=secondary, block_delete=block_delete)
         return make_job(source, setup)

@@ -26,12 +26,14 @@ START_SIZE = (1280, 720)
 def run_screen(
     machine: str | None = None,
     program: str | None = None,
+    offsets: str | None = None,
     theme: str = "dark",
     build: BuildDesk | None = None,
 ) -> int:
     """Show the screen until it is closed; the exit status.
 
-    ``machine`` is a machine file, ``program`` a file to load at the start, ``build`` makes the desk (default:
+    ``machine`` is a machine file, ``program`` a file to load at the start, ``offsets`` an offsets file that
+    takes the place of the store's offsets, ``build`` makes the desk (default:
     the composed one). What building raises is raised here, after the window is gone.
     """
     app = _application(theme)
@@ -43,7 +45,7 @@ def run_screen(
         window.showMaximized()
     else:
         window.show()
-    start = _Start(window, build or (lambda: _composed(machine)), program)
+    start = _Start(window, build or (lambda: _composed(machine, offsets)), program)
     before, sys.excepthook = sys.excepthook, start.mistake
     handlers = [(number, signal.signal(number, lambda *_: app.quit())) for number in ENDING]
     QTimer.singleShot(0, start.run)
@@ -110,10 +112,11 @@ class _Carry:
         return False
 
 
-def _composed(machine: str | None) -> Desk:
+def _composed(machine: str | None, offsets: str | None) -> Desk:
+    from app.compose.offsets import chosen_offsets
     from app.compose.screen import build_desk
 
-    return build_desk(machine)
+    return build_desk(machine, chosen_offsets(offsets))
 
 
 def _application(theme: str) -> QApplication:

@@ -8,28 +8,64 @@ from pathlib import Path
 import pytest
 
 from app.cli.errors import CommandError
-from app.compose.screen import build_desk, first_offsets
+from app.compose.journal import Journal
+from app.compose.offsets import chosen_offsets
+from app.compose.screen import build_desk
+from core.executor.snapshot import Event
+from core.language.source import Source
 from core.store.store import Store
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    return tmp_path / "home"
+
 
 SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 
-def test_a_new_simulated_lathe_has_the_tools_of_the_samples(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "nothing yet"))
-    tools, secondary = first_offsets()
+def test_an_offsets_file_takes_the_place_of_the_store() -> None:
+    tools, secondary = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
     assert sorted(tools) == [1, 2, 3]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
 
 
-def test_one_tool_entered_ends_that(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    with Store.open(tmp_path) as store:
+def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
+    offsets = chosen_offsets(None)
+    assert offsets() == ({}, {})
+    with Store.open(home) as store:
         store.set_tool(7, x=1.0, z=2.0, why="touched off").result(5)
-    tools, _secondary = first_offsets()
-    assert sorted(tools) == [7]
+    assert sorted(offsets()[0]) == [7]
+
+
+def test_what_ran_is_kept(home: Path) -> None:
+    journal = Journal(home)
+    journal.keep(Source("part.nc", "G90\nM30\n"))
+    for kind, text in (
+        ("load", "part.nc"),
+        ("start", "part.nc"),
+        ("part", "part 1, 3 s"),
+        ("part", "part 2"),
+    ):
+        journal.hear(Event(1.0, kind, text))
+    journal.close()
+    with Store.open(home, read_only=True) as store:
+        assert store.load_program("part.nc") == b"G90\nM30\n"
+        assert store.parts("part.nc") == 2
+        assert [event.kind for event in store.events()].count("part") == 2
+
+
+def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> None:
+    Store.open(home).close()
+    (file,) = home.glob("*.db")
+    file.write_bytes(b"not a database" * 100)
+    journal = Journal(home)
+    journal.hear(Event(1.0, "part", "part 1"))
+    journal.close()
+    assert str(file) in journal.trouble
+    assert file.read_bytes() == b"not a database" * 100
 
 
 def test_a_machine_that_is_not_simulated_is_refused(tmp_path: Path) -> None:

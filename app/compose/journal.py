@@ -1,0 +1,59 @@
+"""What the run leaves behind: events, part counts and the program versions that ran, in the store."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.desk.home import home
+from core.executor.snapshot import Event
+from core.language.source import Source
+from core.store.errors import StoreError
+from core.store.store import Store
+
+
+class Journal:
+    """Writes by the store's own thread, so that neither executor nor screen ever waits for the disk.
+
+    Without a store (``trouble`` says why) the machine runs all the same, and nothing is kept.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._store: Store | None = None
+        self._program = ""
+        self._trouble = ""
+        try:
+            self._store = Store.open(folder)
+        except StoreError as error:
+            self._trouble = str(error)
+
+    @classmethod
+    def at_home(cls) -> Journal:
+        """The journal of the product's folder."""
+        return cls(home())
+
+    @property
+    def trouble(self) -> str:
+        """Why nothing is kept, or why the last write failed; empty while all is well."""
+        return self._trouble or (self._store.trouble if self._store else "")
+
+    def hear(self, event: Event) -> None:
+        """Keep an event; a finished part counts for the program that made it."""
+        if event.kind == "load":
+            self._program = event.text
+        if self._store is None:
+            return
+        self._store.log_event(event.kind, event.text, event.line)
+        if event.kind == "part" and self._program:
+            self._store.count_part(Path(self._program).name)
+
+    def keep(self, source: Source) -> None:
+        """The text that is about to be proved and run becomes a version of its program."""
+        if self._store is not None:
+            name = Path(source.name).name
+            self._store.save_program(name, source.text.encode("utf-8", "surrogateescape"), "loaded to run")
+
+    def close(self) -> None:
+        """Write what is queued and give the store free."""
+        if self._store is not None:
+            self._store.close()
+            self._store = None
