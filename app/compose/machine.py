@@ -25,6 +25,7 @@ def read_machine(path: str | None) -> Machine:
 
 def control_limits(machine: Machine) -> ControlLimits:
     """What the interpreter must know of a machine."""
+    c_axis = machine.axes[2]
     return ControlLimits(
         max_feed=machine.max_feed,
         max_rpm=machine.spindle.rpm_max,
@@ -32,6 +33,11 @@ def control_limits(machine: Machine) -> ControlLimits:
         unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,
+        c_enabled=machine.c_enabled,
+        c_feedback=machine.c_feedback,
+        c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
+        c_accel=c_axis.amax,
+        c_step=c_axis.count,
     )
 
 

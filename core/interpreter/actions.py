@@ -19,6 +19,13 @@ class SpindleStop:
 
 
 @dataclass(frozen=True, slots=True)
+class SpindleLock:
+    """M19, M89, G89: the spindle stops, and its drive holds it as the C axis; under M19 it then turns to 0."""
+
+    orient: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Coolant:
     """M08, M09."""
 
@@ -108,6 +115,7 @@ class Dwell:
 Action = (
     SpindleRun
     | SpindleStop
+    | SpindleLock
     | Coolant
     | Collet
     | Output

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.geometry.mill import PlaneMove
 from core.interpreter.actions import Action
 from core.interpreter.modal import Modal
 
@@ -34,8 +35,10 @@ class Block:
 
     ``x z c`` is the end point in the program's frame with secondary offset and nose compensation in it,
     ``x0 z0 c0`` where the block starts, in that same frame; machine coordinates are ``offset_x offset_z``
-    further. ``feed`` is mm/s, or mm/rev when ``per_rev``; a rapid's feed is the rapid rate in mm/s.
-    ``rpm`` is the commanded spindle speed at the block's end, negative under M04, 0 with the spindle stopped.
+    further, machine C is ``modal.offset_c`` further. ``feed`` is mm/s, or mm/rev when ``per_rev``; a rapid's
+    feed is the rapid rate in mm/s, that of a turn of C alone degrees/s.
+    ``rpm`` is the commanded spindle speed at the block's end, negative under M04, 0 with the spindle stopped;
+    where C turns by its own speed it is that speed, signed.
     ``modal`` is the state after the block: the checkpoint from which a restart can go on.
     """
 
@@ -60,6 +63,7 @@ class Block:
     cz: float = 0.0
     clockwise: bool = False  # seen from above: X+ down, Z+ right
     action: Action | None = None
+    plane: PlaneMove | None = None  # the same way in the frame of the virtual mill
 
     @property
     def mx(self) -> float:
@@ -70,6 +74,11 @@ class Block:
     def mz(self) -> float:
         """Machine Z of the end, mm."""
         return self.z + self.offset_z
+
+    @property
+    def mc(self) -> float:
+        """Machine C of the end, degrees."""
+        return self.c + self.modal.offset_c
 
     @property
     def moves(self) -> bool:

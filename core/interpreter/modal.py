@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from core.interpreter.mill import Mill
+
 
 class Modal(NamedTuple):
     """State between two blocks. Lengths in mm, X as a radius, speeds in mm/s or rpm; see omniturn section 3.
@@ -45,6 +47,10 @@ class Modal(NamedTuple):
     secondary_x: float = 0.0  # offset D in force, mm
     secondary_z: float = 0.0
     comment: str = ""
+    c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
+    c_rpm: float | None = None  # S beside M19 or a C word, unsigned
+    offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
+    mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
     @property
     def offset_x(self) -> float:

@@ -34,6 +34,11 @@ class ControlLimits:
     unclamp_while_turning: bool = True
     start_with_collet_open: bool = False
     m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
+    c_enabled: bool = True  # the spindle can be positioned
+    c_feedback: bool = False  # its drive tells when it has arrived
+    c_max_rpm: float = 200.0
+    c_accel: float = 3600.0  # degrees/s²
+    c_step: float = 0.02  # degrees
 
 
 def _no_inputs(_terminal: str) -> bool:

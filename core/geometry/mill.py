@@ -1,0 +1,153 @@
+"""Lines and arcs of a virtual mill (plane switching), and where lathe X, Z and C stand along them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.extent import arc_sweep
+from core.geometry.face import Face
+from core.geometry.side import Side
+
+FloatArray = npt.NDArray[np.float64]
+Spot = tuple[float, float, float]
+
+CENTRE = 1e-4  # mm; what comes this near to the spindle's axis goes through it
+_SAMPLES = 721  # points of an arc at which its reach is read: half a degree of a full circle
+
+
+@dataclass(frozen=True, slots=True)
+class PlaneMove:
+    """A straight line, or with ``centre`` an arc, in the mill's frame; X, Y, Z in mm.
+
+    On the side of the part Z is a radius. ``theta`` (radians) is the polar angle of the start as counted so
+    far, so that C never jumps by a turn; it matters on the face only, and where the start is the centre it
+    is the direction of departure. The end of an arc lies within the control's tolerance of its circle.
+    """
+
+    frame: Face | Side
+    start: Spot
+    end: Spot
+    theta: float = 0.0
+    centre: tuple[float, float] | None = None
+    clockwise: bool = False
+
+    @property
+    def length(self) -> float:
+        """Length of the mill's path, mm."""
+        if self.centre is None:
+            return math.dist(self.start, self.end)
+        _, sweep = self._circle()
+        return self.radius * abs(sweep)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the arc, 0 for a line."""
+        return 0.0 if self.centre is None else math.dist(self.start[:2], self._settled())
+
+    @property
+    def straight(self) -> bool:
+        """Whether lathe axes too move in proportion to each other."""
+        return self.centre is None and isinstance(self.frame, Side)
+
+    def points(self, share: FloatArray) -> FloatArray:
+        """Mill points (n, 3) at fractions of the path (n,)."""
+        start, end = np.array(self.start), np.array(self.end)
+        points: FloatArray = start + share[:, None] * (end - start)
+        if self.centre is not None:
+            first, sweep = self._circle()
+            angle = first + sweep * share
+            cx, cy = self._settled()
+            points[:, 0], points[:, 1] = cx + self.radius * np.cos(angle), cy + self.radius * np.sin(angle)
+        return points
+
+    def machine(self, share: FloatArray) -> FloatArray:
+        """Lathe X (radius), Z, C (n, 3) at fractions of the path (n,); C goes on without a jump."""
+        points = self.points(share)
+        if isinstance(self.frame, Side):
+            return self.frame.machine(points)
+        return self.frame.machine(points, self.thetas(points, share))
+
+    def thetas(self, points: FloatArray, share: FloatArray) -> FloatArray:
+        """Polar angles (n,) of ``points`` of this path, counted on from ``theta``; radians."""
+        if self.centre is None:
+            x0, y0, _ = self.start if math.hypot(*self.start[:2]) > CENTRE else self.end
+            at_centre = np.hypot(points[:, 0], points[:, 1]) <= CENTRE
+            turned = np.arctan2(
+                x0 * points[:, 1] - y0 * points[:, 0], x0 * points[:, 0] + y0 * points[:, 1]
+            )
+            return self.theta + np.where(at_centre, 0.0, turned)
+        both = np.array([0.0, 1.0])
+        begin = self._winding(self.points(both), both)[0]
+        return self.theta - begin + self._winding(points, share)
+
+    def nearest(self) -> float:
+        """Fraction of the path at which it is nearest to the axis."""
+        if self.centre is None:
+            dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
+            square = dx * dx + dy * dy
+            foot = -(self.start[0] * dx + self.start[1] * dy) / square if square else 0.0
+            return min(max(foot, 0.0), 1.0)
+        return self._at_angle(math.atan2(-self._settled()[1], -self._settled()[0]))
+
+    def rho(self, share: float) -> float:
+        """Distance from the axis at a fraction of the path, mm."""
+        x, y, _ = self.points(np.array([share]))[0].tolist()
+        return math.hypot(x, y)
+
+    def reach(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest lathe X, Z, C (3,) along the path."""
+        count = 2 if self.straight else _SAMPLES
+        table = self.machine(np.append(np.linspace(0.0, 1.0, count), self.nearest()))
+        return table.min(axis=0), table.max(axis=0)
+
+    def _at_angle(self, angle: float) -> float:
+        """Fraction of the arc at this angle round its centre; the nearer end where the arc lacks it."""
+        first, sweep = self._circle()
+        turn = 2.0 * math.pi
+        way = (angle - first) % turn if sweep > 0.0 else (first - angle) % turn
+        share = way / abs(sweep)
+        if share <= 1.0:
+            return share
+        return 0.0 if self.rho(0.0) <= self.rho(1.0) else 1.0
+
+    def _settled(self) -> tuple[float, float]:
+        """The centre on the bisector of the chord, so that the arc meets its end exactly."""
+        assert self.centre is not None
+        (x0, y0, _), (x1, y1, _), (cx, cy) = self.start, self.end, self.centre
+        dx, dy = x1 - x0, y1 - y0
+        square = dx * dx + dy * dy
+        if square < 1e-12:
+            return cx, cy
+        off = ((cx - 0.5 * (x0 + x1)) * dx + (cy - 0.5 * (y0 + y1)) * dy) / square
+        return cx - off * dx, cy - off * dy
+
+    def _circle(self) -> tuple[float, float]:
+        """Start angle, from X towards Y, and signed sweep in radians; clockwise is negative."""
+        cx, cy = self._settled()
+        (x0, y0, _), (x1, y1, _) = self.start, self.end
+        # Seen with Y up the angle from X towards Y is counter-clockwise.
+        return arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
+
+    def _winding(self, points: FloatArray, share: FloatArray) -> FloatArray:
+        """Polar angles (n,) of points of the arc, continuous along it but for a constant.
+
+        With the axis inside the circle it is the angle round the arc's centre plus less than a quarter turn,
+        outside the direction of the centre plus less than a quarter turn.
+        """
+        cx, cy = self._settled()
+        first, sweep = self._circle()
+        x, y = points[:, 0], points[:, 1]
+        if math.hypot(cx, cy) < self.radius - CENTRE:
+            round_centre = first + sweep * share
+            ux, uy = np.cos(round_centre), np.sin(round_centre)
+            inside: FloatArray = round_centre + np.arctan2(ux * y - uy * x, ux * x + uy * y)
+            return inside
+        towards = math.atan2(cy, cx)
+        angle = towards + np.arctan2(cx * y - cy * x, cx * x + cy * y)
+        side = -0.5 * math.pi if self.clockwise else 0.5 * math.pi
+        limit = towards + np.where(share < 0.5, -side, side)
+        return np.where(np.hypot(x, y) <= CENTRE, limit, angle)
