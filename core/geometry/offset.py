@@ -1,0 +1,177 @@
+"""A contour moved to one side by a fixed distance: outside corners become arcs, inside corners meet."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from math import dist, pi
+from typing import NamedTuple
+
+from core.geometry.arcs import Point
+from core.geometry.contour import Arc, Box, Element, Line, left_of, turn
+from core.geometry.extent import SAME_POINT
+from core.geometry.meet import boxes_apart, clearance, intersections
+
+# Elements whose offsets end nearer than this go on in one point half way. Programs round their numbers to
+# 1.27 µm, so what was meant as tangent is tangent no better, and no machine can take the step. mm.
+JOINED = 0.001
+
+# The offset may be this much nearer to the contour than its distance: half a join and rounding, and less
+# than the 2 µm that a workpiece can show. mm.
+NEARER = 0.0015
+
+# Turns nearer than this to half a circle run straight back on themselves: no side is the free one. rad.
+STRAIGHT_BACK = 1e-6
+
+# So many elements back and forth are looked at for a second wall that the offset runs into. The offset
+# is held back by as many, so that it is not used before it has been looked at.
+WINDOW = 128
+
+
+class GougeError(Exception):
+    """The offset of a contour cuts into it. ``index`` is the element that cannot be followed, from 0."""
+
+    def __init__(self, index: int, why: str) -> None:
+        super().__init__(why)
+        self.index = index
+        self.why = why
+
+
+class Piece(NamedTuple):
+    """A piece of an offset. ``corner``: an arc about the corner at the end of the element ``source``."""
+
+    source: int  # index of the element, from 0
+    element: Element
+    corner: bool
+
+
+def offset_element(element: Element, distance_left: float) -> Element:
+    """The element moved to its left by ``distance_left`` mm, negative to the right; arcs stay concentric.
+
+    Raises GougeError (index 0) for an arc that has no radius left.
+    """
+    ax, az = left_of(element.start_direction)
+    bx, bz = left_of(element.end_direction)
+    start = element.start[0] + ax * distance_left, element.start[1] + az * distance_left
+    end = element.end[0] + bx * distance_left, element.end[1] + bz * distance_left
+    if isinstance(element, Line):
+        return Line(start, end)
+    grown = element.radius + (distance_left if element.clockwise else -distance_left)
+    if grown < SAME_POINT:
+        raise GougeError(0, "the inside arc is not larger than the distance")
+    return Arc(start, end, element.centre, element.clockwise)
+
+
+def offset_contour(elements: Iterable[Element], distance_left: float) -> list[Element]:
+    """The path ``distance_left`` mm to the left of a contour (negative: right); starts and ends square to it.
+
+    Each element must start where the one before it ends, and have a length. Raises GougeError where an
+    inside arc is too small, an element vanishes or would be run backwards, or a path comes nearer to any
+    element than the distance (a second wall farther than WINDOW elements away is not seen).
+    """
+    offset = Offset(distance_left)
+    path = [piece.element for element in elements for piece in offset.add(element)]
+    return path + [piece.element for piece in offset.close()]
+
+
+class Offset:
+    """Makes the offset of a contour that comes in element by element."""
+
+    def __init__(self, distance_left: float) -> None:
+        self._distance = distance_left
+        self._count = 0
+        self._last: tuple[Element, Element] | None = None  # contour and offset, its start where it will be
+        self._ready: deque[Piece] = deque()
+        self._guard = _Guard(abs(distance_left))
+
+    def add(self, element: Element) -> Iterator[Piece]:
+        """Takes the next element; yields the pieces that are sure by now. Raises GougeError."""
+        index = self._count
+        self._count += 1
+        try:
+            moved = offset_element(element, self._distance)
+        except GougeError as problem:
+            raise GougeError(index, problem.why) from None
+        if self._last is not None:
+            moved = self._join(*self._last, element, moved, index)
+        self._guard.contour(index, element)
+        self._last = element, moved
+        while len(self._ready) > WINDOW:
+            yield self._ready.popleft()
+
+    def close(self) -> Iterator[Piece]:
+        """The rest of the pieces: no element comes any more. Raises GougeError."""
+        if self._last is not None:
+            self._keep(self._count - 1, self._last[1], corner=False)
+            self._last = None
+        while self._ready:
+            yield self._ready.popleft()
+
+    def _join(self, before: Element, ended: Element, after: Element, begun: Element, index: int) -> Element:
+        """Ends the offset of one element at that of the next, which is returned with its new start."""
+        corner = after.start
+        angle = turn(before.end_direction, after.start_direction)
+        if abs(angle) > pi - STRAIGHT_BACK and self._distance:
+            raise GougeError(index, "the contour turns straight back")
+        if dist(ended.end, begun.start) <= JOINED:
+            joint = _middle(ended.end, begun.start)
+            joint = ended.end if dist(joint, ended.end) < SAME_POINT else joint
+            self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
+            return begun.part(joint, begun.end)
+        if (angle > 0) != (self._distance > 0):
+            self._keep(index - 1, ended, corner=False)
+            around = Arc(ended.end, begun.start, corner, clockwise=angle < 0)
+            self._keep(index - 1, around, corner=True)
+            return begun
+        joint = _inside(ended, begun, corner, index)
+        self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
+        return _cut(begun, joint, begun.end, index)
+
+    def _keep(self, index: int, element: Element, *, corner: bool) -> None:
+        piece = Piece(index, element, corner)
+        self._guard.path(piece)
+        self._ready.append(piece)
+
+
+def _middle(a: Point, b: Point) -> Point:
+    return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
+
+
+def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
+    """Where two offsets meet at an inside corner: of two points the one nearer to the corner."""
+    found = intersections(ended, begun)
+    if not found:
+        shorter = index - 1 if ended.length < begun.length else index
+        raise GougeError(shorter, "nothing of the element is left between its neighbours")
+    return min(found, key=lambda point: dist(point, corner))
+
+
+def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
+    """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
+    whole = start == element.start and end == element.end
+    if not whole and element.along(end) - element.along(start) < SAME_POINT:
+        raise GougeError(index, "nothing of the element is left between its neighbours")
+    return element.part(start, end)
+
+
+class _Guard:
+    """Watches that no piece of the offset comes nearer to any element of the contour than it should."""
+
+    def __init__(self, apart: float) -> None:
+        self._least = apart - NEARER
+        self._contour: deque[tuple[int, Element, Box]] = deque(maxlen=WINDOW)
+        self._path: deque[tuple[Piece, Box]] = deque(maxlen=WINDOW)
+
+    def contour(self, index: int, element: Element) -> None:
+        box = element.box
+        for piece, reach in self._path:
+            if boxes_apart(box, reach) < self._least and clearance(piece.element, element) < self._least:
+                raise GougeError(index, "the offset of another element cuts into this one")
+        self._contour.append((index, element, box))
+
+    def path(self, piece: Piece) -> None:
+        box = piece.element.box
+        for _, element, reach in self._contour:
+            if boxes_apart(box, reach) < self._least and clearance(piece.element, element) < self._least:
+                raise GougeError(piece.source, "its offset cuts into another element")
+        self._path.append((piece, box))

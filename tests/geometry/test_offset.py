@@ -1,0 +1,190 @@
+"""Offsets of lines and arcs, of contours, and what they refuse. mm, (x, z), X downwards, Z to the right."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import dist, pi, sqrt, tan
+
+import pytest
+from hypothesis import assume, event, given, settings
+from hypothesis import strategies as st
+
+from core.geometry.arcs import Point
+from core.geometry.contour import Arc, Element, Line
+from core.geometry.meet import clearance, distance
+from core.geometry.offset import WINDOW, GougeError, Offset, offset_contour, offset_element
+from tests.geometry.contours import CONTOURS, arc, polyline, sampled
+
+
+def test_the_left_of_a_way_outwards_is_away_from_the_spindle() -> None:
+    assert offset_element(Line((1, 0), (5, 0)), 0.4) == Line((1, 0.4), (5, 0.4))
+    assert offset_element(Line((5, 0), (5, -9)), 0.4) == Line((5.4, 0), (5.4, -9))
+    assert offset_element(Line((5, 0), (5, -9)), -0.4) == Line((4.6, 0), (4.6, -9))
+
+
+def test_arcs_stay_concentric() -> None:
+    convex = Arc((1, 0), (4, -3), (1, -3), clockwise=True)
+    assert offset_element(convex, 0.5) == Arc((1, 0.5), (4.5, -3), (1, -3), clockwise=True)
+    assert offset_element(convex, -0.5) == Arc((1, -0.5), (3.5, -3), (1, -3), clockwise=True)
+    hollow = Arc((4, -3), (1, 0), (1, -3), clockwise=False)
+    assert offset_element(hollow, 0.5) == Arc((3.5, -3), (1, -0.5), (1, -3), clockwise=False)
+
+
+def ends(path: list[Element]) -> list[Point]:
+    found = [path[0].start, *(element.end for element in path)]
+    return [(round(x, 6), round(z, 6)) for x, z in found]
+
+
+def test_an_outside_corner_gets_an_arc_about_it() -> None:
+    path = offset_contour(polyline((0, 0), (5, 0), (5, -9)), 0.4)
+    assert ends(path) == [(0, 0.4), (5, 0.4), (5.4, 0), (5.4, -9)]
+    assert path[1] == Arc((5, 0.4), (5.4, 0), (5, 0), clockwise=True)
+
+
+def test_an_outside_corner_on_the_other_side_turns_the_other_way() -> None:
+    path = offset_contour(polyline((5, -9), (5, 0), (0, 0)), -0.4)
+    assert path[1] == Arc((5.4, 0), (5, 0.4), (5, 0), clockwise=False)
+
+
+def test_an_inside_corner_is_where_the_offsets_meet() -> None:
+    path = offset_contour(polyline((5, 0), (5, -9), (8, -9)), 0.4)
+    assert ends(path) == [(5.4, 0), (5.4, -8.6), (8, -8.6)]
+    path = offset_contour(polyline((0, 0), (5, 0), (5, -9)), -0.4)
+    assert ends(path) == [(0, -0.4), (4.6, -0.4), (4.6, -9)]
+
+
+def test_a_line_into_an_arc_at_an_inside_corner() -> None:
+    # A cylinder of 5 that ends at a ball of radius 5 about (5, -15): the offsets are x 5.4 and radius 5.4.
+    ball = Arc((5, -10), (10, -15), (5, -15), clockwise=True)
+    path = offset_contour([Line((5, 0), (5, -10)), ball], 0.4)
+    assert ends(path)[1] == (5.4, round(-15 + sqrt(5.4**2 - 0.4**2), 6))
+    assert isinstance(path[1], Arc)
+    assert path[1].radius == pytest.approx(5.4)
+
+
+def test_an_arc_into_an_arc_at_an_inside_corner() -> None:
+    # Two balls of radius 5 whose centres lie 8 apart meet 3 over the line of centres.
+    first = Arc((0, 5), (3, -4), (0, 0), clockwise=True)
+    second = Arc((3, -4), (0, -13), (0, -8), clockwise=True)
+    path = offset_contour([first, second], 1)
+    assert ends(path)[1] == (round(sqrt(36 - 16), 6), -4)
+
+
+def test_tangent_elements_need_no_corner() -> None:
+    fillet = Arc((4, 0), (5, -1), (4, -1), clockwise=True)
+    path = offset_contour([Line((0, 0), (4, 0)), fillet, Line((5, -1), (5, -9))], 0.4)
+    assert ends(path) == [(0, 0.4), (4, 0.4), (5.4, -1), (5.4, -9)]
+
+
+def test_no_distance_gives_the_contour_itself() -> None:
+    contour = polyline((0, 0), (5, 0), (5, -9), (5, -3))
+    assert offset_contour(contour, 0) == contour
+
+
+GROOVE = polyline((5, 0), (5, -3), (3, -3), (3, -4), (5, -4), (5, -9))
+KEYHOLE = polyline((5, 0), (5, -3), (4.5, -3), (4.5, -1), (2, -1), (2, -6), (4.5, -6), (4.5, -3.5), (5, -3.5))
+REFUSED: list[tuple[str, list[Element], float, int]] = [
+    ("an inside arc of the radius itself", [arc((0, 0), (5, -5), 5, clockwise=False)], 5, 0),
+    ("an inside arc under the radius", [arc((0, 0), (5, -5), 5, clockwise=False)], 6, 0),
+    ("the same on the right", [arc((0, 0), (5, -5), 5, clockwise=True)], -6, 0),
+    ("a groove narrower than the nose", GROOVE, 0.6, 2),
+    ("a step lower than the nose", polyline((5, 0), (5, -3), (5.3, -3.3), (5.3, -6), (9, -6)), 5, 1),
+    ("a second wall far along the way", KEYHOLE, 0.3, 6),
+    ("straight back", polyline((5, 0), (5, -3), (5, 0)), 0.4, 1),
+    ("straight back at an arc", [Line((5, 0), (5, -3)), arc((5, -3), (7, -1), 2, clockwise=True)], 0.4, 1),
+    ("a line too short for an inside arc", [  # its offset x 8 meets the arc's only behind its start
+        Line((5, 0), (5, -0.1)), arc((5, -0.1), (6, -1.1), 1, clockwise=True)], 3, 0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("contour", "left", "index"), [each[1:] for each in REFUSED], ids=[each[0] for each in REFUSED]
+)
+def test_gouges(contour: list[Element], left: float, index: int) -> None:
+    with pytest.raises(GougeError) as refused:
+        offset_contour(contour, left)
+    assert refused.value.index == index
+
+
+@pytest.mark.parametrize(
+    ("contour", "left"),
+    [
+        ([arc((0, 0), (5, -5), 5, clockwise=False)], 4.99),
+        (GROOVE, 0.49),
+        (KEYHOLE, 0.24),
+        (polyline((5, 0), (5, -3), (5.3, -3.3), (5.3, -6), (9, -6)), 0.3),
+    ],
+)
+def test_next_to_a_gouge_but_good(contour: list[Element], left: float) -> None:
+    check(contour, offset_contour(contour, left), abs(left))
+
+
+def check(contour: list[Element], path: list[Element], apart: float) -> None:
+    """No point too near to any element; where it runs along elements, exactly the distance."""
+    for piece in path:
+        for point in sampled(piece):
+            nearest = min(distance(element, point) for element in contour)
+            assert apart - 0.002 <= nearest <= apart + 0.002
+    for before, after in pairwise(path):
+        assert dist(before.end, after.start) < 1e-6
+
+
+@settings(max_examples=400, deadline=None)
+@given(CONTOURS, st.floats(0.05, 1.5), st.booleans())
+def test_no_point_is_nearer_than_the_distance(contour: list[Element], apart: float, left: bool) -> None:
+    try:
+        path = offset_contour(contour, apart if left else -apart)
+    except GougeError:
+        event("refused")
+        return
+    event("offset")
+    check(contour, path, apart)
+
+
+@settings(max_examples=300, deadline=None)
+@given(CONTOURS, st.floats(0.05, 1.5), st.booleans())
+def test_forth_and_back_are_the_same_offset(contour: list[Element], apart: float, left: bool) -> None:
+    side = apart if left else -apart
+    try:
+        path = offset_contour(contour, side)
+    except GougeError:
+        with pytest.raises(GougeError):
+            offset_contour([element.reversed() for element in reversed(contour)], -side)
+        return
+    back = offset_contour([element.reversed() for element in reversed(contour)], -side)
+    assert len(back) == len(path)
+    for forth, other in zip(path, reversed(back), strict=True):
+        assert dist(forth.start, other.end) < 1e-5
+        assert dist(forth.end, other.start) < 1e-5
+
+
+@settings(max_examples=200, deadline=None)
+@given(CONTOURS)
+def test_the_clearance_of_two_elements_is_the_least_distance(contour: list[Element]) -> None:
+    assume(len(contour) > 1)
+    a, b = contour[0], contour[-1]
+    measured = min(dist(p, q) for p in sampled(a, 61) for q in sampled(b, 61))
+    longest = max(a.length, b.length) / 60
+    assert measured - longest <= clearance(a, b) <= measured + 1e-9
+
+
+@given(CONTOURS, st.floats(0, 1))
+def test_the_place_of_a_point_along_an_element(contour: list[Element], share: float) -> None:
+    for element in contour:
+        at = share * element.length
+        assert element.along(element.point(at)) == pytest.approx(at, abs=1e-6)
+        assert distance(element, element.point(at)) < 1e-6
+
+
+def test_a_long_contour_comes_out_while_it_goes_in() -> None:
+    offset, out = Offset(0.2), 0
+    for k in range(1000):
+        out += len(list(offset.add(Line((10.0, -k), (10.0, -k - 1)))))
+    assert out == 1000 - 1 - WINDOW
+    assert len(list(offset.close())) == WINDOW + 1
+
+
+def test_the_inside_of_a_cone() -> None:
+    # Half the turn of 45 degrees: the corner moves back by tan 22.5 degrees of the distance.
+    corner = offset_contour(polyline((5, 0), (5, -5), (8, -8)), 1)[0].end
+    assert corner == pytest.approx((6, -5 + tan(pi / 8)))
