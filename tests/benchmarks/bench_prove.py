@@ -13,11 +13,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from core.proving.prove import prove
-
 from app.compose.machine import read_machine, setup_for
 from core.interpreter.setup import ToolOffset
 from core.language.source import Source
+from core.proving.prove import prove
 
 RUNS = 7
 HEAD = "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\n"
