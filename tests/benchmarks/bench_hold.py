@@ -65,9 +65,11 @@ class Machine:
         t = self.clock.now()
         (_, before) = self.ports.axes.demand_at(t + self.machine.timing.commit)
         self.executor.post(FeedHold())
+        self.tick()
+        rest = self.ports.axes.horizon()
         while self.executor.snapshot.state is not State.HOLD:
             self.tick()
-        return self.ports.axes.horizon() - t, math.hypot(before[0], before[1])
+        return rest - t, math.hypot(before[0], before[1])
 
 
 def main() -> None:
