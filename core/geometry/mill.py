@@ -56,7 +56,7 @@ class PlaneMove:
     def points(self, share: FloatArray) -> FloatArray:
         """Mill points (n, 3) at fractions of the path (n,)."""
         start, end = np.array(self.start), np.array(self.end)
-        points: FloatArray = start + share[:, None] * (end - start)
+        points = np.asarray(start + share[:, None] * (end - start), dtype=np.float64)
         if self.centre is not None:
             first, sweep = self._circle()
             angle = first + sweep * share
@@ -76,13 +76,13 @@ class PlaneMove:
         if self.centre is None:
             x0, y0, _ = self.start if math.hypot(*self.start[:2]) > CENTRE else self.end
             at_centre = np.hypot(points[:, 0], points[:, 1]) <= CENTRE
-            turned = np.arctan2(
-                x0 * points[:, 1] - y0 * points[:, 0], x0 * points[:, 0] + y0 * points[:, 1]
-            )
-            return self.theta + np.where(at_centre, 0.0, turned)
+            turned = np.arctan2(x0 * points[:, 1] - y0 * points[:, 0], x0 * points[:, 0] + y0 * points[:, 1])
+            along: FloatArray = self.theta + np.where(at_centre, 0.0, turned)
+            return along
         both = np.array([0.0, 1.0])
         begin = self._winding(self.points(both), both)[0]
-        return self.theta - begin + self._winding(points, share)
+        wound: FloatArray = self.theta - begin + self._winding(points, share)
+        return wound
 
     def nearest(self) -> float:
         """Fraction of the path at which it is nearest to the axis."""

@@ -1,5 +1,7 @@
-"""ZC: a virtual mill on the side of the part, unrolled at a diameter. Mill X to the right, which is towards the
-spindle, and Y up for a tool that looks at the part from the negative X side; Z is how far out the tip stands.
+"""ZC: a virtual mill on the side of the part, unrolled at a diameter.
+
+Mill X is to the right, which is towards the spindle, and Y up for a tool that looks at the part from the
+negative X side; Z is how far out the tip stands.
 """
 
 from __future__ import annotations

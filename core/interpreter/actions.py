@@ -20,7 +20,7 @@ class SpindleStop:
 
 @dataclass(frozen=True, slots=True)
 class SpindleLock:
-    """M19, M89, G89: the spindle stops, and its drive holds it as the C axis; under M19 it then turns to 0."""
+    """M19, M89, G89: the spindle stops, and its drive holds it as axis C; after M19 it then turns to 0."""
 
     orient: bool
 

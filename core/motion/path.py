@@ -10,6 +10,7 @@ import numpy as np
 from core.motion.bounds import piece_limits
 from core.motion.errors import MotionError
 from core.motion.limits import FloatArray, IntArray, MotionLimits
+from core.motion.mapped import parts_of, with_parts
 from core.motion.pieces import Pieces, joined, make_pieces
 from core.motion.rates import by_radius, constant_rates, split_by_radius
 from core.motion.words import MotionBlock, Words, read_words
@@ -101,7 +102,7 @@ class PathBuilder:
             raise MotionError(f"Block {batch[0].n} comes after the end of the path; begin another path.")
         words = read_words(batch, self.rpm_max)
         _demand_unbroken(words, self._end)
-        pieces, counts = _pieces(words)
+        pieces, counts = _pieces(words, self._limits)
         if self._start is None:
             self._start = words.start[0].copy()
         self._end = words.end[-1].copy()
@@ -162,15 +163,15 @@ def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: 
     return builder.path()
 
 
-def _pieces(words: Words) -> tuple[Pieces, IntArray]:
+def _pieces(words: Words, limits: MotionLimits) -> tuple[Pieces, IntArray]:
     """Pieces of the blocks and how many (m,) each block has."""
     whole = make_pieces(words, constant_rates(words))
     counts = (whole.length > 0.0).astype(np.int64)
-    turned = np.flatnonzero((counts > 0) & by_radius(words))
+    turned, mapped = (counts > 0) & by_radius(words), with_parts(words)
     parts, done = [], 0
-    for i in turned.tolist():
-        split = split_by_radius(whole, words, i)
-        if len(split) > 1:
+    for i in np.flatnonzero(turned | mapped).tolist():
+        split = parts_of(whole, words, limits, i) if mapped[i] else split_by_radius(whole, words, i)
+        if len(split) != 1 or mapped[i]:
             parts += [whole[done:i], split]
             counts[i], done = len(split), i + 1
     pieces = joined([*parts, whole[done:]])

@@ -11,17 +11,20 @@ from typing import Protocol
 
 import numpy as np
 
+from core.geometry.mill import PlaneMove
 from core.motion.errors import MotionError
 from core.motion.limits import BoolArray, FloatArray
 
 
 class ModalLike(Protocol):
-    """The clamp of the spindle speed under constant surface speed, rpm."""
+    """The clamp of the spindle speed under constant surface speed, rpm; how far C is shifted, degrees."""
 
     @property
     def css_min(self) -> float: ...
     @property
     def css_max(self) -> float | None: ...
+    @property
+    def offset_c(self) -> float: ...
 
 
 class MotionBlock(Protocol):
@@ -63,11 +66,13 @@ class MotionBlock(Protocol):
     def clockwise(self) -> bool: ...
     @property
     def modal(self) -> ModalLike: ...
+    @property
+    def plane(self) -> PlaneMove | None: ...
 
 
-KINDS = {"rapid": 0, "feed": 1, "arc": 2}
+KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5}
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
-_read = attrgetter(*_COLUMNS, "per_rev", "clockwise")
+_read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c")
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +80,8 @@ class Words:
     """The words of m blocks: ``start`` and ``end`` (m, 3) and ``centre`` (m, 2) in machine coordinates.
 
     ``axis`` (m,) is the machine X of the spindle axis, from which radii count. ``surface lo hi`` (m,)
-    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
+    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm. ``plane`` has m ways of
+    the virtual mill, None for blocks of the lathe.
     """
 
     n: FloatArray
@@ -92,6 +98,7 @@ class Words:
     surface: FloatArray
     lo: FloatArray
     hi: FloatArray
+    plane: tuple[PlaneMove | None, ...]
 
 
 def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
@@ -99,7 +106,7 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
 
     Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
     """
-    width = len(_COLUMNS) + 2
+    width = len(_COLUMNS) + 3
     table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
     _demand_finite(table)
     kinds = _kinds(blocks)
@@ -107,6 +114,8 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
     start, end = table[:, 1:4].copy(), table[:, 4:7].copy()
     start[:, :2] += shift
     end[:, :2] += shift
+    start[:, 2] += table[:, 15]
+    end[:, 2] += table[:, 15]
     surface, lo, hi = _surface(blocks, rpm_max)
     return Words(
         n=table[:, 0],
@@ -123,6 +132,7 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         surface=surface,
         lo=lo,
         hi=hi,
+        plane=tuple(block.plane for block in blocks),
     )
 
 
@@ -138,7 +148,7 @@ def _demand_finite(table: FloatArray) -> None:
     bad = ~np.isfinite(table).all(axis=1)
     if bad.any():
         row = table[bad.argmax()]
-        names = (*_COLUMNS, "per_rev", "clockwise")
+        names = (*_COLUMNS, "per_rev", "clockwise", "offset_c")
         name = names[int(np.argmax(~np.isfinite(row)))]
         raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.")
 
