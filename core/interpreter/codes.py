@@ -29,8 +29,12 @@ ONE_SHOT = frozenset({2, 3, 4, 10, 33, 34, 74, 75, 78, 81, 83, 89, 92})
 """G codes that act on their own line alone; a line may hold one."""
 
 ARCS = frozenset({2, 3})
+THREADS = frozenset({33, 34})
 FRAME = frozenset({10, 92})
 """One-shot codes whose X and Z are no motion."""
+
+CONTOUR_CYCLES = frozenset({75, 78})
+CYCLES = CONTOUR_CYCLES | {74, 81, 83}
 
 WORDS: dict[int | None, frozenset[str]] = {
     None: frozenset({"X", "Z", "F", "S", "T", "D"}),
@@ -39,6 +43,13 @@ WORDS: dict[int | None, frozenset[str]] = {
     4: frozenset({"F", "S", "T", "D"}),
     10: frozenset({"X", "Z", "F", "S", "T", "D"}),
     92: frozenset({"X", "Z", "F", "S", "T", "D"}),
+    33: frozenset({"X", "Z", "I", "K", "A", "C", "P", "O", "F", "S", "T", "D"}),
+    34: frozenset({"Z", "I", "K", "A", "P", "F", "S", "T", "D"}),
+    74: frozenset({"X", "Z", "I", "U", "F", "S"}),
+    75: frozenset({"I", "U", "P", "F", "S"}),
+    78: frozenset({"U", "P", "F", "S"}),
+    81: frozenset({"X", "Z", "F", "S"}),
+    83: frozenset({"X", "Z", "K", "R", "L", "C", "F", "S"}),
 }
 """Words besides G and M that a line may hold, by its one-shot code."""
 

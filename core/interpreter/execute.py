@@ -8,6 +8,7 @@ from core.interpreter import codes
 from core.interpreter.actions import Dwell
 from core.interpreter.arcs import arc_move
 from core.interpreter.blocks import Block
+from core.interpreter.cycles import cycle_blocks
 from core.interpreter.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.log import refusal
 from core.interpreter.mcodes import after_motion, before_motion
@@ -65,6 +66,8 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
 def _motion(state: State, made: Statement) -> Iterator[Block]:
     if made.one_shot in codes.ARCS:
         yield arc_move(state, made)
+    elif made.one_shot in codes.CYCLES:
+        yield from cycle_blocks(state, made)
     elif made.one_shot == 4:
         yield _dwell(state, made)
     elif made.moves:

@@ -109,7 +109,7 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("G41",), (3, 1, "not-yet")),
     (("X1Z1C.1",), (3, 5, "not-yet")),
     (("X1Z1R.1",), (3, 5, "not-yet")),
-    (("G81Z-1",), (3, 1, "not-yet")),
+    (("G75I.05",), (3, 1, "not-yet")),
     (("G33X1Z1K.05PCO",), (3, 1, "not-yet")),
     (("G35F2",), (3, 1, "not-yet")),
     (("M19",), (3, 1, "not-yet")),
