@@ -1,0 +1,72 @@
+"""Corners between two lines: chamfer and tangent fillet."""
+
+from __future__ import annotations
+
+from math import pi, tan
+
+from core.geometry.contour import Arc, Line, left_of, turn
+from core.geometry.extent import SAME_POINT
+
+# Lines that turn by less than this go on in one direction, or straight back: a corner of any size that
+# fits a machine would be smaller, or farther off, than the last place of its numbers. rad.
+STRAIGHT = 1e-6
+
+
+class CornerError(Exception):
+    """There is no such corner between two lines; ``str()`` says why in a clause."""
+
+
+class NoCornerError(CornerError):
+    """The lines go on in one direction."""
+
+
+class CornerTooLargeError(CornerError):
+    """The corner takes more of a line than there is. ``needed`` mm of it, and ``first`` tells which line."""
+
+    def __init__(self, needed: float, *, first: bool) -> None:
+        super().__init__(f"the {'line itself' if first else 'next line'} is too short")
+        self.needed = needed
+        self.first = first
+
+
+def chamfer(before: Line, after: Line, set_back: float) -> tuple[Line, Line, Line]:
+    """Both lines shortened by ``set_back`` mm at the point where they meet, with a line between: in order.
+
+    Raises NoCornerError, CornerTooLargeError, or CornerError where the lines run back on themselves.
+    """
+    _turned(before, after)
+    first, last = _shortened(before, after, set_back)
+    return first, Line(first.end, last.start), last
+
+
+def fillet(before: Line, after: Line, radius: float) -> tuple[Line, Arc, Line]:
+    """Both lines shortened to where an arc of ``radius`` mm touches them, with the arc between: in order.
+
+    The set-back is radius·tan(turn/2). Raises as ``chamfer``.
+    """
+    angle = _turned(before, after)
+    first, last = _shortened(before, after, radius * tan(abs(angle) / 2))
+    side = radius if angle > 0 else -radius
+    left = left_of(before.end_direction)
+    centre = first.end[0] + left[0] * side, first.end[1] + left[1] * side
+    return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
+
+
+def _turned(before: Line, after: Line) -> float:
+    if before.length < SAME_POINT or after.length < SAME_POINT:
+        raise CornerTooLargeError(0.0, first=before.length < SAME_POINT)
+    angle = turn(before.end_direction, after.start_direction)
+    if abs(angle) < STRAIGHT:
+        raise NoCornerError("the lines go on in one direction")
+    if abs(angle) > pi - STRAIGHT:
+        raise CornerError("the next line runs straight back")
+    return angle
+
+
+def _shortened(before: Line, after: Line, set_back: float) -> tuple[Line, Line]:
+    for line in (before, after):
+        if set_back > line.length + SAME_POINT:
+            raise CornerTooLargeError(set_back, first=line is before)
+    first = before.point(max(before.length - set_back, 0.0))
+    last = after.point(min(set_back, after.length))
+    return Line(before.start, first), Line(last, after.end)

@@ -1,0 +1,101 @@
+"""Chamfers and fillets between lines. mm, (x, z), X downwards, Z to the right."""
+
+from __future__ import annotations
+
+from math import dist, pi, sqrt, tan
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from core.geometry.contour import Line, turn
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
+from core.geometry.meet import distance
+from tests.geometry.contours import follow
+
+FACE = Line((0, 0), (5, 0))
+CYLINDER = Line((5, 0), (5, -9))
+
+
+def test_a_chamfer_at_a_right_angle() -> None:
+    first, cut, last = chamfer(FACE, CYLINDER, 1)
+    assert (first, cut, last) == (Line((0, 0), (4, 0)), Line((4, 0), (5, -1)), Line((5, -1), (5, -9)))
+
+
+def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() -> None:
+    first, round_, last = fillet(FACE, CYLINDER, 1)
+    assert first.end == (4, 0)
+    assert round_.end == last.start == pytest.approx((5, -1))
+    assert round_.centre == pytest.approx((4, -1))
+    assert round_.clockwise
+
+
+def test_a_fillet_at_a_hollow_corner_turns_the_other_way() -> None:
+    _, round_, _ = fillet(CYLINDER, Line((5, -9), (8, -9)), 1)
+    assert (*round_.start, *round_.end, *round_.centre) == pytest.approx((5, -8, 6, -9, 6, -8))
+    assert not round_.clockwise
+
+
+def test_the_set_back_of_a_chamfer_counts_along_both_lines() -> None:
+    # A cone of 45 degrees: 2 back on the face, 2 along the cone.
+    _, cut, _ = chamfer(FACE, Line((5, 0), (8, -3)), 2)
+    assert cut.start == pytest.approx((3, 0))
+    assert cut.end == pytest.approx((5 + sqrt(2), -sqrt(2)))
+
+
+def test_the_set_back_of_a_fillet_is_by_the_half_turn() -> None:
+    first, _, _ = fillet(FACE, Line((5, 0), (8, -3)), 2)
+    assert first.end == pytest.approx((5 - 2 * tan(pi / 8), 0))
+
+
+@pytest.mark.parametrize("size", [5.001, 9.5])
+def test_a_set_back_longer_than_the_line_is_refused(size: float) -> None:
+    with pytest.raises(CornerTooLargeError) as refused:
+        chamfer(FACE, CYLINDER, size)
+    assert refused.value.first
+    with pytest.raises(CornerTooLargeError):
+        fillet(FACE, CYLINDER, size)
+
+
+def test_a_set_back_longer_than_the_next_line_is_refused() -> None:
+    with pytest.raises(CornerTooLargeError) as refused:
+        fillet(CYLINDER, Line((5, -9), (7, -9)), 2.5)
+    assert (refused.value.first, refused.value.needed) == (False, pytest.approx(2.5))
+
+
+def test_a_corner_may_take_the_whole_line() -> None:
+    first, _, _ = chamfer(FACE, CYLINDER, 5)
+    assert first.length == 0
+
+
+def test_lines_in_one_direction_have_no_corner() -> None:
+    with pytest.raises(NoCornerError):
+        chamfer(FACE, Line((5, 0), (9, 0)), 1)
+
+
+def test_lines_that_run_back_have_no_corner() -> None:
+    with pytest.raises(CornerError, match="straight back"):
+        fillet(FACE, Line((5, 0), (1, 0)), 1)
+
+
+def test_a_line_of_no_length_takes_no_corner() -> None:
+    with pytest.raises(CornerTooLargeError):
+        chamfer(FACE, Line((5, 0), (5, 0)), 1)
+
+
+@given(st.floats(-3.0, 3.0).filter(lambda a: abs(a) > 0.01), st.floats(0.01, 3.0))
+def test_a_fillet_touches_both_lines(angle: float, radius: float) -> None:
+    before, after = follow([(50.0, 0.0, "line", 1.0), (50.0, angle, "line", 1.0)])
+    assert isinstance(before, Line)
+    assert isinstance(after, Line)
+    try:
+        first, round_, last = fillet(before, after, radius)
+    except CornerTooLargeError:
+        assume(radius * tan(abs(angle) / 2) < 50)
+        raise
+    assert abs(turn(first.end_direction, round_.start_direction)) < 1e-5
+    assert abs(turn(round_.end_direction, last.start_direction)) < 1e-5
+    assert round_.radius == pytest.approx(radius)
+    assert dist(round_.end, round_.centre) == pytest.approx(radius, abs=1e-6)
+    assert distance(before, round_.centre) == pytest.approx(radius, abs=1e-6)
+    assert distance(after, round_.centre) == pytest.approx(radius, abs=1e-6)
