@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from app.cli.main import main
-
-CONFORMANCE = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
+from tests.worked import worked
 
 
 class Told(NamedTuple):
@@ -64,10 +63,4 @@ def offsets(tmp_path: Path) -> Path:
 def example() -> Callable[[str], Path]:
     """A worked example by name; skips where they are absent."""
 
-    def find(name: str) -> Path:
-        path = CONFORMANCE / f"{name}.nc"
-        if not path.exists():
-            pytest.skip(f"the worked examples are not here: {path}")
-        return path
-
-    return find
+    return worked

@@ -1,0 +1,112 @@
+"""The worked examples, run on the screen by keys alone: they end where their proofs end, with no underrun."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.compose.machine import setup_for
+from app.compose.screen import desk_and_executor, step_clock
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import State
+from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.language.source import load_source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from core.proving.report import Report
+from tests.screen.hands import Key
+from tests.worked import worked
+
+EXAMPLES = (
+    "linear-diameter",
+    "linear-radius",
+    "rapid-g00-g01",
+    "arc-ik-diameter",
+    "arc-ik-radius",
+    "arc-r-diameter-barrel",
+    "arc-r-radius-convex",
+    "workshift-bar-loop",
+    "workshift-dry-run",
+    "secondary-taper",
+    "secondary-three-bores",
+    "loop-notches",
+    "tapping",
+)
+OFFSETS = (
+    {n: ToolOffset() for n in range(1, 9)},
+    {n: SecondaryOffset(x=-0.0127 * n) for n in range(1, 5)},
+)
+TICK = 0.01
+MOST = 120.0  # s of machine time
+
+
+class Lathe:
+    """The desk with its window, on a clock that the test moves; a frame is drawn every few ticks."""
+
+    def __init__(self) -> None:
+        self.clock = step_clock()
+        self.desk, self._executor = desk_and_executor(None, lambda: OFFSETS, self.clock)
+        self.desk.hands.clock = self.clock.now
+        self.window = MainWindow(Look(DARK))
+        self.window.resize(1024, 600)
+        self.window.open_desk(self.desk)
+        self.window.show()
+
+    def until(self, *states: State) -> None:
+        end, ticks = self.clock.now() + MOST, 0
+        while self.desk.snapshot().state not in states:
+            assert self.clock.now() < end, self.desk.snapshot().state
+            self._executor.tick()
+            self.clock.sleep_until(self.clock.now() + TICK)
+            ticks += 1
+            if ticks % 20 == 0:
+                QApplication.processEvents()
+
+    def key(self, *keys: Key) -> None:
+        for key in keys:
+            QTest.keyPress(self.window, key)
+        self._executor.tick()
+        for key in keys:
+            QTest.keyRelease(self.window, key)
+
+    def close(self) -> None:
+        self.window.put_away()
+        self.desk.close()
+
+
+@pytest.fixture
+def lathe(qapp: object) -> Iterator[Lathe]:
+    lathe = Lathe()
+    yield lathe
+    lathe.close()
+
+
+def proved(path: Path) -> Report:
+    machine = load_machine(None)
+    setup = setup_for(machine, tools=OFFSETS[0], secondary=OFFSETS[1])
+    return prove(load_source(path), setup, machine)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_it_ends_on_the_screen_where_the_proof_ends(lathe: Lathe, name: str) -> None:
+    path = worked(name)
+    proof = proved(path)
+    assert proof.errors == ()
+    lathe.desk.choose(str(path))
+    lathe.desk.session.settled(60.0)
+    lathe.until(State.DISABLED)
+    lathe.key(Key.Key_D)
+    lathe.until(State.IDLE)
+    lathe.key(Key.Key_F11, Key.Key_F12)
+    lathe.until(State.RUN)
+    lathe.until(State.IDLE, State.HOLD, State.FAULT, State.ESTOP)
+    end = lathe.desk.snapshot()
+    assert (end.state, end.alarms, end.underruns, end.parts) == (State.IDLE, (), 0, 1)
+    assert end.demand[:2] == pytest.approx(proof.machine_final[:2], abs=1e-6)
+    assert end.last_cycle == pytest.approx(proof.times.cycle, rel=0.025)
