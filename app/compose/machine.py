@@ -30,6 +30,7 @@ def control_limits(machine: Machine) -> ControlLimits:
         max_feed=machine.max_feed,
         max_rpm=machine.spindle.rpm_max,
         resolution=machine.resolution,
+        slide_accel=machine.axes[1].amax,
         unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,

@@ -8,6 +8,7 @@ from core.interpreter import codes
 from core.interpreter.actions import Dwell
 from core.interpreter.arcs import arc_move
 from core.interpreter.blocks import Block
+from core.interpreter.coarse import coarse_line
 from core.interpreter.cycles import cycle_blocks
 from core.interpreter.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.log import refusal
@@ -16,6 +17,7 @@ from core.interpreter.moves import statement_move
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
 from core.interpreter.statement import Statement, Step
+from core.interpreter.threads import thread_blocks
 from core.interpreter.tools import ToolUse, frame, secondary, tool_change
 from core.language.diagnostics import ProgramError
 
@@ -34,6 +36,8 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
         feed_words(state, made, first=first)
         warn_of_crash_feed(state, made, ahead)
         yield from _motion(state, made)
+        return
+    if coarse_line(state, made, ahead):
         return
     _modes(state, made)
     if made.comment is not None:
@@ -68,6 +72,8 @@ def _motion(state: State, made: Statement) -> Iterator[Block]:
         yield arc_move(state, made)
     elif made.one_shot in codes.CYCLES:
         yield from cycle_blocks(state, made)
+    elif made.one_shot in codes.THREADS:
+        yield from thread_blocks(state, made)
     elif made.one_shot == 4:
         yield _dwell(state, made)
     elif made.moves:

@@ -142,7 +142,7 @@ def _name_parts(made: Statement, line: Line) -> None:
         name = _group(made, word)
         groups[name] = groups.get(name, "") + word.text
     own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
-    if made.moves or made.one_shot == 4 or made.one_shot in codes.CYCLES:
+    if made.moves or made.one_shot == 4 or made.one_shot in codes.CYCLES | codes.THREADS:
         own.append("move")
     if len(own) > 1:
         if "move" not in own and "move" in groups:

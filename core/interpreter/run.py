@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from core.interpreter import codes
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.blocks import Block
+from core.interpreter.coarse import looks_ahead
 from core.interpreter.count import MOST_BLOCKS, MOST_LINES, refuse_too_large, takes_call, terminal
 from core.interpreter.execute import execute
 from core.interpreter.flow import Flow
@@ -123,7 +124,7 @@ class Interpreter:
             self._flow.steer(made)
         else:
             first = made.line == self._first
-            ahead = self._program.steps[made.line : made.line + _AHEAD] if "F" in made.words else ()
+            ahead = self._program.steps[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
             for block in execute(self._state, made, self._tools, ahead, first=first):
                 yield block
                 if isinstance(block.action, ProgramEnd):

@@ -31,6 +31,7 @@ class ControlLimits:
     max_feed: float = 300 * 25.4 / 60  # mm/s
     max_rpm: float = 3500.0
     resolution: float = 0.00005 * 25.4  # mm, radius
+    slide_accel: float = 120 * 25.4  # mm/s², Z: how much run-up a thread needs
     unclamp_while_turning: bool = True
     start_with_collet_open: bool = False
     m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state

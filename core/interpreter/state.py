@@ -21,6 +21,7 @@ class State:
         "absolute",
         "blocks",
         "c",
+        "coarse_at",
         "cut",
         "dx",
         "dz",
@@ -59,6 +60,7 @@ class State:
         self.tool_line = 0  # line of a T whose move to X and Z is still to come
         self.title_rapid = 0  # line of a G00 (TITLE) after which no F has come
         self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
+        self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
         self.told: set[str] = set()  # errors that would otherwise repeat on every move
         self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         self.derive()

@@ -30,7 +30,15 @@ def constant_rates(words: Words) -> FloatArray:
     on_axis = (words.start[:, 0] - words.axis) * (words.end[:, 0] - words.axis) <= 0.0
     endless = surface & on_axis & np.isinf(words.hi)
     _refuse(words, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
-    return np.where(words.per_rev, words.feed * rpm / 60.0, words.feed)
+    return np.where(words.per_rev, words.feed * rpm / 60.0, words.feed) * _per_lead(words)
+
+
+def _per_lead(words: Words) -> FloatArray:
+    """Way (m,) per way along Z, 1 save in threads: a lead counts along the axis of the thread."""
+    _refuse(words, words.thread & (words.start[:, 1] == words.end[:, 1]), "a thread does not advance along Z")
+    way = np.hypot(words.end[:, 0] - words.start[:, 0], words.end[:, 1] - words.start[:, 1])
+    along = np.where(words.thread, np.abs(words.end[:, 1] - words.start[:, 1]), 1.0)
+    return np.where(words.thread, way / along, 1.0)
 
 
 def by_radius(words: Words) -> BoolArray:

@@ -70,7 +70,7 @@ class MotionBlock(Protocol):
     def plane(self) -> PlaneMove | None: ...
 
 
-KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5}
+KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
 _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c")
 
@@ -95,6 +95,7 @@ class Words:
     clockwise: BoolArray
     rapid: BoolArray
     arc: BoolArray
+    thread: BoolArray
     surface: FloatArray
     lo: FloatArray
     hi: FloatArray
@@ -125,10 +126,11 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         axis=table[:, 7],
         feed=table[:, 9],
         rpm=np.minimum(np.abs(table[:, 10]), rpm_max),
-        per_rev=(table[:, 13] != 0.0) & (kinds != KINDS["rapid"]),
+        per_rev=((table[:, 13] != 0.0) & (kinds != KINDS["rapid"])) | (kinds == KINDS["thread"]),
         clockwise=table[:, 14] != 0.0,
         rapid=kinds == KINDS["rapid"],
         arc=kinds == KINDS["arc"],
+        thread=kinds == KINDS["thread"],
         surface=surface,
         lo=lo,
         hi=hi,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from core.machine.model import Machine
 from core.motion.limits import MotionLimits
 
@@ -24,6 +26,7 @@ class SpindleForecast:
         self._from = 0.0
         self._to = 0.0
         self._since = 0.0
+        self._turns, self._counted = 0.0, 0.0
 
     @property
     def target(self) -> float:
@@ -34,6 +37,7 @@ class SpindleForecast:
         """A new command at ``t``; the ramp starts from the speed of that moment."""
         if rpm == self._to:
             return
+        self._turns, self._counted = self.turns(t), t
         self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
 
     def follow(self, t: float, rpm: float, dt: float) -> None:
@@ -41,13 +45,28 @@ class SpindleForecast:
         now = self.speed(t)
         rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
         step = max(-rate * dt, min(rate * dt, rpm - now))
+        self._turns, self._counted = self.turns(t), t
         self._from = self._to = now + step
         self._since = t
 
     def settle(self, t: float, rpm: float) -> None:
         """At ``t`` the spindle turns at ``rpm``: what a move under constant surface speed has led to."""
+        self._turns, self._counted = self.turns(t), t
         self._from = self._to = rpm
         self._since = t
+
+    def turns(self, t: float) -> float:
+        """Signed revolutions from the start of the program to ``t``; not before the last command."""
+        at, ends = self._since, [self._counted, t]
+        rpm = self._from
+        for goal, rate in self._legs():
+            ends += [at, at + abs(goal - rpm) / rate]
+            at, rpm = ends[-1], goal
+        joints = sorted(joint for joint in ends if self._counted <= joint <= t)
+        turned = self._turns
+        for a, b in pairwise(joints):  # the speed runs straight between two joints
+            turned += (self.speed(a) + self.speed(b)) / 120.0 * (b - a)
+        return turned
 
     @property
     def rpm_max(self) -> float:

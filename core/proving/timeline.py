@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -101,6 +102,8 @@ class Timeline:
         if first.kind is not Kind.RAPID:
             yield from self._at_speed()
         yield self._rest(self._machine.timing.commit)
+        if first.kind is Kind.THREAD:
+            yield self._index(first)
         start = self.t - self._planner.t
         try:
             for chunk in self._planner.add(self._moves(first)):
@@ -114,13 +117,31 @@ class Timeline:
     def _moves(self, first: Block) -> Iterator[Block]:
         """Moving blocks; ends before one that must wait for the spindle, or that does not move."""
         block: Block | None = first
+        before = first
         while block is not None and block.moves:
-            if block is not first and self._speed_wanted and block.kind is not Kind.RAPID:
+            if block is not first and self._stands_before(first, before, block):
                 break
             self._moving.append(block)
             yield block
-            block = self._next()
+            before, block = block, self._next()
         self._back = block
+
+    def _stands_before(self, first: Block, before: Block, block: Block) -> bool:
+        """A new speed, and a thread pass with what pulls out of it, begin at a standstill."""
+        thread = Kind.THREAD
+        if first.kind is thread:
+            return before.kind is not thread or (block.kind is not thread and before is not first)
+        return block.kind is thread or (self._speed_wanted and block.kind is not Kind.RAPID)
+
+    def _index(self, block: Block) -> Rested:
+        """Until the slides may start, so that they are in step with an index of the spindle: see the
+        executor's rule in docs/decisions/0009-threads.md. Up to one turn."""
+        turn = abs(self.spindle.speed(self.t)) / 60.0
+        if not turn:
+            return self._rest(0.0)
+        ramp = block.feed * turn / (2.0 * self._machine.axes[1].amax)
+        ahead = abs(self.spindle.turns(self.t)) + turn * ramp
+        return self._rest((math.ceil(ahead - 1e-9) - ahead) / turn)
 
     def _moved(self, start: float, chunk: Chunk) -> Moved:
         blocks = [self._moving.popleft() for _ in range(len(chunk.n))]

@@ -99,8 +99,8 @@ def test_a_coordinate_must_be_a_number(word: str) -> None:
 
 
 def test_a_kind_without_a_law_is_refused() -> None:
-    with pytest.raises(MotionError, match="Block 1: a thread block"):
-        build_path([line((0, 0), (0, 1), kind=Kind.THREAD)], LIMITS)
+    with pytest.raises(MotionError, match="Block 1: a dwell block"):
+        build_path([line((0, 0), (0, 1), kind=Kind.DWELL)], LIMITS)
 
 
 @pytest.mark.parametrize(
