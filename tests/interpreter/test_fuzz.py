@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import random
 from math import isfinite
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.compose.machine import setup_for
 from core.interpreter.blocks import Block
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from tests.interpreter.mutation import mutated
 from tests.interpreter.programs import lines, passed, setup
 
 NUMBERS = st.sampled_from(["0", "1", "-1", ".5", "-.25", ".001", "2", "3.12345", "99", "300", "1000"])
@@ -96,3 +104,14 @@ def test_moves_read_as_numbers_do_what_they_do_as_words(program: list[str]) -> N
     )
     assert [figures(block) for block in numbers.blocks] == [figures(block) for block in words.blocks]
     assert numbers.interpreter.diagnostics == words.interpreter.diagnostics
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_spoilt_programs_are_proved_or_refused(seed: int) -> None:
+    machine = load_machine(None)
+    text = mutated(random.Random(seed))
+    report = prove(Source("spoilt", text), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
+    assert report.elementary > 0 or report.errors
+    for found in report.diagnostics:
+        assert 0 <= found.line <= text.count("\n")
+        assert found.message

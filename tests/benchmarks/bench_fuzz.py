@@ -1,0 +1,49 @@
+"""Spoilt programs through the whole proof: ``python -m tests.benchmarks.bench_fuzz [MINUTES]``, else ten.
+
+Prints what was tried and the slowest; a program that makes TurnDesk itself fail is printed whole and ends it.
+"""
+
+from __future__ import annotations
+
+import random
+import resource
+import sys
+import time
+
+from app.compose.machine import setup_for
+from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from tests.interpreter.mutation import mutated
+
+OFFSETS = {n: ToolOffset() for n in range(1, 9)}
+SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(r=0.2)}
+
+
+def main() -> None:
+    """Fuzz for as long as asked."""
+    minutes = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
+    machine = load_machine(None)
+    setup = setup_for(machine, tools=OFFSETS, secondary=SECONDARY)
+    seed, end, slowest, accepted = 0, time.monotonic() + minutes * 60, (0.0, 0), 0
+    while time.monotonic() < end:
+        seed += 1
+        text = mutated(random.Random(seed))
+        begun = time.perf_counter()
+        try:
+            report = prove(Source("fuzz", text), setup, machine)
+        except Exception:
+            sys.stdout.write(f"seed {seed}:\n{text}\n")
+            raise
+        slowest = max(slowest, (time.perf_counter() - begun, seed))
+        accepted += not report.errors
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+    sys.stdout.write(
+        f"{seed:,} programs, {accepted:,} of them good; slowest {slowest[0]:.2f} s (seed {slowest[1]}); "
+        f"peak memory {peak} MiB\n"
+    )
+
+
+if __name__ == "__main__":
+    main()
