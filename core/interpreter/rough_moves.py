@@ -1,0 +1,138 @@
+"""The motions that take an area off down to a contour; in depth and way as seen from the start point."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from math import dist
+
+from core.geometry.arcs import Point
+from core.geometry.clip import Area, Stretch
+from core.geometry.contour import Arc, Element, Line
+from core.geometry.meet import clearance, intersections
+from core.interpreter.cycle_blocks import Move
+
+_SAME = 1e-6  # mm
+_NEARER = 0.002  # mm; what a way beside the contour may lack
+
+
+class StartNearError(Exception):
+    """On its way to the contour or back the tool would come nearer to it than it may."""
+
+
+class Rougher:
+    """Collects ``moves``: passes of growing depth by ``cut``, then ``finish`` along the contour.
+
+    A stretch is entered at the feed from where the pass before it ended; between stretches the tool runs
+    ``lift`` mm above what is still there, at ``rapid`` mm/s.
+    """
+
+    def __init__(self, area: Area, rapid: float, lift: float) -> None:
+        self.moves: list[Move] = []
+        self.plunged = False
+        self._area = area
+        self._rapid, self._lift = rapid, lift
+        self._at = 0.0, 0.0
+        self._done: list[tuple[float, list[Stretch]]] = []
+
+    def cut(self, depth: float) -> None:
+        """One pass at a depth greater than those before it, through all its stretches."""
+        stretches = self._area.stretches(depth)
+        before = self._done[-1][0] if self._done else 0.0
+        for start, end in stretches:
+            self._over(start)
+            self._sink(before)
+            self.plunged = self.plunged or start > 0
+            self._feed(depth, self._at[1])
+            self._feed(depth, end)
+        self._done.append((depth, stretches))
+
+    def finish(self, *, backwards: bool) -> None:
+        """Along the contour, then back to the start. Raises StartNearError."""
+        path = self._area.path
+        if backwards:
+            path = [element.reversed() for element in reversed(path)]
+        begun = len(self.moves)
+        here = self._at
+        self._approach(path[0].start, front=not backwards)
+        self._check(here, self.moves[begun:])
+        self._along(path)
+        begun, here = len(self.moves), self._at
+        self._leave(front=backwards)
+        self._check(here, self.moves[begun:])
+
+    def _approach(self, to: Point, *, front: bool) -> None:
+        """To the start of the path: its front end is reached from ahead of the area, its back from above."""
+        way = min(to[1], 0.0) if front else to[1]
+        self._over(way)
+        done = [depth for depth, stretches in self._done if _covering(stretches, way, to[1])]
+        self._sink(min(max(done, default=0.0), to[0]) if self._done else to[0])
+        self._feed(to[0], way)
+        self._feed(*to)
+
+    def _along(self, path: list[Element]) -> None:
+        for element in path:
+            if isinstance(element, Arc):
+                self.moves.append(Move(*element.end, None, element.centre, element.clockwise))
+                self._at = element.end
+            else:
+                self._feed(*element.end)
+
+    def _leave(self, *, front: bool) -> None:
+        if front:
+            self._go(self._at[0], min(self._at[1], 0.0))
+            self._go(0.0, self._at[1])
+        else:
+            self._over(0.0)
+        self._go(0.0, self._at[1])
+        self._go(0.0, 0.0)
+
+    def _over(self, way: float) -> None:
+        """Run to another place above all that is still there."""
+        if abs(way - self._at[1]) < _SAME:
+            return
+        level = min(self._clear(self._at[1], way), self._at[0])
+        self._go(level, self._at[1])
+        self._go(level, way)
+
+    def _sink(self, depth: float) -> None:
+        """Down to the lift above a depth that has been cut here."""
+        if depth - self._lift > self._at[0]:
+            self._go(depth - self._lift, self._at[1])
+
+    def _clear(self, a: float, b: float) -> float:
+        """The depth at which the tool may run between two places: the lift above the last pass that did."""
+        low, high = min(a, b), max(a, b)
+        for depth, stretches in reversed(self._done):
+            if _covering(stretches, low, high):
+                return depth - self._lift
+        return min(0.0, self._area.top - self._lift)
+
+    def _go(self, depth: float, way: float) -> None:
+        self.moves.append(Move(depth, way, self._rapid))
+        self._at = depth, way
+
+    def _feed(self, depth: float, way: float) -> None:
+        self.moves.append(Move(depth, way))
+        self._at = depth, way
+
+    def _check(self, here: Point, moves: list[Move]) -> None:
+        for move in moves:
+            there = move.x, move.z
+            if dist(here, there) > _SAME and any(
+                self._near(Line(here, there), e) for e in self._area.contour
+            ):
+                raise StartNearError
+            here = there
+
+    def _near(self, way: Line, element: Element) -> bool:
+        """Whether a way is nearer to an element than it may be; at its ends it may touch where U is 0."""
+        if self._area.left > _NEARER:
+            return clearance(way, element) < self._area.left - _NEARER
+        ends = way.start, way.end
+        return any(min(dist(point, end) for end in ends) > _NEARER for point in intersections(way, element))
+
+
+def _covering(stretches: list[Stretch], low: float, high: float) -> bool:
+    """Whether one of the stretches holds the way from ``low`` to ``high``."""
+    at = bisect_left(stretches, low + _SAME, key=lambda stretch: stretch[0]) - 1
+    return at >= 0 and stretches[at][1] >= high - _SAME
