@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -42,12 +43,18 @@ def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnos
 def _refusal(count: Count) -> Diagnostic | None:
     hint = "Lower the counts of the loops."
     if count.blocks > MOST_BLOCKS:
-        text = f"The program makes {count.blocks:,} blocks; {MOST_BLOCKS:,} are the most."
+        text = f"The program makes {_written(count.blocks)} blocks; {MOST_BLOCKS:,} are the most."
         return refusal(count.worst or 1, 0, "too-many-blocks", text, hint)
     if count.lines > MOST_LINES:
-        text = f"The program executes {count.lines:,} lines; {MOST_LINES:,} are the most."
+        text = f"The program executes {_written(count.lines)} lines; {MOST_LINES:,} are the most."
         return refusal(count.worst or 1, 0, "too-many-lines", text, hint)
     return None
+
+
+def _written(count: int) -> str:
+    """The count in full up to 10^24; deep nests of loops make numbers that no line and no reader holds."""
+    tens = int(math.log10(count))
+    return f"{count:,}" if tens < 24 else f"about 10^{tens}"
 
 
 class _Counter:

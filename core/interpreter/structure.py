@@ -28,13 +28,17 @@ class _Finder:
         self.problems: list[Diagnostic] = []
         self._loops: list[Statement] = []
         self._inside: int | None = None  # subroutine being read
+        self._job_end: int | None = None  # M30 or M02 in it after which nothing else has come, index of line
         self._ended = False
         self._stray = False  # a line that nothing reaches has been told
 
     def take(self, made: Statement) -> None:
         if made.flow == "}":
             self._open_subroutine(made)
-        elif made.flow == "M99":
+            return
+        ends_job = made.m in codes.ENDS and not made.block_delete
+        self._job_end = made.line - 1 if ends_job and self._inside is not None else None
+        if made.flow == "M99":
             self._close_subroutine(made)
         elif self._ended and self._inside is None:
             self._unreachable(made)
@@ -42,7 +46,7 @@ class _Finder:
             self._loops.append(made)
         elif made.flow == "LF":
             self._close_loop(made)
-        elif self._inside is None and made.m in codes.ENDS and not made.block_delete:
+        elif self._inside is None and ends_job:
             self._end_main(made.line)
 
     def _end_main(self, line: int) -> None:
@@ -51,13 +55,14 @@ class _Finder:
         self.found = self.found._replace(main_end=min(line, self.found.main_end))
 
     def _open_subroutine(self, made: Statement) -> None:
-        if self._inside is not None:
+        if self._inside is not None and not self._closed_by_job_end(self._inside):
             self._refuse(
                 made, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
             )
         elif not self._ended:
             self._no_end(made.line - 1)
         self._unclosed_loops()
+        self._job_end = None
         number = int(made.value("}") or 0)
         if number in self.found.subroutines:
             first = self.found.subroutines[number] + 1
@@ -74,6 +79,13 @@ class _Finder:
         self._unclosed_loops()
         self.found.subroutine_ends.setdefault(self._inside, made.line - 1)
         self._inside = None
+
+    def _closed_by_job_end(self, number: int) -> bool:
+        """An M30 or M02 ends the job from inside a subroutine, so one that ends with it needs no M99."""
+        if self._job_end is None:
+            return False
+        self.found.subroutine_ends.setdefault(number, self._job_end)
+        return True
 
     def _close_loop(self, made: Statement) -> None:
         if not self._loops:
@@ -107,7 +119,7 @@ class _Finder:
         self._unclosed_loops()
         if not self._ended:
             self._no_end(length)
-        elif self._inside is not None:
+        elif self._inside is not None and not self._closed_by_job_end(self._inside):
             text = f"Subroutine {self._inside} has no M99."
             line = self.found.subroutines[self._inside] + 1
             self.problems.append(
