@@ -1,4 +1,8 @@
-"""The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal."""
+"""The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal.
+
+M95 asks what the control calls input 7: terminal TB2-9. ``7`` stands for it too where the file does not
+name TB2-9.
+"""
 
 from __future__ import annotations
 
@@ -26,4 +30,4 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     ]
     mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
     refuse(path, mistakes)
-    return dict(table)
+    return {"TB2-9": table["7"], **table} if "7" in table else dict(table)

@@ -66,6 +66,19 @@ def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "on"),
+    [
+        ("7 = true", True),
+        ("7 = false", False),
+        ('7 = true\n"TB2-9" = false', False),
+        ('"TB2-9" = true', True),
+    ],
+)
+def test_input_7_is_the_terminal_that_m95_asks(tmp_path: Path, text: str, on: bool) -> None:
+    assert read_inputs(written(tmp_path, f"[inputs]\n{text}\n"))["TB2-9"] is on
+
+
+@pytest.mark.parametrize(
     ("text", "told"),
     [
         ("", r"\[inputs\] is missing"),

@@ -23,6 +23,7 @@ from tests.interpreter.programs import body, lines, passed, setup
         (("X1", "LS2", "LS5000000", "X1", "LF", "LF"), (4, 0, "too-many-blocks"), "10,000,003"),
         (("LS1000000000", "G90", "LF"), (3, 0, "too-many-lines"), "2,000,000,"),
         (("LS100000", "LS100000", "LF", "LF"), (3, 0, "too-many-lines"), "10,000,"),
+        (("LS2",) * 20000 + ("X1",) + ("LF",) * 20000, (19981, 0, "too-many-blocks"), "about 10^6020 blocks"),
     ],
 )
 def test_too_large(program: tuple[str, ...], error: tuple[int, int, str], count: str) -> None:

@@ -105,7 +105,8 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     if letter == "D":
         return error(line, column, "offset-number", f"{text}: offsets go from 1 to 32.", "D0 cancels.")
     if letter == "LS":
-        return error(line, column, "loop-count", f"{text}: a loop runs at least once.", "Write LS1 or more.")
+        message = f"{text} is out of range: a loop runs {least:g} to {most:,.0f} times."
+        return error(line, column, "loop-count", message, "Correct the count.")
     return error(
         line,
         column,
