@@ -8,6 +8,7 @@ from app.desk.home import home
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store.errors import StoreError
+from core.store.rows import VersionRow
 from core.store.store import Store
 
 
@@ -51,6 +52,23 @@ class Journal:
         if self._store is not None:
             name = Path(source.name).name
             self._store.save_program(name, source.text.encode("utf-8", "surrogateescape"), "loaded to run")
+
+    def versions(self, name: str) -> tuple[VersionRow, ...]:
+        """Every version of a program, newest first. Raises StoreError; not for the screen's thread."""
+        return self._opened().versions(name)
+
+    def text_of(self, name: str, version: int) -> bytes:
+        """A version as it was kept. Raises StoreError; not for the screen's thread."""
+        return self._opened().load_program(name, version)
+
+    def keep_version(self, name: str, text: bytes, why: str) -> int:
+        """Another version; its number once it is on the disk. Raises StoreError; not for the screen's thread."""
+        return self._opened().save_program(name, text, why).result()
+
+    def _opened(self) -> Store:
+        if self._store is None:
+            raise StoreError(self._trouble or "the store is closed")
+        return self._store
 
     def close(self) -> None:
         """Write what is queued and give the store free."""

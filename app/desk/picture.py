@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -44,7 +44,7 @@ class Picture:
 
     ``first`` (blocks + 1,), ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord``
     (blocks,) mm from start to end of a block. ``bounds`` (least z, greatest z, least x, greatest x) of what
-    is cut, or of everything when nothing is.
+    is cut, or of everything when nothing is. ``line`` (blocks,) is the source line that each block is of.
     """
 
     z: npt.NDArray[np.float64]
@@ -54,6 +54,7 @@ class Picture:
     ends: npt.NDArray[np.float64]
     chord: npt.NDArray[np.float64]
     bounds: tuple[float, float, float, float]
+    line: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     @property
     def blocks(self) -> int:
@@ -63,6 +64,16 @@ class Picture:
     def points_done(self, blocks: int) -> int:
         """How many points are behind when so many blocks are."""
         return int(self.first[max(0, min(blocks, self.blocks))])
+
+    def block_of_line(self, line: int) -> int:
+        """The block that ends the first pass through a source line, or through the nearest one before that
+        makes any; 0 when there is none. Numbers count from 1."""
+        before = self.line[self.line <= line]
+        if not len(before):
+            return 0
+        there = np.flatnonzero(self.line == before.max())
+        apart = np.flatnonzero(np.diff(there) > 1)
+        return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
     def time_left(self, block: int, to_go: float) -> float:
         """Program seconds left when block number ``block`` has ``to_go`` mm before it, at full override."""
@@ -81,6 +92,7 @@ class Sketch:
     def __init__(self) -> None:
         self._z, self._x, self._stroke = array("d"), array("d"), array("B")
         self._first, self._ends, self._chord = array("q", [0]), array("d", [0.0]), array("d")
+        self._line = array("q")
 
     def add(self, block: Block, end: float) -> None:
         """Append one block that ends ``end`` seconds into the program."""
@@ -88,6 +100,7 @@ class Sketch:
             self._move(block)
         self._first.append(len(self._z))
         self._ends.append(end)
+        self._line.append(block.line)
         self._chord.append(math.hypot(block.x - block.x0, block.z - block.z0) if block.moves else 0.0)
 
     def picture(self) -> Picture:
@@ -102,6 +115,7 @@ class Sketch:
             ends=np.array(self._ends),
             chord=np.array(self._chord),
             bounds=_bounds(z, x, stroke),
+            line=np.array(self._line, dtype=np.int64),
         )
 
     def _move(self, block: Block) -> None:

@@ -1,0 +1,37 @@
+"""What the editor needs from the rest of the house."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from app.desk.session import Workshop
+from core.store.rows import VersionRow
+
+
+class Archive(Protocol):
+    """The versions of programs. Called on the editor's worker only; each raises StoreError."""
+
+    def versions(self, name: str) -> Sequence[VersionRow]:
+        """Every version of a program, newest first."""
+        ...
+
+    def text_of(self, name: str, version: int) -> bytes:
+        """One of them, as it was kept."""
+        ...
+
+    def keep_version(self, name: str, text: bytes, why: str) -> int:
+        """Keep another, and answer its number when it is on the disk; the same text again is no new one."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """``workshop`` proves without keeping anything, ``programs`` is the operator's own folder."""
+
+    workshop: Workshop
+    archive: Archive
+    programs: Path
+    samples: Path

@@ -1,0 +1,75 @@
+"""The program that is edited: where it lies, what it held when it was opened, what it may be called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.desk.shelf import ENDINGS
+from core.language.source import load_source
+from core.store.errors import StoreError
+from core.store.programs import check_name
+
+USUAL_ENDING = ".nc"
+_DOS = "\r\n"
+
+
+class NameRefusedError(ValueError):
+    """A name that no program can have; the sentence says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """``text`` has bare line feeds, as an editor does; ``line_end`` is what the file has.
+
+    ``protected``: a sample, which may be saved under another name only. ``fresh``: not on the disk yet.
+    """
+
+    path: Path
+    text: str = ""
+    line_end: str = "\n"
+    protected: bool = False
+    fresh: bool = False
+
+    @property
+    def name(self) -> str:
+        """What the screen and the store call it."""
+        return self.path.name
+
+    def encoded(self, text: str) -> bytes:
+        """``text`` as it goes to the disk, with the line ends that the file has."""
+        ended = text if text.endswith("\n") or not text else text + "\n"
+        return ended.replace("\n", self.line_end).encode("utf-8", "replace")
+
+
+def opened(path: Path, samples: Path) -> Document:
+    """The document of a file. Raises SourceError with a sentence when it holds no program text."""
+    text = load_source(path).text
+    line_end = _DOS if _DOS in text else "\n"
+    protected = path.resolve().is_relative_to(samples.resolve())
+    return Document(path, text.replace(_DOS, "\n").replace("\r", "\n"), line_end, protected)
+
+
+def created(folder: Path, typed: str) -> Document:
+    """A new and empty document of this name. Raises NameRefusedError with a sentence."""
+    return Document(folder / program_name(typed), fresh=True)
+
+
+def program_name(typed: str) -> str:
+    """The file name that was meant: a name without an ending gets the usual one."""
+    name = typed.strip()
+    if not name:
+        raise NameRefusedError("NO NAME WAS TYPED: A PROGRAM NEEDS ONE")
+    if name.startswith("."):
+        raise NameRefusedError(f"{name} WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT")
+    try:
+        check_name(name)
+    except StoreError as error:
+        raise NameRefusedError(
+            f"{name} CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK"
+        ) from error
+    ending = Path(name).suffix
+    if ending.lower() not in ENDINGS:
+        allowed = " ".join(sorted(ENDINGS - {""}))
+        raise NameRefusedError(f"{ending} IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF {allowed}")
+    return name if ending else name + USUAL_ENDING

@@ -1,0 +1,228 @@
+"""The editor: opening, creating, saving and leaving, with every version kept. No Qt, never waits.
+
+What the operator asks for begins at once and ends in a later ``poll``, once a frame; the text itself lies in
+the text field of the page, which hands it over with each request.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+
+from app.desk.editing import saving, words
+from app.desk.editing.bench import Bench
+from app.desk.editing.checking import Checker
+from app.desk.editing.document import Document, NameRefusedError, created, opened
+from app.desk.editing.worker import Worker
+
+
+class Stage(StrEnum):
+    """Where the editor is."""
+
+    CLOSED = "closed"
+    OFFERED = "offered"  # a new file: F1 creates it, Esc aborts
+    READING = "reading"
+    OPEN = "open"
+    NAMING = "naming"  # saving waits for a name
+    SAVING = "saving"
+
+
+def _nowhere(_path: Path) -> None:
+    """Nobody wants to know what was saved."""
+
+
+@dataclass(slots=True)
+class Editor:
+    """One document at a time. ``left`` hears of the program that was left in good order, to load it."""
+
+    bench: Bench
+    left: Callable[[Path], None] = _nowhere
+    stage: Stage = Stage.CLOSED
+    document: Document | None = None
+    notice: str = ""
+    text_number: int = 0  # counts texts put into the field from here: opened, created, restored
+    text: str = ""  # the last of them
+    block_delete: bool = False
+    checker: Checker = field(init=False)
+    worker: Worker = field(default_factory=Worker)
+    _offered: str = ""
+    _leaving: bool = False
+    _replace: bool = False  # a file changed by somebody else was shown and is replaced all the same
+    _abandoning: bool = False
+    _wanted: str = ""  # text whose saving waits for a name
+
+    def __post_init__(self) -> None:
+        self.checker = Checker(self.bench.workshop)
+
+    def poll(self) -> None:
+        """Once a frame: take up what the worker has finished."""
+        self.worker.poll()
+
+    def close(self) -> None:
+        """End the workers."""
+        self.checker.close()
+        self.worker.close()
+
+    # --- coming in -----------------------------------------------------------------------------------
+
+    def open(self, path: Path, block_delete: bool = False) -> None:
+        """Read a program into the editor."""
+        self.clear()
+        self.stage, self.block_delete = Stage.READING, block_delete
+        self.worker.ask(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
+
+    def offer(self, typed: str) -> None:
+        """A name that no program has: ask whether it shall be a new one."""
+        self.clear()
+        self.stage, self._offered = Stage.OFFERED, typed
+        self.notice = words.CREATE
+
+    def create(self) -> None:
+        """F1: yes, a new file."""
+        if self.stage is not Stage.OFFERED:
+            return
+        try:
+            document = created(self.bench.programs, self._offered)
+        except NameRefusedError as error:
+            self.notice = f"{error}; ESC"
+            return
+        if document.path.exists():
+            self.notice = words.THERE_ALREADY.format(document.name)
+            return
+        self.clear()
+        self._opened(document)
+
+    def abort(self) -> None:
+        """Esc: back to where one came from."""
+        if self.stage is Stage.OFFERED:
+            self.clear()
+            self._shut()
+
+    def _opened(self, document: Document) -> None:
+        self.document, self.stage = document, Stage.OPEN
+        self._put(document.text)
+
+    def _not_opened(self, why: str) -> None:
+        self._shut()
+        self.notice = why
+
+    def _put(self, text: str) -> None:
+        self.text, self.text_number = text, self.text_number + 1
+
+    # --- writing -------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """What is edited."""
+        return self.document.name if self.document else ""
+
+    def changed(self, text: str) -> None:
+        """This is in the field now: have it proved."""
+        self.checker.submit(self.name, text, self.block_delete)
+
+    def is_dirty(self, text: str) -> bool:
+        """Whether leaving now would have something to save."""
+        document = self.document
+        return document is not None and text != document.text
+
+    def restore(self, text: str, number: int) -> None:
+        """An older version takes the place of the text, as one step that can be undone."""
+        self._put(text)
+        self.notice = words.RESTORED.format(number)
+
+    def clear(self) -> None:
+        """Take answer and questions back."""
+        self.notice = ""
+        self._abandoning = False
+
+    # --- saving and leaving --------------------------------------------------------------------------
+
+    def save(self, text: str, *, leave: bool = False) -> None:
+        """Write the file and keep the version; then, if asked for, leave."""
+        document = self.document
+        if document is None or self.stage is not Stage.OPEN:
+            return
+        self.clear()
+        self._leaving = leave
+        if not text.strip():
+            self.notice = words.EMPTY
+        elif document.protected:
+            self.stage, self.notice, self._wanted = Stage.NAMING, words.SAMPLE, text
+        else:
+            self._write(document, text)
+
+    def take_name(self, typed: str) -> bool:
+        """The name under which a sample is saved; False when it is refused."""
+        document = self.document
+        if document is None or self.stage is not Stage.NAMING:
+            return False
+        try:
+            path = created(self.bench.programs, typed).path
+        except NameRefusedError as error:
+            self.notice = str(error)
+            return False
+        if path.exists():
+            self.notice = words.THERE_ALREADY.format(path.name)
+            return False
+        self.clear()
+        self._write(replace(document, path=path, protected=False, fresh=True), self._wanted)
+        return True
+
+    def keep_no_name(self) -> None:
+        """Esc at the question for a name: go on editing."""
+        if self.stage is Stage.NAMING:
+            self.clear()
+            self.stage, self._leaving = Stage.OPEN, False
+
+    def leave(self, text: str) -> None:
+        """Save what has changed, then go; an untouched new file is forgotten."""
+        document = self.document
+        if document is None or self.stage is not Stage.OPEN:
+            return
+        if document.fresh and not text.strip():
+            self._shut()
+        elif self.is_dirty(text) or document.fresh:
+            self.save(text, leave=True)
+        else:
+            self._go(document)
+
+    def abandon(self, text: str) -> None:
+        """Leave without saving; asked once when there is something to lose."""
+        if self.stage is not Stage.OPEN:
+            return
+        if self.is_dirty(text) and not self._abandoning:
+            self.notice, self._abandoning = words.ABANDON, True
+            return
+        self._shut()
+
+    def _write(self, document: Document, text: str) -> None:
+        self.stage = Stage.SAVING
+        replacing, self._replace = self._replace, False
+        self.worker.ask(
+            lambda: saving.save(document, text, self.bench.archive, replacing),
+            lambda trouble: self._saved(document, text, trouble),
+            self._not_saved,
+        )
+
+    def _saved(self, document: Document, text: str, trouble: str) -> None:
+        if trouble == saving.CHANGED:
+            self._replace = True
+            self._not_saved(words.CHANGED_OUTSIDE.format(document.name))
+            return
+        self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
+        self.notice = words.NOT_KEPT.format(trouble) if trouble else f"{document.name} IS SAVED"
+        if self._leaving:
+            self._go(self.document)
+
+    def _not_saved(self, why: str) -> None:
+        self.stage, self.notice, self._leaving = Stage.OPEN, why, False
+
+    def _go(self, document: Document) -> None:
+        self._shut()
+        self.left(document.path)
+
+    def _shut(self) -> None:
+        self.stage, self.document, self._leaving = Stage.CLOSED, None, False
+        self._abandoning = self._replace = False

@@ -1,0 +1,1 @@
+"""The F3 editor on the screen."""
