@@ -36,9 +36,8 @@ class Area:
         self.top = min(element.box[0] for element in contour) - left
         self.deepest = max(element.box[1] for element in self.path)
         self._front, self._back = self.path[0].start, self.path[-1].end
-        self._walls = [
-            around(part, left) if left > 0 else [part] for element in contour for part in _rising(element)
-        ]
+        parts = [part for element in contour for part in _rising(element)]
+        self._walls = [(part.box[0] - left, around(part, left) if left > 0 else [part]) for part in parts]
 
     @property
     def turns_back(self) -> bool:
@@ -50,7 +49,8 @@ class Area:
 
     def stretches(self, depth: float) -> list[Stretch]:
         """Where a tool at ``depth`` may run: above it, to depth 0, there is no contour either."""
-        walls = [reach for wall in self._walls if (reach := _reach(wall, depth - _TOUCH)) is not None]
+        met = [wall for least, wall in self._walls if least <= depth - _TOUCH]
+        walls = [reach for wall in met if (reach := _reach(wall, depth - _TOUCH)) is not None]
         if depth > self._front[0] + _TOUCH:
             walls.append((-_ENDLESS, self._front[1]))
         found: list[Stretch] = []
@@ -80,7 +80,7 @@ def _rising(element: Element) -> list[Element]:
 
 def _reach(wall: Sequence[Element], depth: float) -> Stretch | None:
     """From where to where the part of a wall that is not as deep as ``depth`` reaches."""
-    places = [place for edge in wall if edge.box[0] <= depth for place in _places(edge, depth)]
+    places = [place for edge in wall for place in _places(edge, depth)]
     return (min(places), max(places)) if places else None
 
 

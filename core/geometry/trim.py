@@ -24,6 +24,9 @@ _NEARER = 0.0005
 # Pieces of the path follow each other where the end of one is this near to the start of the next. mm.
 _FOLLOWS = 2 * JOINED
 
+# What may be left over behind the end of the path: parts that are too near by less than _NEARER. mm.
+_LOST = 0.02
+
 
 class TrimError(Exception):
     """There is no unbroken way along the contour at this distance."""
@@ -121,15 +124,21 @@ def _far(part: Element, contour: _Boxed, least: float) -> bool:
 
 
 def _chained(parts: list[Element]) -> list[Element]:
-    """The parts that follow one another from the first one; what no way leads to is left out."""
+    """The parts that follow one another from the first one; what no way leads to is left out.
+
+    Of several that begin in one point the last goes on: between them the offset went round where it may not.
+    """
     if not parts:
         raise TrimError
-    path = [parts[0]]
-    last = 0
-    for at, part in enumerate(parts[1:], start=1):
-        if dist(path[-1].end, part.start) <= _FOLLOWS:
-            path.append(part)
-            last = at
-    if last != len(parts) - 1:
+    starts = np.array([part.start for part in parts])
+    path, at = [parts[0]], 0
+    while True:
+        x, z = path[-1].end
+        follows = np.flatnonzero(np.hypot(starts[at + 1 :, 0] - x, starts[at + 1 :, 1] - z) <= _FOLLOWS)
+        if not follows.size:
+            break
+        at += 1 + int(follows[-1])
+        path.append(parts[at])
+    if sum(part.length for part in parts[at + 1 :]) > _LOST:
         raise TrimError
     return path

@@ -20,6 +20,11 @@ class Flow:
         self._loops: list[list[int]] = []  # index of LS, passes left
         self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
 
+    @property
+    def called(self) -> bool:
+        """Whether the place is in a subroutine."""
+        return bool(self._calls)
+
     def steer(self, made: Statement) -> None:
         """Follow a line that steers. Raises ProgramError for calls nested too deep."""
         flow = made.flow
@@ -47,6 +52,21 @@ class Flow:
         self._loops = []
         self.at = self._structure.subroutines[number] + 1
         self.end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+
+    def contour(self, made: Statement) -> range | None:
+        """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
+
+        None where there are none; that has been told when the program was read.
+        """
+        if "P" not in made.words:
+            end = self._structure.contours.get(made.line - 1)
+            if end is None:
+                return None
+            self.at = end + 1
+            return range(made.line, end)
+        number = int(made.value("P") or 0)
+        start = self._structure.subroutines.get(number)
+        return None if start is None else range(start + 1, self._structure.subroutine_ends.get(number, start))
 
     def _loop_end(self, here: int) -> None:
         start = self._structure.loop_starts.get(here)

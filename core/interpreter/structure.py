@@ -18,21 +18,25 @@ class Structure(NamedTuple):
     subroutines: dict[int, int]  # number → index of its }n
     subroutine_ends: dict[int, int]  # number → index of its M99
     main_end: int  # one past the last line of the main program
+    contours: dict[int, int]  # index of a G75 or G78 without P → index of its RF
 
 
 class _Finder:
     """Goes once through the statements that matter for structure."""
 
     def __init__(self, length: int) -> None:
-        self.found = Structure({}, {}, {}, {}, length)
+        self.found = Structure({}, {}, {}, {}, length, {})
         self.problems: list[Diagnostic] = []
         self._loops: list[Statement] = []
         self._inside: int | None = None  # subroutine being read
         self._job_end: int | None = None  # M30 or M02 in it after which nothing else has come, index of line
         self._ended = False
         self._stray = False  # a line that nothing reaches has been told
+        self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
 
     def take(self, made: Statement) -> None:
+        if self._in_contour(made):
+            return
         if made.flow == "}":
             self._open_subroutine(made)
             return
@@ -48,6 +52,29 @@ class _Finder:
             self._close_loop(made)
         elif self._inside is None and ends_job:
             self._end_main(made.line)
+
+    def _in_contour(self, made: Statement) -> bool:
+        """Whether the line is one of a contour, or its RF; it steers nothing then."""
+        if made.flow == "RF":
+            if self._contour is None:
+                self._refuse(made, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out.")
+            else:
+                self.found.contours[self._contour.line - 1] = made.line - 1
+                self._contour = None
+            return True
+        if made.flow in {"}", "M99"} or made.m in codes.ENDS:
+            self._open_contour()
+        inside = self._contour is not None
+        if not inside and made.one_shot in codes.CONTOUR_CYCLES and "P" not in made.words:
+            self._contour = made
+        return inside
+
+    def _open_contour(self) -> None:
+        made, self._contour = self._contour, None
+        if made is not None:
+            text = f"The contour of G{made.one_shot} has no RF."
+            hint = "Write RF alone on the line after it, or P with the number of a subroutine."
+            self._refuse(made, "contour-open", text, hint)
 
     def _end_main(self, line: int) -> None:
         self._ended = True
@@ -116,6 +143,7 @@ class _Finder:
         self.found = self.found._replace(main_end=line)
 
     def finish(self, length: int) -> None:
+        self._open_contour()
         self._unclosed_loops()
         if not self._ended:
             self._no_end(length)
@@ -139,7 +167,7 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     calls: list[Statement] = []
     for made in statements:
         finder.take(made)
-        if made.flow in codes.CALLS:
+        if made.flow in codes.CALLS or (made.one_shot in codes.CONTOUR_CYCLES and made.value("P")):
             calls.append(made)
     finder.finish(length)
     for made in calls:
