@@ -202,7 +202,9 @@ class Cycle:
         """The block that needed the standstill. False when the cycle stops or ends with it."""
         bench, action = self._bench, block.action
         if action is None:
-            self._wait = at_speed(bench)
+            self._wait = at_speed(bench) if needs_speed(block) else None
+            if self._wait is None:
+                self._waited()
             return True
         self._show(block)
         if isinstance(action, ProgramEnd):

@@ -86,6 +86,7 @@ class Executor:
         bench.now = self._ports.clock.now()
         bench.sample = self._ports.axes.sample()
         bench.inputs = dict(self._ports.io.inputs())
+        bench.spindle.look()
         bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
         bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
         self._tell_override()

@@ -30,8 +30,9 @@ class BlockFeed:
     """``pending`` may be moved in one stretch; ``stop`` waits behind it for a standstill.
 
     A standstill is needed by every action, by the first block after a change of speed that is no rapid, and
-    by each thread pass. Nothing behind ``stop`` is read before it has been carried out, so that a program
-    that asks inputs asks them at their time.
+    before and behind each thread pass, which is the thread and what pulls out of it.
+    Nothing behind ``stop`` is read before it has been carried out, so that a program that asks inputs asks
+    them at their time.
     """
 
     def __init__(self, source: Pass, check: Callable[[Block], None]) -> None:
@@ -39,7 +40,7 @@ class BlockFeed:
         self._check = check
         self._said = 0
         self._new_speed = False
-        self._threading = False
+        self._pass = 0  # blocks of the thread pass that is being read
         self.pending: deque[Block] = deque()
         self.seconds = 0.0  # what the pending blocks take at least
         self.stop: Block | None = None
@@ -59,7 +60,7 @@ class BlockFeed:
     def pull(self, blocks: int, seconds: float) -> None:
         """Read on until so many blocks were read or so many seconds are pending, pull-outs of threads too."""
         for _ in range(blocks):
-            if self.dry or (self.seconds >= seconds and not self._threading):
+            if self.dry or (self.seconds >= seconds and not self._pass):
                 return
             block = self._next()
             if block is not None:
@@ -77,8 +78,8 @@ class BlockFeed:
         block, self.stop = self.stop, None
         if block is None or block.action is not None:
             return
-        self._new_speed = False
-        self._threading = block.kind is Kind.THREAD
+        self._new_speed = self._new_speed and not needs_speed(block)
+        self._pass = int(block.kind is Kind.THREAD)
         self._append(block)
 
     def _next(self) -> Block | None:
@@ -110,19 +111,23 @@ class BlockFeed:
             return
         if block.action is not None:
             self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
-            self._threading = False
             self.stop = block
-            return
-        entering = block.kind is Kind.THREAD and not self._threading
-        if entering or (self._new_speed and needs_speed(block)):
+        elif self._pass == 1 and _pulls_out(block):
+            self._pass = 2
+            self._append(block)
+        elif self._pass or block.kind is Kind.THREAD or (self._new_speed and needs_speed(block)):
             self.stop = block
-            return
-        self._threading = block.kind is Kind.THREAD
-        self._append(block)
+        else:
+            self._append(block)
 
     def _append(self, block: Block) -> None:
         self.pending.append(block)
         self.seconds += nominal(block)
+
+
+def _pulls_out(block: Block) -> bool:
+    """Behind a thread: its pull-out, or a rapid straight out."""
+    return block.kind is Kind.THREAD or (block.kind is Kind.RAPID and block.z == block.z0)
 
 
 def nominal(block: Block) -> float:

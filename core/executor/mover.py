@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from enum import Enum
 
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed
 from core.executor.player import Player
 from core.executor.stretch import Scales
-from core.executor.thread_sync import index_start
 from core.interpreter.blocks import Block, Kind
 
 
@@ -43,17 +41,20 @@ class Mover:
         return self.player.block(self._bench.now)
 
     def begin(self, blocks: list[Block]) -> None:
-        """A new stretch, from rest; a thread begins at the spindle's index."""
-        self.player.begin(blocks, self._bench.spindle.highest)
+        """A new stretch, from rest; a thread pass is tied to the spindle."""
         self._single_from = None
-        self.go(start=index_start(self._bench) if blocks[0].kind is Kind.THREAD else None)
+        if blocks[0].kind is Kind.THREAD:
+            self.player.begin_pass(blocks, self._bench.spindle.turns)
+        else:
+            self.player.begin(blocks, self._bench.spindle.highest)
+        self.go()
 
     def go_on(self, behind: Block | None) -> None:
         """From rest within the stretch; with single block to the end of the block after ``behind``."""
         self._single_from = behind.n + 1 if behind else None
         self.go()
 
-    def go(self, *, soon: bool = True, start: Callable[[float], float] | None = None) -> None:
+    def go(self, *, soon: bool = True) -> None:
         """Plan on from the present state. Raises MotionError and DriverError."""
         bench, player = self._bench, self.player
         self._scales = self.wanted()
@@ -61,7 +62,7 @@ class Mover:
         last = self._last_block() if self._single else None
         if not self._single:
             self._single_from = None
-        player.go(self._scales, last, soon=soon, start=start)
+        player.go(self._scales, last, soon=soon)
 
     def progress(self, feed: BlockFeed) -> Progress:
         """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
@@ -105,3 +106,5 @@ class Mover:
             player.add(feed.take())
             self.go(soon=False)
         player.extend(now)
+        if player.out_of_step:
+            self._bench.say("thread", "the spindle changed its speed faster than the slides could follow")

@@ -6,19 +6,19 @@ comes back. Hold, override and single block are the same act: plan from the pres
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 from core.executor.stretch import Scales, Stretch
+from core.executor.thread_pass import ThreadPass
 from core.executor.tracks import Track, Tracks
+from core.executor.turns import Turns
 from core.interpreter.blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.plan import plan
 from core.motion.profile import Profile
 from core.ports import AxisSink, DriverError, Segments
-
-Moment = Callable[[float], float]
 
 _AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 _SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
@@ -37,6 +37,7 @@ class Player:
         self._cost = 0.0  # s that planning took of late
         self._stretch: Stretch | None = None
         self._profile: Profile | None = None
+        self._pass: ThreadPass | None = None  # instead of a stretch
         self._origin = 0.0
         self._queued_to = 0.0  # end of the plan's part in the queue; behind it lies the tail
         self._tracks = Tracks()
@@ -45,16 +46,25 @@ class Player:
     @property
     def active(self) -> bool:
         """Whether there is a stretch at all."""
-        return self._stretch is not None
+        return self._stretch is not None or self._pass is not None
+
+    @property
+    def out_of_step(self) -> bool:
+        """Whether a thread pass has just lost the spindle by more than a hundredth of its lead; said once."""
+        return self._pass is not None and self._pass.lost_step()
 
     @property
     def planned_to(self) -> float:
         """When the present plan comes to rest."""
+        if self._pass is not None:
+            return self._pass.end
         return self._origin + (self._profile.duration if self._profile else 0.0)
 
     @property
     def starving(self) -> float:
         """When the tail begins although the plan goes on; endless when the whole plan is queued."""
+        if self._pass is not None:
+            return np.inf
         return self._queued_to if self._queued_to < self.planned_to - 1e-9 else np.inf
 
     def begin(self, blocks: Iterable[Block], rpm_max: float) -> None:
@@ -63,6 +73,15 @@ class Player:
         self._stretch = Stretch(self._limits, rpm_max)
         self._stretch.add(blocks)
 
+    def begin_pass(self, blocks: Sequence[Block], turns: Turns) -> None:
+        """A thread pass: it follows the spindle, so overrides, holds and single blocks act at its end.
+
+        Raises TroubleError without a turning spindle, DriverError.
+        """
+        self.forget()
+        self._pass = ThreadPass(self._axes, self._limits, turns, blocks)
+        self._pass.begin()
+
     def add(self, blocks: Iterable[Block]) -> None:
         """More of the stretch; planned with the next ``go``."""
         assert self._stretch is not None
@@ -70,20 +89,17 @@ class Player:
 
     def forget(self) -> None:
         """The stretch is over, or nothing of it holds any more."""
-        self._stretch, self._profile, self._shown = None, None, None
+        self._stretch, self._profile, self._shown, self._pass = None, None, None, None
         self._tracks.clear()
         self._origin = self._queued_to = 0.0
 
-    def go(
-        self, scales: Scales, last: int | None = None, *, soon: bool = True, start: Moment | None = None
-    ) -> None:
+    def go(self, scales: Scales, last: int | None = None, *, soon: bool = True) -> None:
         """Plan on from the present state and splice. ``last``: the block at whose end to stop.
 
         ``soon`` takes effect as soon as the queue allows; without it what is queued stays and the plan goes
-        on behind it. ``start`` says for the earliest moment possible when to begin. Raises MotionError and
-        DriverError.
+        on behind it. Raises MotionError and DriverError.
         """
-        self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon, start=start)
+        self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon)
 
     def hold(self, scales: Scales) -> None:
         """Come to rest as soon as the path allows, in a thread behind its pull-out."""
@@ -91,6 +107,8 @@ class Player:
 
     def brake(self) -> None:
         """Come to rest at once on the path, thread or not."""
+        if self._pass is not None:
+            self._pass.brake()
         self._resplice(lambda t: self._plan_stop(t, None), soon=True)
 
     def let_stop(self) -> None:
@@ -102,6 +120,8 @@ class Player:
 
     def extend(self, now: float) -> bool:
         """Keep the queue filled from the present plan; False when it is too late for that."""
+        if self._pass is not None:
+            self._pass.track()
         if self._profile is None or self._queued_to - now >= self._lookahead or self.starving == np.inf:
             return True
         at = self._queued_to
@@ -112,6 +132,8 @@ class Player:
 
     def settle_at(self, last: int | None, now: float) -> int | None:
         """The first block at or after ``last`` at whose end the slides can still come to rest."""
+        if self._pass is not None:
+            return self._pass.blocks[-1].n
         assert self._stretch is not None
         if self._tracks.last is None:
             return self._stretch.stoppable(last, -np.inf)
@@ -124,6 +146,8 @@ class Player:
 
     def complete(self) -> bool:
         """Whether what is queued ends where the stretch does."""
+        if self._pass is not None:
+            return self._pass.complete
         track = self._tracks.last
         if self._stretch is None or not self._stretch.length:
             return True
@@ -131,6 +155,8 @@ class Player:
 
     def block(self, now: float) -> Block | None:
         """The block being played, not one planned ahead."""
+        if self._pass is not None:
+            return self._pass.block(now)
         if self._stretch is None:
             return None
         track = self._tracks.at(now)
@@ -140,10 +166,15 @@ class Player:
 
     def following(self) -> Block | None:
         """The block behind the one being played, when it belongs to the stretch."""
+        if self._pass is not None:
+            behind = self.behind(self._pass.block(self._axes.now()))
+            return behind[0] if behind else None
         return self._stretch.block(self._shown.n + 1) if self._stretch and self._shown else None
 
     def behind(self, block: Block) -> list[Block]:
         """Blocks of the stretch that come after this one."""
+        if self._pass is not None:
+            return [each for each in self._pass.blocks if each.n > block.n]
         return self._stretch.behind(block.n) if self._stretch else []
 
     def _lead(self, now: float) -> float:
@@ -172,14 +203,15 @@ class Player:
             return plan(self._stretch.path(Scales(0.0, 0.0, scales.turn), None), start_s=s, start_v=v)
         return plan(path, start_s=s, start_v=v, stop=True)
 
-    def _resplice(self, make: Callable[[float], Profile], *, soon: bool, start: Moment | None = None) -> None:
+    def _resplice(self, make: Callable[[float], Profile], *, soon: bool) -> None:
         """Plan for a moment that can still be changed, and splice; again, later, when that took too long."""
+        if self._pass is not None:
+            return
         for attempt in range(_TRIES):
             began = self._axes.now()
             t = self._lead(began) + attempt * _PATIENCE
             if not soon:
                 t = max(t, min(self._queued_to, self.planned_to - _SETTLED))
-            t = start(t) if start else t
             profile = make(t)
             try:
                 self._queue(t, t, profile)

@@ -20,9 +20,7 @@ class Retreat:
         self._bench = bench
         self._player = player
         self._block = block
-        here = block.mx
-        backs = [b.mx for b in player.behind(block) if b.kind is Kind.RAPID and abs(b.mx - here) > _THERE]
-        self._x = backs[0] if backs else block.x0 + block.offset_x
+        self._x = [block, *player.behind(block)][-1].mx  # where the pass would have pulled out to
         player.brake()
 
     def step(self) -> None:

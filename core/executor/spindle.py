@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from core.executor.alarms import TroubleError
+from core.executor.turns import Turns
 from core.geometry.spindle import surface_rpm
 from core.interpreter.blocks import Block
 from core.machine.model import SpindleModel
@@ -41,6 +42,7 @@ class SpindleControl:
         self.limit: float | None = None  # F10, until restart
         self.command = 0.0  # signed rpm as sent
         self.measured = 0.0
+        self.turns = Turns()
         self.override = 1.0
         self.auto = True
         self._ask: Ask | None = None
@@ -97,6 +99,10 @@ class SpindleControl:
         self._ask, self.command = None, 0.0
         self._coasting = True
         self._port.coast()
+
+    def look(self) -> None:
+        """First thing in a tick: read the encoder."""
+        self.turns.note(self._port.angle())
 
     def update(self, now: float, radius: float) -> None:
         """Once a tick: send what has changed, and see what the drive does.

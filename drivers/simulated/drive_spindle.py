@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -14,6 +15,8 @@ class SpindleFaults:
 
     bog: float = 1.0  # fraction of the commanded speed that the motor reaches
     ignores_stop: bool = False
+    wander: float = 0.0  # fraction by which the speed swings about what it ought to be
+    wander_period: float = 2.0  # s
     fault: str = ""
 
 
@@ -23,12 +26,19 @@ class SpindleMotor:
     def __init__(self, config: SimSpindle) -> None:
         self.config = config
         self.faults = SpindleFaults()
-        self.speed = 0.0
+        self._even = 0.0  # rpm, without wander
         self.turns = 0.0
         self.t = 0.0
         self._target = 0.0
         self._coasting = False
         self._orders: deque[tuple[float, float, bool]] = deque()
+
+    @property
+    def speed(self) -> float:
+        """rpm, signed."""
+        faults = self.faults
+        swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
+        return self._even * (1.0 + faults.wander * swing)
 
     def order(self, now: float, rpm: float, coast: bool = False) -> None:
         """A command that the inverter obeys after its latency."""
@@ -54,20 +64,26 @@ class SpindleMotor:
 
     def _ramp(self, dt: float) -> None:
         """Towards the target for ``dt`` seconds, then on at its speed."""
-        faults = self.faults
+        faults, t = self.faults, self.t
         target = 0.0 if faults.fault else self._target * faults.bog
         while dt > 0.0:
-            braking = self.speed * target <= 0.0 < abs(self.speed) or abs(target) < abs(self.speed)
+            braking = self._even * target <= 0.0 < abs(self._even) or abs(target) < abs(self._even)
             rate = self.config.decel if braking else self.config.accel
             if braking and (self._coasting or faults.fault):
                 rate = self.config.coast
-            goal = 0.0 if self.speed * target < 0.0 else target
-            used = min(dt, abs(goal - self.speed) / rate)
-            before = self.speed
+            goal = 0.0 if self._even * target < 0.0 else target
+            used = min(dt, abs(goal - self._even) / rate)
+            before = self._even
             reached = used < dt
-            self.speed = goal if reached else before + (rate if goal > before else -rate) * used
-            self.turns += 0.5 * (before + self.speed) / 60.0 * used
-            dt -= used
+            self._even = goal if reached else before + (rate if goal > before else -rate) * used
+            self.turns += 0.5 * (before + self._even) / 60.0 * (used + self._swung(t, used))
+            dt, t = dt - used, t + used
             if reached and goal == target:
-                self.turns += self.speed / 60.0 * dt
+                self.turns += self._even / 60.0 * (dt + self._swung(t, dt))
                 return
+
+    def _swung(self, t: float, dt: float) -> float:
+        """What wander makes of ``dt`` seconds from ``t`` on, as seconds at an even speed."""
+        faults = self.faults
+        rate = 2.0 * math.pi / faults.wander_period
+        return faults.wander * (math.cos(rate * t) - math.cos(rate * (t + dt))) / rate

@@ -103,6 +103,13 @@ class SimMachine:
             self._plant.advance()
             self._plant.spindle.faults.bog = fraction
 
+    def spindle_wander(self, fraction: float, period: float = 2.0) -> None:
+        """The speed swings by this fraction about what is commanded, once in ``period`` seconds."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.wander = fraction
+            self._plant.spindle.faults.wander_period = period
+
     def spindle_ignores_stop(self, on: bool = True) -> None:
         """The inverter no longer obeys when asked to slow down."""
         with self._plant.lock:
@@ -138,6 +145,12 @@ class SimMachine:
         with self._plant.lock:
             self._plant.advance()
             return tuple(servo.p for servo in self._plant.servos)
+
+    def spindle_turns(self) -> float:
+        """How many turns the spindle has really made, signed."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.turns
 
     def spindle_rpm(self) -> float:
         """How fast the spindle really turns."""

@@ -1,0 +1,194 @@
+"""One thread pass, tied to the measured angle of the spindle and planned anew every tick.
+
+The slide is in step when s = lead · (turns - index): s along Z from the start of the pass, turns as the
+encoder counts them. So every pass enters at the same angle, whatever the speed. The queue always holds the
+whole pass, pull-out and rest included, as the spindle is expected to turn; each tick corrects that from a
+commit ahead on.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from core.executor.alarms import TroubleError
+from core.executor.thread_way import Phases, Way
+from core.executor.turns import Turns
+from core.interpreter.blocks import Block
+from core.motion.limits import MotionLimits
+from core.ports import AxisSink, DriverError, Segments
+
+_BLEND = 0.01  # s in which a deviation is taken out
+_LONGEST = 0.16  # s; a deviation that takes more is no wander
+_EARLY = 0.03  # s between the first plan and the start, in which the start can still be corrected
+_SHARE = 0.7  # of the acceleration for running up: the rest corrects
+_AT_START = 1e-6  # mm
+_ALLOWED = 0.01  # of a lead, between setpoints and spindle
+
+
+class ThreadPass:
+    """Blocks of one pass: the thread, and behind it its pull-out or the rapid straight out.
+
+    Raises TroubleError where the spindle does not turn or has no encoder.
+    """
+
+    def __init__(self, axes: AxisSink, limits: MotionLimits, turns: Turns, blocks: Sequence[Block]) -> None:
+        self._axes = axes
+        self._turns = turns
+        self._way = Way.of(blocks, limits)
+        self.blocks = tuple(blocks)
+        self._index = 0.0  # turns, unsigned, at which s = 0 is in step
+        self._sign = 1.0
+        self._begins = 0.0, 0.0  # when the running up begins, and the speed it leads to
+        self._leaves = math.inf  # when the thread itself ends
+        self._ends = math.inf
+        self._cost = 0.0
+        self._stopped = False
+        self._told = False
+        self._free = False  # too near its end for another plan
+        self.worst = 0.0  # deviation from the spindle in step, leads
+
+    @property
+    def end(self) -> float:
+        """When the pass comes to rest as planned now."""
+        return self._ends
+
+    @property
+    def complete(self) -> bool:
+        """Whether what is queued is the whole pass."""
+        return not self._stopped
+
+    def block(self, now: float) -> Block:
+        """The block being played."""
+        return self.blocks[-1] if now >= self._leaves else self.blocks[0]
+
+    def begin(self) -> None:
+        """Choose the index and queue the pass from rest."""
+        now = self._axes.now()
+        turns, speed = self._state(now)
+        v = self._lead * speed
+        earliest = now + self._axes.commit + _EARLY + 0.5 * v / self._ramp
+        self._index = math.ceil(turns + speed * (earliest - now) - 1e-9)
+        self._queue(self._lead_time(now))
+
+    def track(self) -> None:
+        """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""
+        now = self._axes.now()
+        self._measure(now)
+        if self._stopped or self._free or now >= self._leaves:
+            return
+        try:
+            self._queue(self._lead_time(now))
+        except DriverError:
+            if self._axes.now() + self._axes.commit <= self._lead_time(now):
+                raise
+            self._cost = 2.0 * max(self._axes.now() - now, 1e-3)  # came too late: what is queued goes on
+        else:
+            self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
+
+    def lost_step(self) -> bool:
+        """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
+        told, self._told = self._told, self.worst > _ALLOWED
+        return self._told and not told
+
+    def brake(self) -> None:
+        """Come to rest along the thread; a pass that is already leaving it is left alone."""
+        t = self._lead_time(self._axes.now())
+        s, v = self._demand(t)
+        if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._way.a >= self._way.length:
+            return
+        self._axes.splice(self._way.stopping(t, s, v))
+        self._stopped, self._ends, self._leaves = True, t + v / self._way.a, math.inf
+
+    def _queue(self, t: float) -> None:
+        s, v = self._demand(t)
+        lead_in = self._run_up(t) if s <= _AT_START and v <= 0.0 else None
+        if lead_in is None:
+            lead_in = self._blend(t, s, v)
+        if lead_in is None:
+            return
+        segments, leaves = self._way.onwards(t, s, v, lead_in)
+        self._axes.splice(segments)
+        self._leaves, self._ends = leaves, _end(segments)
+
+    def _run_up(self, t: float) -> Phases | None:
+        """From rest: wait, then accelerate onto the line; None where the start is past already."""
+        starts, v = self._begins = self._start()
+        if starts < t:
+            return None
+        return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
+
+    def _blend(self, t: float, s: float, v: float) -> Phases | None:
+        """Two accelerations that lead onto the line; None where the thread leaves no room for that."""
+        way, time = self._way, _BLEND
+        while time <= _LONGEST:
+            goal, speed, rest = self._target(t + time)
+            if goal >= way.full_depth(speed):
+                self._free = True
+                return None
+            half = 0.5 * time
+            gain, ahead = (speed - v) / half, (goal - s - v * time) / (half * half)
+            first, second = ahead - 0.5 * gain, 1.5 * gain - ahead
+            if max(abs(first), abs(second)) <= way.a:
+                return [(half, first), (half, second), *rest]
+            time *= 2.0
+        return None
+
+    def _target(self, t: float) -> tuple[float, float, Phases]:
+        """Where the slide ought to be at ``t`` and how fast, and the rest of its running up."""
+        starts, v = self._begins
+        into = t - starts
+        if into * self._ramp < v:
+            into = max(into, 0.0)
+            left = (v / self._ramp) - into
+            return 0.5 * self._ramp * into * into, self._ramp * into, [(left, self._ramp)]
+        turns, speed = self._state(t)
+        return self._lead * (turns - self._index), self._lead * speed, []
+
+    def _start(self) -> tuple[float, float]:
+        """When to begin to be in step behind the ramp, and the speed it leads to.
+
+        Half the ramp before the index: a slide that speeds up from rest lags behind one that moves by
+        v²/2a, which it must have begun v/2a earlier.
+        """
+        at = self._axes.now()
+        for _ in range(3):
+            turns, speed = self._state(at)
+            at += (self._index - turns) / speed
+        return at - 0.5 * self._lead * speed / self._ramp, self._lead * speed
+
+    def _state(self, t: float) -> tuple[float, float]:
+        """Turns and turns per second at ``t``, both counted in the direction in which the spindle turns."""
+        state = self._turns.at(t)
+        if state is None or state[1] == 0.0:
+            raise TroubleError("program", "a thread needs a turning spindle with an encoder")
+        if self._index == 0.0:
+            self._sign = math.copysign(1.0, state[1])
+        return self._sign * state[0], self._sign * state[1]
+
+    def _measure(self, now: float) -> None:
+        """How far the setpoints are from the spindle, in leads, once the slide is up to speed."""
+        s, v = self._demand(now)
+        turns, speed = self._state(now)
+        if self._stopped or now >= self._leaves or v < 0.9 * self._lead * speed:
+            return
+        self.worst = max(self.worst, abs(s / self._lead - (turns - self._index)))
+
+    def _demand(self, t: float) -> tuple[float, float]:
+        (_, z, _), (_, v, _) = self._axes.demand_at(t)
+        return self._way.place(z, v)
+
+    def _lead_time(self, now: float) -> float:
+        return now + self._axes.commit + 1.5 * self._cost
+
+    @property
+    def _lead(self) -> float:
+        return self._way.lead
+
+    @property
+    def _ramp(self) -> float:
+        return _SHARE * self._way.a
+
+
+def _end(segments: Segments) -> float:
+    return float(segments.t[-1] + segments.dt[-1])
