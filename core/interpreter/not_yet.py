@@ -13,8 +13,6 @@ from core.language.omniturn.words import Word
 G_CODES: dict[int, str] = {
     **dict.fromkeys((40, 41, 42), "nose radius compensation"),
     **dict.fromkeys((75, 78), "cycles"),
-    **dict.fromkeys((33, 34), "threading"),
-    **dict.fromkeys((35, 36), "coarse feeds"),
     89: "spindle positioning",
 }
 M_CODES: dict[int, str] = dict.fromkeys((19, 89), "spindle positioning")
@@ -47,8 +45,8 @@ def not_yet(number: int, words: Sequence[Word], comment: str | None) -> Diagnost
 
 
 def _takes_corner_letters(word: Word) -> bool:
-    """G02, G03 and G83 have an R of their own, G83 and M97 a C."""
-    return (word.letter == "G" and word.value in {2, 3, 83}) or (word.letter == "M" and word.value == 97)
+    """G02, G03 and G83 have an R of their own, G33, G83 and M97 a C."""
+    return (word.letter == "G" and word.value in {2, 3, 33, 83}) or (word.letter == "M" and word.value == 97)
 
 
 def _refusal(line: int, column: int, text: str, what: str) -> Diagnostic:
