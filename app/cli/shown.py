@@ -90,6 +90,8 @@ def report_json(file: str, report: Report) -> Json:
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
     """One elementary block with the keys and units of interfaces.md; keys that do not apply are null."""
     arc = block.kind == "arc"
+    circular = arc or block.kind == "plane-arc"
+    turned = block.kind == "rotate"  # its speed is rpm
     feed = per_minute(block.feed) if not block.per_rev else inches(block.feed)
     return {
         "n": block.n,
@@ -104,11 +106,27 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
         "mz": inches(block.mz),
         "cx": inches(block.cx) if arc else None,
         "cz": inches(block.cz) if arc else None,
-        "dir": ("cw" if block.clockwise else "ccw") if arc else None,
-        "feed": feed,
-        "feed_mode": "ipr" if block.per_rev else "ipm",
+        "dir": ("cw" if block.clockwise else "ccw") if circular else None,
+        **_plane_json(block),
+        "feed": None if turned else feed,
+        "feed_mode": None if turned else "ipr" if block.per_rev else "ipm",
         "rpm": round(block.rpm, 6) + 0.0,
         "css": None if block.css is None else round(block.css / MM_S_PER_FT_MIN, 6),
         "t0": seconds(t0),
         "t1": seconds(t1),
+    }
+
+
+def _plane_json(block: Block) -> Json:
+    """End and centre of a block in the virtual mill's frame; on the side of the part its Z is a diameter."""
+    way = block.plane
+    if way is None:
+        return dict.fromkeys(("px", "py", "pz", "pcx", "pcy"))
+    x, y, z = way.end
+    return {
+        "px": inches(x),
+        "py": inches(y),
+        "pz": inches(2 * z if way.on_side else z),
+        "pcx": None if way.centre is None else inches(way.centre[0]),
+        "pcy": None if way.centre is None else inches(way.centre[1]),
     }

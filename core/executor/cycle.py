@@ -230,7 +230,7 @@ class Cycle:
             self._bench.say("stop", "spindle lost in a thread")
             self._retreat = Retreat(self._bench, self._player, block)
             self._change(State.HOLDING)
-        elif block.per_rev:
+        elif block.per_rev and not block.modal.c_locked:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
 
     def _show(self, block: Block) -> None:

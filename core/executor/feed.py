@@ -135,6 +135,8 @@ def nominal(block: Block) -> float:
     if block.kind is Kind.ARC:
         ends = (block.x0, block.z0), (block.x, block.z)
         way = arc_length(*ends, (block.cx, block.cz), clockwise=block.clockwise)
+    elif block.plane is not None:
+        way = block.plane.length
     else:
         way = math.hypot(block.x - block.x0, block.z - block.z0)
     way = way or abs(block.c - block.c0)

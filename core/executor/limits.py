@@ -16,7 +16,9 @@ def check_block(block: Block, machine: Machine) -> None:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
-    if block.kind is Kind.ARC:
+    if block.plane is not None:
+        low_x, high_x, low_z, high_z = block.plane_box(block.plane)
+    elif block.kind is Kind.ARC:
         low_x, high_x, low_z, high_z = arc_extent(
             block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
         )

@@ -41,7 +41,7 @@ class Publisher:
             actual=_three(bench.sample.actual),
             following_error=_three(bench.sample.following_error),
             homed=(bench.sample.homed[0], bench.sample.homed[1], bench.sample.homed[2]),
-            block_end=(block.mx, block.mz, block.c) if block else _three(bench.sample.demand),
+            block_end=(block.mx, block.mz, block.mc) if block else _three(bench.sample.demand),
             offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
             modal=modal,
             velocity=self._measured(bench.sample),
@@ -88,6 +88,6 @@ def _three(values: tuple[float, ...]) -> tuple[float, float, float]:
 
 def _feed(block: Block | None, modal: Modal) -> float:
     """Programmed: of the block where it moves, otherwise what is in force."""
-    if block is not None and block.moves:
+    if block is not None and block.moves and block.kind is not Kind.ROTATE:
         return block.feed
     return modal.feed or 0.0

@@ -111,7 +111,7 @@ class Stretch:
         if block.kind is Kind.THREAD:
             return scales.turn
         feed = max(scales.feed, 1.0) if n in self._protected else scales.feed
-        return feed * scales.turn if block.per_rev else feed
+        return feed * scales.turn if block.per_rev and not block.modal.c_locked else feed
 
 
 def _planned(block: Block) -> Block:

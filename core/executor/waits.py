@@ -14,6 +14,7 @@ from core.interpreter.actions import (
     Dwell,
     Output,
     RepeatOff,
+    SpindleLock,
     SpindleRun,
     SpindleStop,
     WaitInput,
@@ -83,6 +84,8 @@ def carry_out(block: Block, bench: Bench) -> Wait | None:
             _start_spindle(block, bench)
         case SpindleStop():
             bench.spindle.stop()
+        case SpindleLock():
+            return _lock_spindle(bench)
         case Coolant(on=on):
             bench.ports.io.write("coolant", on)
         case Output(name=name, on=on):
@@ -106,6 +109,13 @@ def _start_spindle(block: Block, bench: Bench) -> None:
     if not open_allowed and not bench.inputs.get("collet_closed", True):
         raise TroubleError("collet-open", line=block.line)
     bench.spindle.ask(Ask.of(block))
+
+
+def _lock_spindle(bench: Bench) -> Wait:
+    """C may move once the spindle stands: until then its drive turns, and does not position."""
+    bench.spindle.stop()
+    limit = bench.machine.spindle.timeout
+    return Wait(lambda: "SPINDLE STOP", lambda _: bench.spindle.stopped, bench.now, limit, "ignores-stop")
 
 
 def _move_collet(closed: bool, bench: Bench) -> Wait:

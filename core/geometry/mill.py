@@ -49,6 +49,11 @@ class PlaneMove:
         return 0.0 if self.centre is None else math.dist(self.start[:2], self._settled())
 
     @property
+    def on_side(self) -> bool:
+        """Whether the mill stands on the side of the part."""
+        return isinstance(self.frame, Side)
+
+    @property
     def straight(self) -> bool:
         """Whether lathe axes too move in proportion to each other."""
         return self.centre is None and isinstance(self.frame, Side)

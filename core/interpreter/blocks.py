@@ -80,6 +80,12 @@ class Block:
         """Machine C of the end, degrees."""
         return self.c + self.modal.offset_c
 
+    def plane_box(self, way: PlaneMove) -> tuple[float, float, float, float]:
+        """Least and greatest x and z (program frame, mm) along the mill's way of this block."""
+        (low_x, low_z, _), (high_x, high_z, _) = (side.tolist() for side in way.reach())
+        x, z = self.modal.secondary_x, self.modal.secondary_z
+        return low_x + x, high_x + x, low_z + z, high_z + z
+
     @property
     def moves(self) -> bool:
         """Whether the slides or the C axis move in this block."""

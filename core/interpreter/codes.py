@@ -37,11 +37,12 @@ CONTOUR_CYCLES = frozenset({75, 78})
 CYCLES = CONTOUR_CYCLES | {74, 81, 83}
 
 WORDS: dict[int | None, frozenset[str]] = {
-    None: frozenset({"X", "Z", "F", "S", "T", "D"}),
+    None: frozenset({"X", "Z", "C", "CA", "CI", "F", "S", "T", "D"}),
     2: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
     3: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
     4: frozenset({"F", "S", "T", "D"}),
     10: frozenset({"X", "Z", "F", "S", "T", "D"}),
+    89: frozenset({"S"}),
     92: frozenset({"X", "Z", "F", "S", "T", "D"}),
     33: frozenset({"X", "Z", "I", "K", "A", "C", "P", "O", "F", "S", "T", "D"}),
     34: frozenset({"Z", "I", "K", "A", "P", "F", "S", "T", "D"}),

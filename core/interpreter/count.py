@@ -120,7 +120,7 @@ def _sum(a: Count, b: Count) -> Count:
 def blocks_of(made: Statement) -> int:
     """Elementary blocks that a line makes at most; of a cycle, at least."""
     if made.flow:
-        return 0
+        return 1 if made.plane is not None and {"X", "Y", "Z", "G"}.intersection(made.plane.words) else 0
     acts = ("T" in made.words) + (made.one_shot in codes.FRAME) + (made.m is not None)
     speaks = "S" in made.words and made.m not in {3, 4} and not {76, 77}.intersection(made.modal)
     return acts + speaks + (made.moves or made.one_shot == 4) + _LEAST_OF_CYCLE.get(made.one_shot or 0, 0)

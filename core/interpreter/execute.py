@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from core.interpreter import codes
 from core.interpreter.actions import Dwell
 from core.interpreter.arcs import arc_move
+from core.interpreter.arrival import note_dwell
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import coarse_line
 from core.interpreter.cycles import cycle_blocks
@@ -14,6 +15,8 @@ from core.interpreter.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.log import refusal
 from core.interpreter.mcodes import after_motion, before_motion
 from core.interpreter.moves import statement_move
+from core.interpreter.not_yet import corner_not_yet
+from core.interpreter.positioning import c_move, lock, positions
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
 from core.interpreter.statement import Statement, Step
@@ -44,7 +47,9 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
         state.adopt(state.modal._replace(comment=made.comment))
     feed_words(state, made, first=first)
     spindle_modes(state, made)
-    speed_word(state, made)
+    of_c = positions(state, made)
+    if not of_c:
+        speed_word(state, made)
     tool = made.words.get("T")
     if tool is not None:
         yield tool_change(state, made, tool, use)
@@ -52,17 +57,24 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
         secondary(state, made)
     if made.one_shot in codes.FRAME:
         yield frame(state, made)
-    spindle = run_block(state, made)
+    spindle = None if of_c else run_block(state, made)
     if spindle is not None:
         yield spindle
     warn_of_crash_feed(state, made, ahead)
-    if made.m is not None:
-        block = before_motion(state, made)
-        if block is not None:
-            yield block
+    yield from _start(state, made)
     yield from _motion(state, made)
     if made.m is not None:
         block = after_motion(state, made)
+        if block is not None:
+            yield block
+
+
+def _start(state: State, made: Statement) -> Iterator[Block]:
+    """What an M code does before the motion, M03 and M04 apart."""
+    if made.locks:
+        yield from lock(state, made)
+    elif made.m is not None:
+        block = before_motion(state, made)
         if block is not None:
             yield block
 
@@ -76,7 +88,11 @@ def _motion(state: State, made: Statement) -> Iterator[Block]:
         yield from thread_blocks(state, made)
     elif made.one_shot == 4:
         yield _dwell(state, made)
+    elif made.turns and (state.modal.c_locked or not made.moves or "C" not in made.words):
+        yield from c_move(state, made)
     elif made.moves:
+        if "C" in made.words:
+            raise ProgramError(corner_not_yet(made.line, made.words["C"]))
         yield statement_move(state, made)
 
 
@@ -104,4 +120,5 @@ def _dwell(state: State, made: Statement) -> Block:
     if not _SHORTEST_DWELL <= seconds <= _LONGEST_DWELL:
         text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
         raise ProgramError(refusal(made.line, made.column("F"), "dwell-range", text, "Correct F."))
+    note_dwell(state, seconds)
     return state.action(made.line, made.part("move"), Dwell(seconds), rpm_at(state, state.x))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from core.interpreter import units
+from core.interpreter.arrival import warn_of_short_dwell
 from core.interpreter.log import refusal
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import HIGH_FEED, State
@@ -117,6 +118,8 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
 
     Raises ProgramError with code feed-missing, spindle-stopped or feed-over-speed.
     """
+    if state.turning is not None:
+        warn_of_short_dwell(state)
     modal = state.modal
     if modal.rapid:
         return

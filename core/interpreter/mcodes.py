@@ -13,6 +13,7 @@ from core.interpreter.actions import (
     RepeatOff,
     WaitInput,
 )
+from core.interpreter.arrival import warn_of_short_dwell
 from core.interpreter.blocks import Block
 from core.interpreter.log import refusal
 from core.interpreter.modal import Modal
@@ -102,6 +103,7 @@ def _output(state: State, made: Statement, name: str, on: bool) -> Block:
 
 def _end(state: State, made: Statement, *, reset: bool) -> Block:
     """The state of power-up, but for units, the tool's frame and, after M02, the M functions."""
+    warn_of_short_dwell(state)
     old = state.modal
     state.stay(
         Modal(
@@ -118,6 +120,7 @@ def _end(state: State, made: Statement, *, reset: bool) -> Block:
             coolant=old.coolant and not reset,
             outputs=frozenset() if reset else old.outputs,
             comment=old.comment,
+            offset_c=old.offset_c,
         )
     )
     return _done(state, made, ProgramEnd(reset=reset))

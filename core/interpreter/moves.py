@@ -117,6 +117,19 @@ def on_step(state: State, made: Statement, letter: str) -> float | None:
     return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
 
 
+def mill_step(state: State, line: int, word: Word) -> float:
+    """A length of plane switching in mm, as written: never halved, rounded to the control's step."""
+    value = word.value or 0.0
+    step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
+    count = value / step
+    whole = copysign(floor(abs(count) + 0.5 + _WHOLE), count)
+    if abs(count - whole) > max(_WHOLE, abs(count) * 1e-12):
+        value = whole * step
+        text = f"{word.text} is finer than the step; {value:.5f} is used."
+        state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
+    return value * state.scale_z
+
+
 def rounded(state: State, line: int, text: str, x: float | None, z: float | None) -> PlainMove:
     """X and Z of a line on the control's step, with a warning for each word that was not."""
     new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)

@@ -13,25 +13,18 @@ from core.language.omniturn.words import Word
 G_CODES: dict[int, str] = {
     **dict.fromkeys((40, 41, 42), "nose radius compensation"),
     **dict.fromkeys((75, 78), "cycles"),
-    89: "spindle positioning",
 }
-M_CODES: dict[int, str] = dict.fromkeys((19, 89), "spindle positioning")
-WORDS: dict[str, str] = {"RF": "cycles", "CA": "spindle positioning", "CI": "spindle positioning"}
-CORNERS: dict[str, str] = {"C": "corners and spindle positioning", "R": "corners"}
-"""Words on a line without a one-shot code."""
-COMMENTS: tuple[str, ...] = ("~PLXC", "~PLZC")
+WORDS: dict[str, str] = {"RF": "cycles"}
+CORNERS: dict[str, str] = {"R": "corners"}
+"""Words on a line without a one-shot code; C too, where it does not turn a locked spindle."""
 
 
-def not_yet(number: int, words: Sequence[Word], comment: str | None) -> Diagnostic | None:
+def not_yet(number: int, words: Sequence[Word]) -> Diagnostic | None:
     """The refusal for a line with these words, or None where all of them can run."""
-    if comment is not None and comment.strip().upper() in COMMENTS:
-        return _refusal(number, 1, f"({comment.strip().upper()})", "plane switching")
     corner: tuple[int, str, str] | None = None
     for letter, value, column, text in words:
         if letter == "G":
             what = G_CODES.get(int(value or 0))
-        elif letter == "M":
-            what = M_CODES.get(int(value or 0))
         elif letter in CORNERS:
             corner = corner or (column, text, CORNERS[letter])
             continue
@@ -47,6 +40,11 @@ def not_yet(number: int, words: Sequence[Word], comment: str | None) -> Diagnost
 def _takes_corner_letters(word: Word) -> bool:
     """G02, G03 and G83 have an R of their own, G33, G83 and M97 a C."""
     return (word.letter == "G" and word.value in {2, 3, 33, 83}) or (word.letter == "M" and word.value == 97)
+
+
+def corner_not_yet(made_line: int, word: Word) -> Diagnostic:
+    """The refusal for a C that is a corner: the spindle is not locked."""
+    return _refusal(made_line, word.column, word.text, "corners")
 
 
 def _refusal(line: int, column: int, text: str, what: str) -> Diagnostic:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
 from core.interpreter import codes
 from core.interpreter.plain import read_move
 from core.interpreter.reading import statement, unreadable
-from core.interpreter.statement import Statement, Step
+from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
 from core.interpreter.structure import Structure, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
+from core.language.omniturn.plane import PlaneLine, ends_program, lex_plane, plane_entry
 from core.language.source import Source
 
 _MOST_PROBLEMS = 100
-_PLANE_END = re.compile(r"\s*\(\s*END\s*\)\s*", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,33 +47,56 @@ class _Reader:
         self.steps: list[Step] = []
         self.statements: list[Statement] = []
         self.problems: list[Diagnostic] = []
-        self._in_plane = False
+        self._plane = 0  # line of a (~PL..) whose (END) is still to come
 
     def read(self) -> None:
         append = self.steps.append
         for text in self.source.lines:
             move = read_move(text)
-            append(self._statement(text) if move is None else move)
+            append(self._statement(text) if move is None or self._plane else move)
+        if self._plane:
+            self._plane_open(self._plane)
 
     def _statement(self, text: str) -> Statement | None:
         number = len(self.steps) + 1
         if not text or text.isspace():
             self.style.tell("blank-line", number)
             return None
+        if self._plane and ends_program(text):
+            self._plane_open(number)
+        entry = plane_entry(text)
+        if entry is not None or self._plane:
+            return self._in_plane(number, text, entry)
         line = lex_line(number, text)
-        if self._in_plane:
-            self._in_plane = _PLANE_END.fullmatch(text) is None
-            return None
         self.problems.extend(line.errors)
         try:
             made = statement(line)
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
-            self._in_plane = problem.diagnostic.code == "not-yet" and not line.words
             made = unreadable(line)
         self.style.look_at(line, made)
         self.statements.append(made)
         return made
+
+    def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
+        """A line from the entry to (END), both included."""
+        made = Statement(number, text.strip(), flow=PLANE)
+        try:
+            made.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
+        except ProgramError as problem:
+            self.problems.append(problem.diagnostic)
+            made.flow = UNREADABLE
+        if made.plane is not None and made.plane.name:
+            self._plane = 0 if made.plane.name == "END" else number
+        self.statements.append(made)
+        return made
+
+    def _plane_open(self, number: int) -> None:
+        text = f"Plane switching on line {self._plane} has no (END)."
+        self.problems.append(
+            Diagnostic(number, 1, Severity.ERROR, "plane-open", text, "Write (END) alone on a line.")
+        )
+        self._plane = 0
 
 
 def read_program(source: Source, strict: bool = False) -> Program:

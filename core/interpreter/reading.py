@@ -17,9 +17,16 @@ def statement(line: Line) -> Statement:
     if line.errors:
         return unreadable(line)
     made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
-    refusal = not_yet(line.number, line.words, line.comment)
+    refusal = not_yet(line.number, line.words)
     if refusal is not None:
         raise ProgramError(refusal)
+    if line.comment is not None and line.comment.lstrip().startswith("~"):
+        what = f"({line.comment.strip()})"
+        message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
+        place = line.comment_column
+        raise ProgramError(
+            Diagnostic(line.number, place, Severity.ERROR, "plane-entry", message, "Write it alone.")
+        )
     _sort(made, line)
     if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
         made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
@@ -142,7 +149,7 @@ def _name_parts(made: Statement, line: Line) -> None:
         name = _group(made, word)
         groups[name] = groups.get(name, "") + word.text
     own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
-    if made.moves or made.one_shot == 4 or made.one_shot in codes.CYCLES | codes.THREADS:
+    if made.moves or made.turns or made.one_shot == 4 or made.one_shot in codes.CYCLES | codes.THREADS:
         own.append("move")
     if len(own) > 1:
         if "move" not in own and "move" in groups:
@@ -158,8 +165,8 @@ def _group(made: Statement, word: Word) -> str:
         return "frame"
     if letter == "M":
         return "spindle" if made.m in {3, 4} else "m"
-    if letter == "S" and not {76, 77}.intersection(made.modal):
-        return "spindle"
+    if letter == "S" and not {76, 77}.intersection(made.modal) and not made.turns:
+        return "m" if made.locks else "spindle"
     return "move"
 
 

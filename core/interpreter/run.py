@@ -16,12 +16,13 @@ from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
 from core.interpreter.moves import fast_move, go, on_step, plain_move
 from core.interpreter.plain import plain
+from core.interpreter.plane import plane_line
 from core.interpreter.program import Program
 from core.interpreter.reading import statement
 from core.interpreter.setup import Setup
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
-from core.interpreter.statement import UNREADABLE, Statement, Step
+from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.omniturn import lex_line
@@ -120,6 +121,8 @@ class Interpreter:
             self._arrive(made)
         elif made.flow in codes.CALLS:
             yield from self._call(made)
+        elif made.flow == PLANE:
+            yield from plane_line(self._state, made)
         elif made.flow:
             self._flow.steer(made)
         else:

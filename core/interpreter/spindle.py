@@ -97,6 +97,11 @@ def run_block(state: State, made: Statement) -> Block | None:
 
 def _check_start(state: State, made: Statement) -> None:
     modal, column = state.modal, made.m_word.column if made.m_word else 0
+    if modal.c_locked:
+        message = f"M{made.m:02d} starts the spindle, which is locked as the axis C."
+        raise ProgramError(
+            refusal(made.line, column, "spindle-locked", message, "Release it with M05 first.")
+        )
     if not (modal.surface_speed if modal.css else modal.rpm):
         message = f"M{made.m:02d} starts the spindle and no S has said how fast."
         raise ProgramError(refusal(made.line, column, "speed-missing", message, "Write S on the line."))
@@ -107,5 +112,5 @@ def _check_start(state: State, made: Statement) -> None:
 
 def stop_block(state: State, made: Statement) -> Block:
     """M05."""
-    state.adopt(state.modal._replace(spindle=0))
+    state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
     return state.action(made.line, made.part("m"), SpindleStop(), 0.0)

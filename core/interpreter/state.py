@@ -46,6 +46,7 @@ class State:
         "title_rapid",
         "told",
         "tool_line",
+        "turning",
         "x",
         "z",
     )  # fmt: skip
@@ -61,6 +62,7 @@ class State:
         self.title_rapid = 0  # line of a G00 (TITLE) after which no F has come
         self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
         self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
+        self.turning: tuple[int, int, float] | None = None  # line, column, s that C still needs to arrive
         self.told: set[str] = set()  # errors that would otherwise repeat on every move
         self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         self.derive()

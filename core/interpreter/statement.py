@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from core.interpreter import codes
 from core.language.omniturn import Word
+from core.language.omniturn.plane import PlaneLine
 
 PlainMove = tuple[float | None, float | None]
 """X and Z as written of a line that holds nothing else: most lines of a long program."""
@@ -13,7 +14,9 @@ PlainMove = tuple[float | None, float | None]
 CodedMove = tuple[float | None, float | None, bool, int, float | None]
 """X, Z, whether one of them has a fifth decimal, 0 or 1 for G00 or G01 (-1: none), F; all as written."""
 
+_C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE = "unreadable"
+PLANE = "plane"
 
 
 @dataclass(slots=True)
@@ -28,11 +31,12 @@ class Statement:
     m: int | None = None
     code: Word | None = None  # the one-shot word
     m_word: Word | None = None
-    flow: str = ""  # a key of FLOW_WORDS, or UNREADABLE
+    flow: str = ""  # a key of FLOW_WORDS, UNREADABLE, or PLANE
     comment: str | None = None
     block_delete: bool = False
     parts: dict[str, str] | None = None
     simple: bool = False  # nothing but a move, its feed and G00…G03
+    plane: PlaneLine | None = None  # a line of plane switching
 
     @property
     def moves(self) -> bool:
@@ -40,6 +44,16 @@ class Statement:
         return self.one_shot in codes.ARCS or (
             self.one_shot is None and ("X" in self.words or "Z" in self.words)
         )
+
+    @property
+    def turns(self) -> bool:
+        """Whether the line holds C, which turns the spindle where that is locked."""
+        return self.one_shot is None and not _C_WORDS.isdisjoint(self.words)
+
+    @property
+    def locks(self) -> bool:
+        """Whether the line makes the spindle the axis C."""
+        return self.one_shot == 89 or self.m in codes.M_POSITIONING
 
     @property
     def executable(self) -> bool:

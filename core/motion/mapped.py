@@ -55,7 +55,9 @@ def chords(move: PlaneMove, rate: float, limits: MotionLimits) -> FloatArray:
     Chords leave the way by CHORD_ERROR at most, measured on the part, and neighbours differ so little that
     their joint does not hold the feed ``rate`` (mm/s) up, unless the way itself has a corner there.
     """
-    share = np.unique(np.append(np.linspace(0.0, 1.0, _FIRST + 1), move.nearest()))
+    share, nearest = np.linspace(0.0, 1.0, _FIRST + 1), move.nearest()
+    if np.abs(share - nearest).min() > _ROUNDING:
+        share = np.sort(np.append(share, nearest))
     for _ in range(_HALVINGS):
         wide = _leaves(move, share) | _jerks(move, share, OVERRIDE_MAX * rate, limits)
         if not wide.any():

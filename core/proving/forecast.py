@@ -92,6 +92,11 @@ class SpindleForecast:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
+    def still_at(self, below: float) -> float:
+        """When a spindle that was told to stop turns slower than ``below`` rpm; the past where it stands."""
+        over = abs(self._from) - below
+        return self._since + over / self._model.decel if over > 0.0 else 0.0
+
     def ready_at(self) -> float:
         """When the speed will have been within the at-speed band for as long as the machine file asks."""
         rpm, t = self._from, self._since

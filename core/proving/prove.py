@@ -91,5 +91,5 @@ class _Proof:
             missing_tools=tuple(sorted(interpreter.missing_tools)),
             reach=tally.reach,
             final=(end.x, end.z, end.c) if end else timeline.start,
-            machine_final=(end.mx, end.mz, end.c) if end else timeline.start,
+            machine_final=(end.mx, end.mz, end.mc) if end else timeline.start,
         )

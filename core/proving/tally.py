@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry.extent import arc_extent, arc_sweep
+from core.geometry.mill import PlaneMove
 from core.interpreter.blocks import Block, Kind
 from core.proving.report import Range, Reach
 
@@ -53,11 +54,17 @@ class Tally:
         for index, block in enumerate(blocks):
             if block.kind is Kind.ARC:
                 length[index] = self._arc(block)
+            elif block.plane is not None:
+                length[index] = self._plane(block, block.plane)
         self.rapid_length += float(length[rapid].sum())
         self.cutting_length += float(length[~rapid].sum())
         for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
             span.see(float(table[:, column].min()), float(table[:, column].max()))
-        self._speeds(table)
+        turned = np.array([b.kind is Kind.ROTATE for b in blocks])
+        by_c = turned | np.array([b.modal.c_locked for b in blocks])
+        if not turned.all():
+            self._feeds(table[~turned])
+        self._turning(table[~by_c])
 
     def _arc(self, block: Block) -> float:
         box = arc_extent(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
@@ -66,10 +73,22 @@ class Tally:
         _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
 
-    def _speeds(self, table: npt.NDArray[np.float64]) -> None:
+    def _plane(self, block: Block, way: PlaneMove) -> float:
+        box = block.plane_box(way)
+        self.x.see(box[0], box[1])
+        self.z.see(box[2], box[3])
+        low, high = way.reach()
+        self.c.see(float(low[2]), float(high[2]))
+        return way.length
+
+    def _feeds(self, table: npt.NDArray[np.float64]) -> None:
         rpm = np.abs(table[:, 5])
         path_speed = np.where(table[:, 7] > 0, table[:, 6] * rpm / 60, table[:, 6])
         self.feed.see(float(path_speed.min()), float(path_speed.max()))
+
+    def _turning(self, table: npt.NDArray[np.float64]) -> None:
+        """Speeds of the spindle as such; C has its own."""
+        rpm = np.abs(table[:, 5])
         turning = rpm[rpm > 0]
         if turning.size:
             self.rpm.see(float(turning.min()), float(turning.max()))

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleRun, SpindleStop
+from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.program import Program, read_program
 from core.interpreter.run import Interpreter
@@ -179,7 +179,9 @@ class Timeline:
         if isinstance(action, SpindleRun):
             self.spindle.command(self.t, block.rpm)
             self._speed_wanted = True
-        elif isinstance(action, SpindleStop) or (isinstance(action, ProgramEnd) and action.reset):
+        elif isinstance(action, SpindleStop | SpindleLock) or (
+            isinstance(action, ProgramEnd) and action.reset
+        ):
             self.spindle.command(self.t, 0.0)
             self._speed_wanted = False
 
@@ -187,6 +189,8 @@ class Timeline:
         timing = self._machine.timing
         if isinstance(action, Dwell):
             return action.seconds
+        if isinstance(action, SpindleLock):
+            return max(0.0, self.spindle.still_at(self._machine.spindle.stop_below) - self.t)
         if isinstance(action, Collet):
             return timing.collet_close if action.closed else timing.collet_open
         return 0.0

@@ -37,10 +37,13 @@ def _reachable(axis: Axis) -> tuple[float, float]:
 
 def _machine_box(block: Block) -> tuple[float, float, float, float]:
     """What a block reaches beyond its start, which the block before has answered for."""
+    x, z = block.offset_x, block.offset_z
+    if block.plane is not None:
+        low_x, high_x, low_z, high_z = block.plane_box(block.plane)
+        return low_x + x, high_x + x, low_z + z, high_z + z
     if block.kind is not Kind.ARC:
         mx, mz = block.x + block.offset_x, block.z + block.offset_z
         return mx, mx, mz, mz
-    x, z = block.offset_x, block.offset_z
     box = arc_extent(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
     return box[0] + x, box[1] + x, box[2] + z, box[3] + z
 

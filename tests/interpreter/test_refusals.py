@@ -112,12 +112,9 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("G75I.05",), (3, 1, "not-yet")),
     (("G33X1Z1K.05PCO",), (3, 1, "thread-depth")),
     (("G35F2",), (3, 1, "coarse-preset")),
-    (("M19",), (3, 1, "not-yet")),
-    (("M89",), (3, 1, "not-yet")),
-    (("G89",), (3, 1, "not-yet")),
-    (("CA90",), (3, 1, "not-yet")),
+    (("CA90",), (3, 1, "c-unlocked")),
     (("RF",), (3, 1, "not-yet")),
-    (("(~PLXC)", "(x1y2)", "(END)"), (3, 1, "not-yet")),
+    (("(~PLXC)", "(x1y2)", "(END)"), (3, 1, "c-unlocked")),
 ]
 
 
