@@ -80,4 +80,5 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     try:
         return load_source(path)
     except SourceError as error:
-        raise CommandError(str(error)) from error
+        # The screen calls a program by its name; a script that proves many needs the folder too.
+        raise CommandError(str(error).replace(path.name, str(path), 1)) from error

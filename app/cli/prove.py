@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.errors import EXIT_ERRORS, EXIT_OK
+from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from app.cli.options import Circumstances, add_program_options, circumstances, read_source
 from app.cli.progress import Progress
 
@@ -25,10 +25,18 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove each file; 1 when any has errors."""
+    """Prove each file; 1 when any has errors, 2 when one cannot be read."""
     around = circumstances(args)
-    reports = [_prove(Path(name), around, args) for name in args.files]
-    return EXIT_ERRORS if any(report.errors for report in reports) else EXIT_OK
+    return max(_status(Path(name), around, args) for name in args.files)
+
+
+def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
+    """Prove one file; one that cannot be read does not keep the others from their proof."""
+    try:
+        return EXIT_ERRORS if _prove(path, around, args).errors else EXIT_OK
+    except CommandError as error:
+        sys.stderr.write(f"turndesk: {error}\n")
+        return EXIT_USAGE
 
 
 def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:

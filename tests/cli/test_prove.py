@@ -64,6 +64,16 @@ def test_several_files_give_a_line_each_and_the_worst_status(
     assert finding["hint"]
 
 
+def test_a_file_that_cannot_be_read_does_not_keep_the_others_from_their_proof(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    good = written(tmp_path, HEAD + "X.5Z.1\nM30\n")
+    told = turndesk("prove", tmp_path / "none.nc", good, "--offsets", offsets, "--json")
+    assert told.status == 2
+    assert [each["file"] for each in told.lines] == [str(good)]
+    assert told.err == f"turndesk: {tmp_path / 'none.nc'} cannot be read: No such file or directory.\n"
+
+
 def test_travel_beyond_the_soft_limit_names_line_axis_and_overrun(
     turndesk: Turndesk, tmp_path: Path, offsets: Path
 ) -> None:
