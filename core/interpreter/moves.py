@@ -45,7 +45,8 @@ def fast_move(state: State, line: int, text: str, step: PlainMove) -> Block:
 
 def plain_move(state: State, line: int, text: str, step: PlainMove) -> Block:
     """A line of X and Z alone, with every check."""
-    x, z = step
+    # Four decimals lie on every step but a coarse one.
+    x, z = rounded(state, line, text, *step) if state.modal.coarse else step
     return line_to(
         state,
         line,
