@@ -62,7 +62,7 @@ class Journal:
         return self._opened().load_program(name, version)
 
     def keep_version(self, name: str, text: bytes, why: str) -> int:
-        """Another version; its number once it is on the disk. Raises StoreError; not for the screen's thread."""
+        """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
         return self._opened().save_program(name, text, why).result()
 
     def _opened(self) -> Store:

@@ -10,6 +10,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
@@ -29,6 +30,9 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import Event, Snapshot, State
+
+if TYPE_CHECKING:
+    from app.desk.editing.editor import Editor
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
 SILENT = "CONTROL SILENT"
@@ -63,6 +67,7 @@ class Desk:
     shut: Callable[[], None] = _nothing
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
+    editor: Editor | None = None
     readout: Readout = Readout.POSITION
     notice: str = ""
     hands: StationHands = field(init=False)
@@ -242,6 +247,8 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
+        if self.editor is not None:
+            self.editor.close()
         self.shut()
 
     def hear(self, event: Event) -> None:

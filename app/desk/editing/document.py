@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.shelf import ENDINGS
-from core.language.source import load_source
+from core.language.source import SourceError, load_source
 from core.store.errors import StoreError
 from core.store.programs import check_name
 
@@ -44,10 +44,20 @@ class Document:
 
 def opened(path: Path, samples: Path) -> Document:
     """The document of a file. Raises SourceError with a sentence when it holds no program text."""
-    text = load_source(path).text
+    text = _text(path)
     line_end = _DOS if _DOS in text else "\n"
     protected = path.resolve().is_relative_to(samples.resolve())
     return Document(path, text.replace(_DOS, "\n").replace("\r", "\n"), line_end, protected)
+
+
+def _text(path: Path) -> str:
+    """An empty file is no program to run, but one to write."""
+    try:
+        return load_source(path).text
+    except SourceError as error:
+        if error.diagnostic.code == "file-empty":
+            return ""
+        raise
 
 
 def created(folder: Path, typed: str) -> Document:

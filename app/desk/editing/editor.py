@@ -44,6 +44,7 @@ class Editor:
     notice: str = ""
     text_number: int = 0  # counts texts put into the field from here: opened, created, restored
     text: str = ""  # the last of them
+    restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
     checker: Checker = field(init=False)
     worker: Worker = field(default_factory=Worker)
@@ -108,8 +109,9 @@ class Editor:
         self._shut()
         self.notice = why
 
-    def _put(self, text: str) -> None:
-        self.text, self.text_number = text, self.text_number + 1
+    def _put(self, text: str, *, restored: bool = False) -> None:
+        self.text, self.restored = text, restored
+        self.text_number += 1
 
     # --- writing -------------------------------------------------------------------------------------
 
@@ -129,7 +131,7 @@ class Editor:
 
     def restore(self, text: str, number: int) -> None:
         """An older version takes the place of the text, as one step that can be undone."""
-        self._put(text)
+        self._put(text, restored=True)
         self.notice = words.RESTORED.format(number)
 
     def clear(self) -> None:
@@ -212,9 +214,11 @@ class Editor:
             self._not_saved(words.CHANGED_OUTSIDE.format(document.name))
             return
         self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
-        self.notice = words.NOT_KEPT.format(trouble) if trouble else f"{document.name} IS SAVED"
+        self.notice = words.NOT_KEPT.format(trouble) if trouble else ""
         if self._leaving:
             self._go(self.document)
+        elif not trouble:
+            self.notice = f"{document.name} IS SAVED"
 
     def _not_saved(self, why: str) -> None:
         self.stage, self.notice, self._leaving = Stage.OPEN, why, False

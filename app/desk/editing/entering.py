@@ -7,7 +7,11 @@ until the spindle stands.
 
 from __future__ import annotations
 
+from functools import partial
+from pathlib import Path
+
 from app.desk import prompts
+from app.desk.desk import Desk
 from app.desk.editing import words
 from app.desk.lamps import TURNING
 from core.executor.snapshot import Snapshot
@@ -22,3 +26,35 @@ def refusal(snapshot: Snapshot) -> str:
     if snapshot.rpm_command:
         return words.SPINDLE_ON
     return words.COASTING if abs(snapshot.rpm_actual) > TURNING else ""
+
+
+def enter(desk: Desk, typed: str = "") -> bool:
+    """Go into the editor: with the program of a typed name, or else with that on the desk.
+
+    A name that no program has is offered as a new file. False when it is refused; the desk says why.
+    """
+    editor = desk.editor
+    if editor is None:
+        desk.later("F3")
+        return False
+    why = refusal(desk.snapshot())
+    name, now = typed.strip(), desk.session.now
+    path = desk.shelf.find(name) if name else now.path
+    if why or not (name or path):
+        desk.say(why or words.NO_PROGRAM)
+        return False
+    desk.clear()
+    editor.left = partial(_reload, desk)
+    if path is None:
+        editor.offer(name)
+    else:
+        editor.open(path, now.block_delete)
+    return True
+
+
+def _reload(desk: Desk, path: Path) -> None:
+    """What was edited becomes the program on the desk, read and proved anew."""
+    if desk.snapshot().state in UNDER_WAY:
+        desk.say(words.RUNS_OLD)  # somebody started a cycle at the station meanwhile
+    else:
+        desk.session.load(path, desk.session.now.block_delete)

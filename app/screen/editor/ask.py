@@ -1,0 +1,91 @@
+"""The line that asks: what to find and by what to replace it, where to go, what name to save under."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, QRectF
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QLineEdit, QWidget
+
+from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+
+LABEL = 15.0  # units before a field
+ANSWER = 34.0  # units for what is said of the entry
+
+
+class AskLine(Panel):
+    """One or two fields with their labels, and at the right what is to be said of the entry."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, keys: QObject, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.first, self.second = QLineEdit(self), QLineEdit(self)
+        self._labels: tuple[str, ...] = ("",)
+        self.answer = ""
+        for edit in (self.first, self.second):
+            edit.setMaxLength(250)
+            edit.installEventFilter(keys)
+        self.hide()
+
+    def ask(self, *labels: str, entry: str | None = None) -> None:
+        """Come up with the keyboard; what was entered last time is marked to be typed over."""
+        self._labels = labels
+        self.answer = ""
+        if entry is not None:
+            self.first.setText(entry)
+        self.second.setVisible(len(labels) > 1)
+        self.show()
+        self._place()
+        self.first.setFocus()
+        self.first.selectAll()
+        self.update()
+
+    def say(self, answer: str) -> None:
+        """What is to be said of the entry."""
+        if answer != self.answer:
+            self.answer = answer
+            self.update()
+
+    def other_field(self) -> None:
+        """The keyboard to the other field."""
+        if len(self._labels) > 1:
+            (self.second if self.first.hasFocus() else self.first).setFocus()
+
+    def dress(self) -> None:
+        """Font and colours of the fields."""
+        look, u, colours = self.look, self.look.u, self.look.palette
+        border = max(1, round(0.2 * u))
+        for edit in (self.first, self.second):
+            edit.setFont(look.font(2.3, bold=True))
+            edit.setStyleSheet(
+                f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
+                f" border: {border}px solid {colours.accent}; padding-left: {round(0.6 * u)}px;"
+                f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
+            )
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The fields share what the labels leave."""
+        self._place()
+        self.dress()
+
+    def _place(self) -> None:
+        u = self.look.u
+        for edit, box in zip((self.first, self.second), self._boxes(), strict=False):
+            edit.setGeometry(box.adjusted(LABEL * u, 0.8 * u, 0, -0.8 * u).toRect())
+
+    def _boxes(self) -> list[QRectF]:
+        u, count = self.look.u, len(self._labels)
+        wide = (self.width() - (ANSWER + 2) * u) / count
+        return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        for label, box in zip(self._labels, self._boxes(), strict=True):
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(label, 1.8, (LABEL - 1) * u, bold=True))
+            put(painter, QRectF(box.x(), 0, (LABEL - 1) * u, box.height()), LEFT, label)
+        painter.setPen(look.colour("text"))
+        room = QRectF(self.width() - (ANSWER + 1) * u, 0, ANSWER * u, self.height())
+        painter.setFont(look.fit(self.answer, 1.9, room.width(), bold=True))
+        put(painter, room, RIGHT, self.answer)

@@ -1,0 +1,82 @@
+"""What each function key does in the editor, by what is going on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import StrEnum
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from app.screen.editor.page import EditorPage
+
+
+class Mode(StrEnum):
+    """What the keys are for."""
+
+    TEXT = "text"
+    FIND = "find"
+    GO_TO = "go to"
+    NAME = "name"
+    HISTORY = "history"
+    OFFER = "offer"
+
+
+class Doing(NamedTuple):
+    """A label of up to eight characters and what the key does."""
+
+    label: str
+    act: Callable[[], None]
+
+
+def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
+    """The function keys that mean something now."""
+    if mode is Mode.FIND:
+        return _finding(page)
+    if mode is Mode.HISTORY:
+        return _history(page)
+    if mode is Mode.OFFER:
+        return {1: Doing("CREATE", page.editor.create), 10: Doing("ABORT", page.editor.abort)}
+    if mode is Mode.TEXT:
+        return _text(page)
+    return {2: Doing("SAVE" if mode is Mode.NAME else "GO", page.take), 10: Doing("BACK", page.back)}
+
+
+def _text(page: EditorPage) -> dict[int, Doing]:
+    return {
+        2: Doing("SAVE", page.save),
+        3: Doing("LEAVE", page.leave),
+        4: Doing("FIND", page.ask_text),
+        5: Doing("GO TO", page.ask_line),
+        6: Doing("NEXT ERR", page.next_finding),
+        7: Doing("HISTORY", page.show_history),
+        8: Doing("UNDO", page.field.undo),
+        9: Doing("REDO", page.field.redo),
+        10: Doing("NO SAVE", page.abandon),
+    }
+
+
+def _finding(page: EditorPage) -> dict[int, Doing]:
+    finder = page.finder
+    return {
+        2: Doing("NEXT", partial(finder.step, 1)),
+        3: Doing("BEFORE", partial(finder.step, -1)),
+        4: Doing("REPLACE", finder.replace),
+        5: Doing("ALL", finder.replace_all),
+        6: Doing("WHOLE" if finder.whole else "PARTS", finder.other_width),
+        8: Doing("UNDO", page.field.undo),
+        9: Doing("REDO", page.field.redo),
+        10: Doing("BACK", page.back),
+    }
+
+
+def _history(page: EditorPage) -> dict[int, Doing]:
+    history, versions = page.history, page.versions
+    return {
+        2: Doing("RESTORE", page.restore),
+        4: Doing("NEWER", lambda: history.mark(history.marked - 1)),
+        5: Doing("OLDER", lambda: history.mark(history.marked + 1)),
+        6: Doing("UP", lambda: versions.look_at(-versions.lines)),
+        7: Doing("DOWN", lambda: versions.look_at(versions.lines)),
+        10: Doing("BACK", page.back),
+    }
