@@ -70,6 +70,7 @@ class Desk:
     editor: Editor | None = None
     readout: Readout = Readout.POSITION
     notice: str = ""
+    starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     _giving_up: bool = False
@@ -80,7 +81,9 @@ class Desk:
 
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
-        self.hands = StationHands(self.station, self.clock, self.say, self.clear, self._starting)
+        self.hands = StationHands(
+            self.station, self.clock, self.say, self.clear, self._starting, self._barred
+        )
 
     def look(self) -> tuple[Snapshot, View, Loaded]:
         """One snapshot, and what the page shows of it; called once a frame."""
@@ -93,13 +96,20 @@ class Desk:
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, self.session.now
 
-    def prompt(self, snapshot: Snapshot, loaded: Loaded) -> str:
-        """The prompt line: the answer to the last key, or else what can be done now."""
+    def prompt(self, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
+        """The prompt line: the answer to the last key, or else what can be done now.
+
+        ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
+        """
         if self._pulse.is_silent:
             return prompts.CONTROL_SILENT
         if self.notice and snapshot.state is not self._noticed_in:
             self.clear()
-        return self.notice or prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
+        if self.notice:
+            return self.notice
+        if page:
+            return prompts.alarm_of(snapshot) or page
+        return prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""
@@ -221,7 +231,9 @@ class Desk:
 
     def start_button(self) -> None:
         """Cycle start of a machine with one button."""
-        if not self.two_hand:
+        if self._barred():
+            self.say(self._barred())
+        elif not self.two_hand:
             self.clear()
             self.post(CycleStart())
 
@@ -239,6 +251,10 @@ class Desk:
             return
         wanted = stepped(self.snapshot().feed_override, steps)
         self.post(FeedOverride(max(0.0, min(OVERRIDE_MOST, wanted))))
+
+    def _barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        return "" if self.starts_here else prompts.NOT_HERE
 
     def _starting(self) -> None:
         """A start is tried: the same refusal again is worth saying again."""

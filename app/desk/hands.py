@@ -13,11 +13,16 @@ OVERRIDE_MOST = 1.5
 LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does not catch up with a jump
 
 
+def _free() -> str:
+    return ""
+
+
 @dataclass(slots=True)
 class StationHands:
     """What is held and where the knobs stand. Without a station (a real machine has its own) nothing happens.
 
-    ``say`` answers on the prompt line, ``clear`` takes an answer back, ``starting`` hears of both palms.
+    ``say`` answers on the prompt line, ``clear`` takes an answer back, ``starting`` hears of both palms;
+    ``barred`` tells why they start nothing now.
     """
 
     station: StationPanel | None
@@ -25,6 +30,7 @@ class StationHands:
     say: Callable[[str], None]
     clear: Callable[[], None]
     starting: Callable[[], None]
+    barred: Callable[[], str] = _free
     palms: Palms = field(default_factory=Palms)
     estop_pressed: bool = False
     spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
@@ -36,7 +42,9 @@ class StationHands:
         station = self.station
         if station is None:
             return
-        if down and side not in self.palms.down:
+        if down and self.barred():
+            self.say(self.barred())
+        elif down and side not in self.palms.down:
             self.clear()
             if self.palms.press(side, self.clock()):
                 self.starting()

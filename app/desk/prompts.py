@@ -17,6 +17,7 @@ NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
 ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
 CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW"
+NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 GIVE_UP = "PRESS R ONCE MORE TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
 HOW_TO_HOLD = "PRESS H FOR FEED HOLD"
 MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
@@ -39,6 +40,14 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
         State.HOME: "THE SLIDES ARE LOOKING FOR HOME",
     }
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
+
+
+def alarm_of(snapshot: Snapshot) -> str:
+    """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
+    if snapshot.state is State.FAULT and snapshot.alarms:
+        alarm = snapshot.alarms[-1]
+        return f"ALARM {alarm.number}: {alarm.text}: F7 LISTS IT, R ACKNOWLEDGES IT"
+    return "E-STOP: WHAT TO DO STANDS ON THE AUTOMATIC PAGE (F1, F2)" if snapshot.state is State.ESTOP else ""
 
 
 def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:

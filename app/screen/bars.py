@@ -13,19 +13,6 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 from app.screen.shapes import draw_sign
 
-KEY_LABELS = (
-    "MENU",
-    "FILE",
-    "EDIT",
-    "READOUT",
-    "FIT",
-    "SEARCHTO",
-    "ALARMS",
-    "TOOLS",
-    "SECCMP",
-    "SPECIAL",
-)
-
 
 class TitleLine(Panel):
     """Program of the desk, page, program name, machine state in words, clock."""
@@ -35,6 +22,7 @@ class TitleLine(Panel):
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._shown = ("", "STARTING", Tone.OFF, "", "")
+        self.page = ""
 
     @property
     def program(self) -> str:
@@ -46,6 +34,12 @@ class TitleLine(Panel):
         """The state in words."""
         return self._shown[1]
 
+    def show_page(self, page: str) -> None:
+        """The page that is in front."""
+        if page != self.page:
+            self.page = page
+            self.update()
+
     def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
         """What stands in the line."""
         if (program, state, tone, machine, clock) != self._shown:
@@ -56,12 +50,12 @@ class TitleLine(Panel):
         program, state, tone, machine, clock = self._shown
         look, u, high = self.look, self.look.u, self.height()
         painter.fillRect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), look.colour("frame"))
-        painter.setFont(look.font(2.2, bold=True))
+        painter.setFont(look.fit(self.page, 2.2, 24 * u, bold=True))
         painter.setPen(look.colour("accent"))
-        put(painter, QRectF(1.4 * u, 0, 24 * u, high), LEFT, "AUTOMATIC")
+        put(painter, QRectF(1.4 * u, 0, 24 * u, high), LEFT, self.page)
         painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(program, 2.4, 38 * u, bold=True))
-        put(painter, QRectF(20 * u, 0, 38 * u, high), LEFT, program or "NO PROGRAM")
+        painter.setFont(look.fit(program, 2.4, 31 * u, bold=True))
+        put(painter, QRectF(27 * u, 0, 31 * u, high), LEFT, program or "NO PROGRAM")
         self._draw_state(painter, state, tone)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.fit(machine, 1.8, 30 * u))
@@ -137,12 +131,21 @@ class FunctionKeys(Panel):
     def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
+        self.labels: tuple[str, ...] = ("",) * 10
+
+    def show_labels(self, labels: tuple[str, ...]) -> None:
+        """The labels of another page; an empty one is no key."""
+        if labels != self.labels:
+            self.labels = labels
+            self.update()
 
     def draw(self, painter: QPainter) -> None:
         look, u = self.look, self.look.u
         gap = 0.6 * u
-        wide = (self.width() + gap) / len(KEY_LABELS)
-        for number, label in enumerate(KEY_LABELS, 1):
+        wide = (self.width() + gap) / len(self.labels)
+        for number, label in enumerate(self.labels, 1):
+            if not label:
+                continue
             box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
             painter.fillRect(box, look.colour("key"))
             painter.setPen(look.colour("accent"))

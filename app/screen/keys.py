@@ -6,6 +6,7 @@ Bare arrows do nothing here: on the Jog page they move slides, and no page gives
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent
 
 Key = Qt.Key
 CTRL = Qt.KeyboardModifier.ControlModifier
@@ -58,3 +59,27 @@ def name_of(key: int, modifiers: Qt.KeyboardModifier) -> str:
     if key in _SIGNS:
         held &= ~SHIFT
     return NAMES.get((key, held), "")
+
+
+_TYPED = {
+    Key.Key_Return: "Enter",
+    Key.Key_Enter: "Enter",
+    Key.Key_Backspace: "Back",
+    Key.Key_Delete: "Delete",
+    Key.Key_Tab: "Tab",
+    Key.Key_Up: "Up",
+    Key.Key_Down: "Down",
+    Key.Key_PageUp: "Page up",
+    Key.Key_PageDown: "Page down",
+}
+TYPED_AGAIN = frozenset({"Back", "Up", "Down", "Page up", "Page down"})  # these may repeat by being held
+
+
+def typed_of(event: QKeyEvent) -> str:
+    """What a page may take as text: one character, or the name of an editing key; empty for anything else."""
+    held = event.modifiers() & (CTRL | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier)
+    if held:
+        return ""
+    name = _TYPED.get(Key(event.key()), "")
+    text = event.text()
+    return name or (text if len(text) == 1 and text.isprintable() else "")

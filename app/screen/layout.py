@@ -31,6 +31,14 @@ class Rect(NamedTuple):
         return self.y + self.h
 
 
+class LowPlaces(NamedTuple):
+    """Of a page with the readouts in one low row: that row, the lamps below it, the room of the page."""
+
+    head: Rect
+    strip: Rect
+    work: Rect
+
+
 class Places(NamedTuple):
     """The parts of the page; ``dock`` is empty on a machine with a real operator station."""
 
@@ -57,8 +65,8 @@ def unit(width: int, height: int) -> float:
 def places(width: int, height: int, dock: bool) -> Places:
     """Divide a window of this size."""
     u = unit(width, height)
-    gap = max(4, round(0.7 * u))
-    title_h, strip_h, prompt_h, keys_h, comment_h = (round(k * u) for k in (4.8, 6.0, 4.6, 6.6, 4.8))
+    gap = _gap(u)
+    title_h, strip_h, prompt_h, keys_h = (round(k * u) for k in (4.8, 6.0, 4.6, 6.6))
     top_h = round(27.2 * u)
     keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)
     prompt = Rect(gap, keys.y - gap - prompt_h, width - 2 * gap, prompt_h)
@@ -73,12 +81,39 @@ def places(width: int, height: int, dock: bool) -> Places:
     )
     strip = Rect(gap, position.bottom + gap, right - gap, strip_h)
     below = strip.bottom + gap
-    comment = Rect(gap, prompt.y - gap - comment_h, round(52 * u), comment_h)
-    listing = Rect(gap, below, comment.w, comment.y - gap - below)
-    path = Rect(listing.right + gap, below, right - listing.right - gap, prompt.y - gap - below)
+    work = Rect(gap, below, right - gap, prompt.y - gap - below)
+    listing, comment, path = work_parts(work, u)
     return Places(
         title, position, feed, spindle, tool, times, strip, listing, comment, path, station, prompt, keys
     )
+
+
+def work_parts(work: Rect, u: float) -> tuple[Rect, Rect, Rect]:
+    """Listing, comment and path in the room of the Automatic page."""
+    gap = _gap(u)
+    wide, comment_h = round(52 * u), round(4.8 * u)
+    listing = Rect(work.x, work.y, wide, work.h - comment_h - gap)
+    comment = Rect(work.x, work.bottom - comment_h, wide, comment_h)
+    return listing, comment, Rect(work.x + wide + gap, work.y, work.w - wide - gap, work.h)
+
+
+def work_of(at: Places) -> Rect:
+    """The room of the Automatic page."""
+    return Rect(at.listing.x, at.listing.y, at.path.right - at.listing.x, at.path.h)
+
+
+def low_places(width: int, height: int, dock: bool) -> LowPlaces:
+    """The same window with one low row of readouts; title, dock, prompt and keys stay where they are."""
+    at, u = places(width, height, dock), unit(width, height)
+    gap, wide = _gap(u), at.strip.w
+    head = Rect(at.strip.x, at.position.y, wide, round(6.6 * u))
+    strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
+    top = strip.bottom + gap
+    return LowPlaces(head, strip, Rect(head.x, top, wide, at.prompt.y - gap - top))
+
+
+def _gap(u: float) -> int:
+    return max(4, round(0.7 * u))
 
 
 def _quarters(whole: Rect, gap: int) -> tuple[Rect, Rect, Rect, Rect]:

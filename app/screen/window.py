@@ -10,11 +10,10 @@ from PySide6.QtGui import QCloseEvent, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import UNDER_WAY, Desk
-from app.desk.prompts import LATER
-from app.screen.keys import PALMS, REPEATING, name_of
+from app.screen.frame import Frame
+from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
 from app.screen.layout import LEAST
 from app.screen.look import Look, dress
-from app.screen.page import AutomaticPage
 from app.screen.theme import DARK, LIGHT
 
 FRAME_MS = 16  # at most 60 pictures a second
@@ -31,7 +30,7 @@ class MainWindow(QWidget):
         super().__init__()
         self._closed = closed
         self.look = look
-        self.page: AutomaticPage | None = None
+        self.frame: Frame | None = None
         self._keys: dict[str, Callable[[], None]] = {}
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -42,30 +41,29 @@ class MainWindow(QWidget):
 
     def open_desk(self, desk: Desk) -> None:
         """Put the desk on the screen and begin to poll it."""
-        self.page = AutomaticPage(self.look, desk, self.press, self)
-        self._keys = self._table(self.page, desk)
-        self.page.setGeometry(self.rect())
+        self.frame = Frame(self.look, desk, self.press, self)
+        self._keys = self._table(desk)
+        self.frame.setGeometry(self.rect())
         self.refresh()
-        self.page.show()
+        self.frame.show()
         self.setFocus()
         self._timer.start(FRAME_MS)
 
     def refresh(self) -> None:
         """Once a frame."""
-        if self.page is not None:
-            self.page.refresh()
+        if self.frame is not None:
+            self.frame.refresh()
 
     def press(self, key: str) -> None:
         """Do what a key does; fingers on the screen come here too."""
-        action = self._keys.get(key)
+        frame = self.frame
+        action = (frame.doings().get(key) if frame else None) or self._keys.get(key)
         if action is not None:
             action()
             self.refresh()
 
-    def _table(self, page: AutomaticPage, desk: Desk) -> dict[str, Callable[[], None]]:
+    def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
         return {
-            **{key: partial(desk.later, key) for key in LATER},
-            **page.doings(),
             "S": partial(desk.switch, "single_block"),
             "O": partial(desk.switch, "optional_stop"),
             "C": partial(desk.switch, "cycle_repeat"),
@@ -89,12 +87,12 @@ class MainWindow(QWidget):
         wanted = LIGHT if self.look.palette.name == DARK.name else DARK
         self.look.repaint(wanted)
         dress(wanted)
-        if self.page is not None:
-            self.page.dress()
+        if self.frame is not None:
+            self.frame.dress()
 
     def _escape(self) -> None:
-        if self.page is not None and not self.page.escape():
-            self.page.desk.escape()
+        if self.frame is not None and not self.frame.escape():
+            self.frame.desk.escape()
 
     def put_away(self) -> None:
         """Stop polling and go, without asking; for scripts that only look."""
@@ -106,15 +104,25 @@ class MainWindow(QWidget):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """A key goes down. A key that repeats by being held counts once, where once is what is meant."""
-        page = self.page
-        if page is None:
+        frame = self.frame
+        if frame is None:
             return
-        if not event.isAutoRepeat() and event.key() in PALMS and not page.files.isVisible():
+        if not event.isAutoRepeat() and event.key() in PALMS and not frame.automatic.files.isVisible():
             self._palm(PALMS[Qt.Key(event.key())], down=True)
+            return
+        if self._typed(frame, event):
             return
         name = name_of(event.key(), event.modifiers())
         if name and (name in REPEATING or not event.isAutoRepeat()):
             self.press(name)
+
+    def _typed(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether the page has taken the key as text."""
+        key = typed_of(event)
+        if not key or (event.isAutoRepeat() and key not in TYPED_AGAIN) or not frame.page.typed(key):
+            return False
+        self.refresh()
+        return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """A palm is let go."""
@@ -122,8 +130,8 @@ class MainWindow(QWidget):
             self._palm(PALMS[Qt.Key(event.key())], down=False)
 
     def _palm(self, side: str, *, down: bool) -> None:
-        if self.page is not None:
-            desk = self.page.desk
+        if self.frame is not None:
+            desk = self.frame.desk
             if desk.two_hand:
                 desk.hands.palm(side, down)
             elif down and side == "right":
@@ -138,21 +146,25 @@ class MainWindow(QWidget):
 
     def let_go(self) -> None:
         """Hands off everything that is held."""
-        if self.page is not None:
-            if self.page.dock is not None:
-                self.page.dock.let_go()
-            self.page.desk.hands.let_go()
+        if self.frame is not None:
+            if self.frame.dock is not None:
+                self.frame.dock.let_go()
+            self.frame.desk.hands.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """The page fills the window."""
-        if self.page is not None:
-            self.page.setGeometry(self.rect())
+        """The frame fills the window."""
+        if self.frame is not None:
+            self.frame.setGeometry(self.rect())
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Not while a program is under way."""
-        page = self.page
-        if page is not None and page.desk.snapshot().state in UNDER_WAY:
-            page.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
+        frame = self.frame
+        if frame is not None and frame.desk.snapshot().state in UNDER_WAY:
+            frame.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
+            self.refresh()
+            event.ignore()
+            return
+        if frame is not None and not frame.page.leave():
             self.refresh()
             event.ignore()
             return

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.desk.desk import Desk
+from app.screen.frame import Frame
 from app.screen.page import AutomaticPage
 from app.screen.window import MainWindow
 from core.executor.snapshot import State
@@ -31,9 +32,14 @@ class Hands:
 
     @property
     def page(self) -> AutomaticPage:
+        """The Automatic page."""
+        return self.frame.automatic
+
+    @property
+    def frame(self) -> Frame:
         """What he looks at."""
-        assert self.window.page is not None
-        return self.window.page
+        assert self.window.frame is not None
+        return self.window.frame
 
     def key(self, key: Key, modifier: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
         """Press and release one key."""
@@ -64,11 +70,11 @@ class Hands:
 
     def sees_state(self, state: State) -> None:
         """Wait for a state in the title line."""
-        self.sees(lambda: self.page.title.state == state.value)
+        self.sees(lambda: self.frame.title.state == state.value)
 
     def prompt(self) -> str:
         """The prompt line."""
-        return self.page.prompt.text
+        return self.frame.prompt.text
 
     def load(self, name: str) -> None:
         """Pick a program by its name and wait until it may start."""

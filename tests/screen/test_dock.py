@@ -14,7 +14,7 @@ from tests.screen.hands import Hands
 
 
 def dock_of(hands: Hands) -> StationDock:
-    dock = hands.page.dock
+    dock = hands.frame.dock
     assert dock is not None
     hands.window.move(-300, 0)  # the offscreen screen is 800 pixels wide, and touches beyond it are dropped
     dock.grab()  # drawing declares the controls

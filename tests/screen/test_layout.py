@@ -6,7 +6,7 @@ from itertools import combinations
 
 import pytest
 
-from app.screen.layout import LEAST, Rect, places, unit
+from app.screen.layout import LEAST, Rect, low_places, places, unit
 
 SIZES = [
     LEAST,
@@ -60,3 +60,13 @@ def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
 
 def test_without_a_dock_its_room_goes_to_the_path() -> None:
     assert places(1920, 1080, dock=False).path.w > places(1920, 1080, dock=True).path.w + 200
+
+
+@pytest.mark.parametrize("dock", [True, False])
+@pytest.mark.parametrize("size", SIZES)
+def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: bool) -> None:
+    at, low = places(*size, dock), low_places(*size, dock)
+    parts = [at.title, low.head, low.strip, low.work, at.prompt, at.keys, *([at.dock] if dock else [])]
+    for one, two in combinations(parts, 2):
+        assert apart(one, two), (one, two)
+    assert low.work.h >= 54 * unit(*size)

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.exceptions import capture_exceptions
 
 from app.desk.desk import Desk
+from app.screen.frame import Frame
 from app.screen.main import run_screen
-from app.screen.page import AutomaticPage
 from app.screen.window import MainWindow
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
@@ -56,7 +56,7 @@ def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
     def broken(_desk: Desk) -> None:
         raise KeyError("a figure that is not there")
 
-    monkeypatch.setattr(AutomaticPage, "toggle_log", broken)
+    monkeypatch.setattr(Frame, "toggle_log", broken)
 
     def press() -> None:
         (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())

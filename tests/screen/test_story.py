@@ -20,7 +20,7 @@ SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
     hands.load("bushing")
-    assert hands.page.title.program == "bushing.nc"
+    assert hands.frame.title.program == "bushing.nc"
     hands.both_palms()
     hands.sees_state(State.RUN)
     hands.sees(lambda: hands.machine.now.line > 4)
@@ -53,7 +53,7 @@ def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
     hands.both_palms()
     hands.sees(lambda: hands.machine.now.parts == 1)
     hands.sees_state(State.IDLE)
-    hands.sees(lambda: hands.page.times.value[0] == ("PARTS", "1"))
+    hands.sees(lambda: hands.frame.times.value[0] == ("PARTS", "1"))
 
 
 def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
@@ -62,10 +62,10 @@ def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
     hands.key(Key.Key_O)
     hands.both_palms()
     hands.sees_state(State.PROGRAM_STOP)
-    hands.sees(hands.page.notice.isVisible)
-    assert hands.page.notice.message == "GAUGE THE OUTSIDE AND CORRECT D1"
+    hands.sees(hands.frame.notice.isVisible)
+    assert hands.frame.notice.message == "GAUGE THE OUTSIDE AND CORRECT D1"
     hands.both_palms()
-    hands.sees(lambda: not hands.page.notice.isVisible())
+    hands.sees(lambda: not hands.frame.notice.isVisible())
 
 
 def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
@@ -146,15 +146,15 @@ def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
     hands.sees_state(State.FAULT)
     hands.both_palms()
     hands.sees(lambda: hands.prompt() == "NO START: AN ALARM STANDS")
-    assert hands.page.notice.isVisible()
+    assert hands.frame.notice.isVisible()
     hands.key(Key.Key_R)
     hands.sees_state(State.DISABLED)
-    assert not hands.page.notice.isVisible()
+    assert not hands.frame.notice.isVisible()
     hands.key(Key.Key_F7)
-    assert hands.page.log.isVisible()
-    assert [entry.alarm.code for entry in hands.page.log.entries] == ["following"]
+    assert hands.frame.log.isVisible()
+    assert [entry.alarm.code for entry in hands.frame.log.entries] == ["following"]
     hands.key(Key.Key_Escape)
-    assert not hands.page.log.isVisible()
+    assert not hands.frame.log.isVisible()
 
 
 def test_a_program_with_errors_is_shown_and_refused(
@@ -224,7 +224,7 @@ def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Ha
     assert hands.page.path.view == before
 
 
-@pytest.mark.parametrize("key", [Key.Key_F1, Key.Key_F3, Key.Key_F6, Key.Key_F8, Key.Key_F9, Key.Key_F10])
+@pytest.mark.parametrize("key", [Key.Key_F3, Key.Key_F6, Key.Key_F8, Key.Key_F9, Key.Key_F10])
 def test_pages_to_come_say_so(hands: Hands, key: Key) -> None:
     hands.key(key)
     assert hands.prompt().endswith("WITH A LATER VERSION")
@@ -250,7 +250,7 @@ def test_drives_off_asks_for_the_drives(hands: Hands) -> None:
 
 def test_readout_and_theme_change_by_key(hands: Hands) -> None:
     hands.key(Key.Key_F4)
-    hands.sees(lambda: hands.page.position.readout == "DISTANCE TO GO")
+    hands.sees(lambda: hands.frame.position.readout == "DISTANCE TO GO")
     hands.key(Key.Key_T)
     assert hands.window.look.palette.name == "light"
     hands.key(Key.Key_T)

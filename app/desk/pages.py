@@ -1,0 +1,37 @@
+"""The pages of the main window: names, the keys that open them, and what they are for. No Qt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
+TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One line of the main menu: the key there, the label of that key, the page and its use."""
+
+    key: str
+    label: str
+    name: str
+    use: str
+
+
+ENTRIES = (
+    Entry("F2", "AUTO", AUTOMATIC, "run programs"),
+    Entry("F3", "EDIT", EDITOR, "write and prove programs"),
+    Entry("F4", "MDI", MDI, "one line at a time"),
+    Entry("F5", "JOG", JOG, "move by hand, touch tools off"),
+    Entry("F8", "TOOLS", TOOLS, "T1…T32: position and nose radius"),
+    Entry("F9", "SECCMP", SECCMP, "D1…D32: corrections of wear and size"),
+    Entry("F10", "SPECIAL", SPECIAL, "speed limit, inputs and outputs, log"),
+)
+LATER = {
+    EDITOR: "THE EDITOR COMES WITH A LATER VERSION",
+    MDI: "MDI COMES WITH A LATER VERSION",
+    JOG: "JOG COMES WITH A LATER VERSION",
+    TOOLS: "THE TOOL OFFSET PAGE COMES WITH A LATER VERSION",
+    SECCMP: "THE SECONDARY OFFSET PAGE COMES WITH A LATER VERSION",
+    SPECIAL: "THE SPECIAL FUNCTIONS COME WITH A LATER VERSION",
+}

@@ -1,0 +1,101 @@
+"""What a page of the main window is, and where another one is plugged in.
+
+A page is a ``Page`` (a QWidget) that fills the room between the always visible parts: title, position, feed,
+spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug one in, add a line to
+``MAKERS`` in ``app.screen.maker``: the name it has in ``app.desk.pages``, and what makes it of a ``Host``.
+It is made when it is first opened. What a page gives:
+
+``NAME``      its name in ``app.desk.pages``; the title line shows it.
+``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
+``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
+``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
+              E, D, R, A and the pots work on every page, as does F1.
+``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
+              ``Page up``, ``Page down``; True when it was taken. A stock widget
+              that has the focus takes its keys by itself.
+``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
+``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
+``opened()``  it has come up; it may take the focus (the window has it otherwise).
+``leave()``   it is about to go, or the window is about to close; False keeps it (it then says why by
+              ``desk.say``).
+``escape()``  Esc; False when nothing was closed by it, then the desk holds or takes its question back.
+``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
+``dress()``   the colours have changed; painted parts are updated by the frame anyway.
+
+``host.go(name)`` opens another page, ``host.press(key)`` does what a key does (for fingers), and
+``host.desk`` is the model. Geometry: the frame sets it; lay out in ``resizeEvent``, in units of ``look.u``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from PySide6.QtWidgets import QWidget
+
+from app.desk.desk import Desk
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.screen.look import Look
+from core.executor.snapshot import Snapshot
+
+Doings = Mapping[str, Callable[[], None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """What the frame gives to its pages."""
+
+    look: Look
+    desk: Desk
+    press: Callable[[str], None]
+    go: Callable[[str], bool]
+    clear_away: Callable[[], None]  # close the log that lies over the page
+    there: Callable[[str], bool]  # whether there is a page of that name
+
+
+class Page(QWidget):
+    """A page that does nothing yet; see the module for what each part means."""
+
+    NAME: ClassVar[str]
+    LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
+    STARTS: ClassVar[bool] = False
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.host, self.look, self.desk = host, host.look, host.desk
+        self.hide()
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        return {}
+
+    def typed(self, _key: str) -> bool:
+        """Take a typed key; False leaves it to the window."""
+        return False
+
+    def prompt(self) -> str:
+        """Empty: the desk's standing prompt."""
+        return ""
+
+    def opens(self) -> bool:
+        """Whether it may come up now."""
+        return True
+
+    def opened(self) -> None:
+        """It is in front now."""
+
+    def leave(self) -> bool:
+        """Whether it may go."""
+        return True
+
+    def escape(self) -> bool:
+        """Whether Esc has closed something here."""
+        return False
+
+    def refresh(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
+        """Show this instant."""
+
+    def dress(self) -> None:
+        """Other colours are in force."""

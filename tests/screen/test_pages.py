@@ -1,0 +1,84 @@
+"""Pages by key and by finger; what starts where, and what stays in sight."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.desk import pages
+from app.desk.prompts import NOT_HERE
+from core.executor.commands import CycleStart, FeedHold
+from core.executor.snapshot import Alarm, State
+from tests.screen.hands import Hands, Key
+
+
+def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:
+    hands.key(Key.Key_F1)
+    assert hands.frame.page.NAME == pages.MENU
+    assert hands.frame.title.page == pages.MENU
+    assert hands.frame.keys.labels[1] == "AUTO"
+    hands.key(Key.Key_F2)
+    assert hands.frame.page is hands.page
+    assert hands.frame.keys.labels[1] == "FILE"
+    hands.key(Key.Key_F1)
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is hands.page
+
+
+@pytest.mark.parametrize("key", [Key.Key_F4, Key.Key_F5, Key.Key_F10])
+def test_the_menu_announces_what_is_not_there(hands: Hands, key: Key) -> None:
+    hands.key(Key.Key_F1)
+    hands.key(key)
+    assert hands.prompt().endswith("WITH A LATER VERSION")
+    assert hands.frame.page.NAME == pages.MENU
+
+
+def test_a_finger_opens_a_page_by_its_function_key(hands: Hands) -> None:
+    hands.key(Key.Key_F1)
+    bar = hands.frame.keys
+    hands.sees(lambda: bool(bar._places))
+    QTest.mouseClick(bar, Qt.MouseButton.LeftButton, pos=QPoint(bar.width() * 3 // 20, bar.height() // 2))
+    assert hands.frame.page is hands.page
+
+
+def test_no_cycle_starts_beside_the_automatic_page(hands: Hands) -> None:
+    hands.load("pin")
+    hands.key(Key.Key_F1)
+    hands.both_palms()
+    assert CycleStart() not in hands.machine.posted
+    assert hands.prompt() == NOT_HERE
+    hands.key(Key.Key_F2)
+    hands.both_palms()
+    assert CycleStart() in hands.machine.posted
+
+
+def test_hold_works_on_every_page_and_the_figures_stay(hands: Hands) -> None:
+    hands.load("pin")
+    hands.both_palms()
+    hands.key(Key.Key_F1)
+    hands.sees(lambda: hands.frame.head.view is not None and hands.machine.now.state is State.RUN)
+    assert hands.frame.head.isVisible()
+    assert not hands.frame.position.isVisible()
+    hands.key(Key.Key_H)
+    assert FeedHold() in hands.machine.posted
+    hands.sees_state(State.HOLD)
+
+
+def test_a_palm_held_while_the_page_changes_is_let_go(hands: Hands) -> None:
+    hands.load("pin")
+    hands.down(Key.Key_F11)
+    hands.key(Key.Key_F1)
+    assert hands.machine.palms == set()
+    hands.up(Key.Key_F11)
+
+
+def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
+    hands.key(Key.Key_F1)
+    hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
+    hands.sees(lambda: hands.prompt().startswith("ALARM 102: FOLLOWING ERROR"))
+    hands.key(Key.Key_F7)
+    assert hands.frame.log.isVisible()
+    hands.key(Key.Key_Escape)
+    assert not hands.frame.log.isVisible()
+    assert hands.frame.page.NAME == pages.MENU
