@@ -37,7 +37,7 @@ CONTOUR_CYCLES = frozenset({75, 78})
 CYCLES = CONTOUR_CYCLES | {74, 81, 83}
 
 WORDS: dict[int | None, frozenset[str]] = {
-    None: frozenset({"X", "Z", "C", "CA", "CI", "F", "S", "T", "D"}),
+    None: frozenset({"X", "Z", "C", "CA", "CI", "R", "F", "S", "T", "D"}),
     2: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
     3: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
     4: frozenset({"F", "S", "T", "D"}),

@@ -123,7 +123,18 @@ def blocks_of(made: Statement) -> int:
         return 1 if made.plane is not None and {"X", "Y", "Z", "G"}.intersection(made.plane.words) else 0
     acts = ("T" in made.words) + (made.one_shot in codes.FRAME) + (made.m is not None)
     speaks = "S" in made.words and made.m not in {3, 4} and not {76, 77}.intersection(made.modal)
-    return acts + speaks + (made.moves or made.one_shot == 4) + _LEAST_OF_CYCLE.get(made.one_shot or 0, 0)
+    return (
+        acts
+        + speaks
+        + corner_words(made)
+        + (made.moves or made.one_shot == 4)
+        + _LEAST_OF_CYCLE.get(made.one_shot or 0, 0)
+    )
+
+
+def corner_words(made: Statement) -> int:
+    """Blocks that C and R put between this move and the next; C may be an axis word instead."""
+    return int(made.one_shot is None and not {"C", "R"}.isdisjoint(made.words))
 
 
 def terminal(made: Statement) -> str:

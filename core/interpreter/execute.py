@@ -10,12 +10,13 @@ from core.interpreter.arcs import arc_move
 from core.interpreter.arrival import note_dwell
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import coarse_line
+from core.interpreter.corners import read_corner, refuse_radius
 from core.interpreter.cycles import cycle_blocks
 from core.interpreter.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.log import refusal
 from core.interpreter.mcodes import after_motion, before_motion
+from core.interpreter.modes import geometry_modes
 from core.interpreter.moves import statement_move
-from core.interpreter.not_yet import corner_not_yet
 from core.interpreter.positioning import c_move, lock, positions
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
@@ -30,10 +31,19 @@ _LONGEST_DWELL = 3600.0
 Ahead = Sequence[Step]
 
 
-def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first: bool) -> Iterator[Block]:
+def execute(
+    state: State,
+    made: Statement,
+    use: ToolUse,
+    ahead: Ahead,
+    *,
+    first: bool,
+    contour: Sequence[Statement] = (),
+) -> Iterator[Block]:
     """Modes, then T, G10 or G92, spindle, M functions that start, motion, M functions that stop.
 
-    ``ahead``: the next few lines. Raises ProgramError at the first word that cannot be executed.
+    ``ahead``: the next few lines; ``contour``: those that describe the contour of G75 or G78.
+    Raises ProgramError at the first word that cannot be executed.
     """
     if made.simple:
         feed_words(state, made, first=first)
@@ -42,7 +52,7 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
         return
     if coarse_line(state, made, ahead):
         return
-    _modes(state, made)
+    geometry_modes(state, made)
     if made.comment is not None:
         state.adopt(state.modal._replace(comment=made.comment))
     feed_words(state, made, first=first)
@@ -62,7 +72,7 @@ def execute(state: State, made: Statement, use: ToolUse, ahead: Ahead, *, first:
         yield spindle
     warn_of_crash_feed(state, made, ahead)
     yield from _start(state, made)
-    yield from _motion(state, made)
+    yield from _motion(state, made, contour)
     if made.m is not None:
         block = after_motion(state, made)
         if block is not None:
@@ -79,36 +89,24 @@ def _start(state: State, made: Statement) -> Iterator[Block]:
             yield block
 
 
-def _motion(state: State, made: Statement) -> Iterator[Block]:
+def _motion(state: State, made: Statement, contour: Sequence[Statement] = ()) -> Iterator[Block]:
     if made.one_shot in codes.ARCS:
         yield arc_move(state, made)
     elif made.one_shot in codes.CYCLES:
-        yield from cycle_blocks(state, made)
+        yield from cycle_blocks(state, made, contour)
     elif made.one_shot in codes.THREADS:
         yield from thread_blocks(state, made)
     elif made.one_shot == 4:
         yield _dwell(state, made)
     elif made.turns and (state.modal.c_locked or not made.moves or "C" not in made.words):
+        refuse_radius(made)
         yield from c_move(state, made)
     elif made.moves:
-        if "C" in made.words:
-            raise ProgramError(corner_not_yet(made.line, made.words["C"]))
-        yield statement_move(state, made)
-
-
-def _modes(state: State, made: Statement) -> None:
-    """Distance, units and X words; the other groups belong to feed and spindle."""
-    if not made.modal:
-        return
-    modal = state.modal
-    for code in made.modal:
-        if code in {90, 91}:
-            modal = modal._replace(absolute=code == 90)
-        elif code in {70, 71}:
-            modal = modal._replace(metric=code == 71)
-        elif code in {72, 73}:
-            modal = modal._replace(diameter=code == 72)
-    state.adopt(modal)
+        block = statement_move(state, made)
+        read_corner(state, made)
+        yield block
+    elif made.one_shot is None:
+        refuse_radius(made)
 
 
 def _dwell(state: State, made: Statement) -> Block:

@@ -72,7 +72,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
     modal = state.modal
     state.blocks += 1
     # G95's limit depends on a speed that only constant surface speed changes from move to move.
-    state.fast = not modal.css and not modal.coarse and not state.told
+    state.fast = not modal.css and not modal.coarse and not state.told and not state.shape.active
     return Block(
         state.blocks, line, state.kind, text, x0, z0, state.c, state.x, state.z, state.c,
         state.offset_x, state.offset_z, modal, state.feed, state.per_rev, rpm_at(state, state.x),

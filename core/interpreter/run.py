@@ -15,11 +15,13 @@ from core.interpreter.log import Log, refusal
 from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
 from core.interpreter.moves import fast_move, go, on_step, plain_move
+from core.interpreter.nose import check_under_nose, nose_code, switch
 from core.interpreter.plain import plain
 from core.interpreter.plane import plane_line
 from core.interpreter.program import Program
 from core.interpreter.reading import statement
 from core.interpreter.setup import Setup
+from core.interpreter.shaper import Shaper
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
@@ -40,6 +42,7 @@ class Interpreter:
         self._program = program
         self._log = Log(program.diagnostics)
         self._state = State(setup, self._log)
+        self._shaper = Shaper(self._state)
         self._tools = ToolUse()
         self._flow = Flow(program)
         self._refused = False
@@ -106,47 +109,88 @@ class Interpreter:
                     elif state.fast:
                         yield fast_move(state, at + 1, lines[at], move)
                     else:
-                        yield plain_move(state, at + 1, lines[at], move)
+                        yield from self._shaped(plain_move(state, at + 1, lines[at], move))
                 elif step is not None:
                     yield from self._statement(step)
             except ProgramError as problem:
                 self._recover(problem, step)
+        yield from self._held_back(self._shaper.end())
         warn_of_idle_shifts(state)
 
     def _statement(self, made: Statement) -> Iterator[Block]:
+        contour = self._contour(made) if made.one_shot in codes.CONTOUR_CYCLES else ()
         if made.block_delete and self._state.setup.block_delete:
             return
         if made.flow == UNREADABLE:
             self._stopped = True
             self._arrive(made)
         elif made.flow in codes.CALLS:
+            check_under_nose(self._state, made)
             yield from self._call(made)
         elif made.flow == PLANE:
-            yield from plane_line(self._state, made)
+            check_under_nose(self._state, made)
+            for block in plane_line(self._state, made):
+                yield from self._shaped(block)
         elif made.flow:
             self._flow.steer(made)
         else:
+            check_under_nose(self._state, made)
+            if nose_code(made):
+                yield from self._nose(made)
             first = made.line == self._first
             ahead = self._program.steps[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
-            for block in execute(self._state, made, self._tools, ahead, first=first):
-                yield block
+            for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
+                yield from self._shaped(block)
                 if isinstance(block.action, ProgramEnd):
                     self._flow.at = self._flow.end
+
+    def _contour(self, made: Statement) -> list[Statement]:
+        """The lines that describe the contour of a cycle; they are passed by even where it does not run."""
+        lines = self._flow.contour(made)
+        if lines is None:
+            self._stopped = True
+            return []
+        found = [self._program.statement(index + 1) for index in lines]
+        return [each for each in found if each is not None]
+
+    def _nose(self, made: Statement) -> Iterator[Block]:
+        """G41, G42 or G40."""
+        mark = switch(self._state, made, nose_code(made), called=self._flow.called)
+        if mark is not None:
+            yield from self._held_back(self._shaper.mark(mark))
+
+    def _shaped(self, block: Block) -> Iterator[Block]:
+        """The block itself, or, where corners or nose compensation are at work, what is sure by now."""
+        if self._state.shape.active:
+            yield from self._held_back(self._shaper.take(block))
+        else:
+            yield block
+
+    def _held_back(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        try:
+            yield from blocks
+        except ProgramError as problem:
+            self._refuse(problem)
+
+    def _refuse(self, problem: ProgramError) -> None:
+        """Keep the error; no block that is held back may come any more."""
+        self._log.add(problem.diagnostic)
+        self._stopped = True
+        self._shaper.drop()
+        self._state.fast = False
 
     def _call(self, made: Statement) -> Iterator[Block]:
         state = self._state
         if made.flow in {"M95", "M97"}:
-            yield state.action(made.line, made.text, AskInput(terminal(made)), rpm_at(state, state.x))
+            asked = AskInput(terminal(made))
+            yield from self._shaped(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
             if not takes_call(made, state.setup.inputs):
                 return
         self._flow.call(made)
 
     def _recover(self, problem: ProgramError, step: Step) -> None:
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""
-        self._log.add(problem.diagnostic)
-        self._stopped = True
-        state = self._state
-        state.fast = False
+        self._refuse(problem)
         if problem.diagnostic.code == "recursion" or self._log.full:
             self._flow.at = self._flow.end
         if isinstance(step, Statement):

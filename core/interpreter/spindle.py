@@ -6,6 +6,7 @@ from core.geometry.spindle import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.blocks import Block
 from core.interpreter.log import refusal
+from core.interpreter.modal import Modal
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
@@ -19,7 +20,11 @@ def rpm_at(state: State, x: float) -> float:
     modal = state.modal
     if not modal.css or not modal.spindle:
         return state.rpm
-    highest = state.setup.limits.max_rpm
+    return surface_rpm_at(modal, x, state.setup.limits.max_rpm)
+
+
+def surface_rpm_at(modal: Modal, x: float, highest: float) -> float:
+    """Signed speed at radius ``x`` (mm) under G96, held by G76, G77 and the spindle's ``highest``."""
     if modal.css_max is not None:
         highest = min(highest, modal.css_max)
     return modal.spindle * surface_rpm(modal.surface_speed, x, modal.css_min, highest)

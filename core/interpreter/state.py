@@ -7,6 +7,7 @@ from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
+from core.interpreter.shaping import Shape
 from core.interpreter.units import MM_PER_INCH
 
 HIGH_FEED = 0.05 * MM_PER_INCH * (1 + 1e-9)
@@ -41,6 +42,7 @@ class State:
         "scale_x",
         "scale_z",
         "setup",
+        "shape",
         "slow_length",
         "steady_feed",
         "title_rapid",
@@ -63,6 +65,7 @@ class State:
         self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
         self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
         self.turning: tuple[int, int, float] | None = None  # line, column, s that C still needs to arrive
+        self.shape = Shape()
         self.told: set[str] = set()  # errors that would otherwise repeat on every move
         self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         self.derive()

@@ -48,7 +48,7 @@ class Statement:
     @property
     def turns(self) -> bool:
         """Whether the line holds C, which turns the spindle where that is locked."""
-        return self.one_shot is None and not _C_WORDS.isdisjoint(self.words)
+        return self.one_shot is None and not self.flow and not _C_WORDS.isdisjoint(self.words)
 
     @property
     def locks(self) -> bool:

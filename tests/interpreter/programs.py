@@ -26,7 +26,7 @@ def inches(**values: float) -> dict[str, float]:
 def setup(
     *,
     tools: Mapping[int, ToolOffset] = ALL_TOOLS,
-    secondary: Mapping[int, tuple[float, float]] | None = None,
+    secondary: Mapping[int, tuple[float, ...]] | None = None,
     limits: ControlLimits | None = None,
     inputs: Callable[[str], bool] = lambda _terminal: False,
     block_delete: bool = False,
@@ -34,8 +34,8 @@ def setup(
     last_rapid: float = 100.0,
     start: tuple[float, float] = (0.0, 0.0),
 ) -> Setup:
-    """Circumstances; lengths in inches, the rapid rate in in/min."""
-    pairs = {n: SecondaryOffset(x * INCH, z * INCH) for n, (x, z) in (secondary or {}).items()}
+    """Circumstances; lengths in inches, the rapid rate in in/min; ``secondary`` are X, Z and, if any, R."""
+    pairs = {n: SecondaryOffset(*(v * INCH for v in each)) for n, each in (secondary or {}).items()}
     return Setup(
         tools=tools,
         secondary=pairs,

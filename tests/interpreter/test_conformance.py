@@ -17,7 +17,7 @@ SAID = {"m-unknown", "c-too-little"}  # outputs that the test's machine lacks; t
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the worked examples are not at hand")
 
 
-def example(name: str, secondary: dict[int, tuple[float, float]] | None = None) -> Pass:
+def example(name: str, secondary: dict[int, tuple[float, ...]] | None = None) -> Pass:
     result = passed(load_source(FOLDER / f"{name}.nc").text, setup(secondary=secondary))
     assert result.errors == []
     assert result.warnings == []
@@ -156,6 +156,46 @@ def test_facing_at_constant_surface_speed() -> None:
     assert at[12].rpm == 2000
     assert at[12].action == SpindleRun(2000)
     assert [block.line for block in result.moves if block.css is not None] == [8, 9, 10]
+
+
+NOSE = {1: (-0.015, -0.015, 0.015)}  # X -.03 as a diameter, Z -.015, R .015
+
+
+def test_corners_of_a_contour_with_compensation() -> None:
+    source = load_source(FOLDER / "corners-with-g41.nc").text.replace("G41\n", "").replace("G40\n", "")
+    result = passed(source)
+    assert (result.errors, result.warnings) == ([], [])
+    assert result.ends[3:-1] == [
+        (0.105, 0), (0.135, -0.03), (0.135, -0.32), (0.165, -0.35), (0.225, -0.35), (0.25, -0.375),
+        (0.25, -0.45), (0.27, -0.45),
+    ]  # fmt: skip
+    (arc,) = (block for block in result.moves if block.kind is Kind.ARC)
+    assert arc.clockwise
+    assert centre(arc) == pytest.approx((0.225, -0.375))
+    # Compensated, the path is .015 off each straight, less .015 to the left and below for the tip.
+    moved = example("corners-with-g41", NOSE)
+    assert {(0.135, -0.045), (0.21, -0.35), (0.25, -0.39), (0.25, -0.45), (0.255, -0.45)} <= set(moved.ends)
+
+
+def test_the_nose_beside_a_contour() -> None:
+    result = example("nose-comp-g41", NOSE)
+    path = [(str(block.kind), *end) for block, end in zip(result.moves, result.ends, strict=True)]
+    assert path[2:] == [
+        ("feed", -0.015, 0),
+        ("feed", 0.205, 0),
+        ("arc", 0.21561, -0.00439),
+        ("feed", 0.24561, -0.03439),
+        ("arc", 0.25, -0.045),
+        ("feed", 0.25, -0.3),
+        ("feed", 0.255, -0.3),
+        ("rapid", 0.255, 1.985),
+    ]
+    arcs = [block for block in result.moves if block.kind is Kind.ARC]
+    assert [centre(arc) for arc in arcs] == [
+        pytest.approx((0.205, -0.015)),
+        pytest.approx((0.235, -0.045)),
+    ]  # the corners (.22, 0) and (.25, -.03), moved by D
+    assert not any(code in block.text for block in result.blocks for code in ("G40", "G41", "G42"))
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.nc")), ids=lambda path: path.stem)

@@ -106,14 +106,15 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("M97I1.5C1P1", *SUB), (3, 4, "input-number")),
     (("M99",), (3, 1, "m99-outside")),
     # codes that cannot run yet
-    (("G41",), (3, 1, "not-yet")),
-    (("X1Z1C.1",), (3, 5, "not-yet")),
-    (("X1Z1R.1",), (3, 5, "not-yet")),
-    (("G75I.05",), (3, 1, "not-yet")),
+    # corners and nose compensation, more of them in files of their own
+    (("G41",), (4, 1, "comp-open")),
+    (("X1Z1C.1",), (3, 5, "corner-next")),
+    (("X1Z1R.1",), (3, 5, "corner-next")),
+    (("G75I.05",), (3, 1, "contour-open")),
     (("G33X1Z1K.05PCO",), (3, 1, "thread-depth")),
     (("G35F2",), (3, 1, "coarse-preset")),
     (("CA90",), (3, 1, "c-unlocked")),
-    (("RF",), (3, 1, "not-yet")),
+    (("RF",), (3, 1, "rf-alone")),
     (("(~PLXC)", "(x1y2)", "(END)"), (3, 1, "c-unlocked")),
 ]
 

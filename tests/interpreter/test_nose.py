@@ -1,0 +1,316 @@
+"""G41, G42 and G40: the path beside the contour, and what is refused. Inches."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import sqrt
+
+import pytest
+
+from core.geometry.offset import WINDOW
+from core.interpreter.actions import Dwell, ProgramStop
+from core.interpreter.blocks import Kind
+from core.interpreter.program import read_program
+from core.interpreter.run import Interpreter
+from core.interpreter.setup import Setup
+from core.language.source import Source
+from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
+
+D = {1: (-0.015, -0.015, 0.015), 2: (0, 0, 0.02), 3: (0, 0, -0.02), 4: (0.001, 0.002)}
+FACING = ("X0Z.05F9", "G41", "X0Z0D2")  # lines 3 to 5; the nose is .02
+SHAFT = (*FACING, "X.2", "Z-.3", "X.3", "Z1", "G40")
+
+
+def given() -> Setup:
+    return setup(secondary=D)
+
+
+def run(*program: str) -> Pass:
+    return passed(body(*program), given())
+
+
+def way(result: Pass) -> list[tuple[str, float, float]]:
+    assert result.errors == []
+    return [(str(b.kind), round(b.x / INCH, 5), round(b.z / INCH, 5)) for b in result.moves]
+
+
+def test_a_shaft_from_its_face() -> None:
+    result = run(*SHAFT)
+    assert way(result) == [
+        ("feed", 0, 0.05),
+        ("feed", 0, 0.02),
+        ("feed", 0.2, 0.02),
+        ("arc", 0.22, 0),
+        ("feed", 0.22, -0.28),
+        ("feed", 0.3, -0.28),
+        ("feed", 0.3, 1),
+    ]
+    assert [b.text for b in result.moves] == [
+        "X0Z.05F9", "X0Z.02D2", "X.2", "G02X.22Z0R.02", "Z-.28", "X.3", "Z1",
+    ]  # fmt: skip
+    assert [b.line for b in result.moves] == [3, 5, 6, 6, 7, 8, 9]
+    assert result.warnings == []
+
+
+def test_the_same_shaft_from_its_back() -> None:
+    result = run("X.4Z-.3F9", "G42", "X.3D2", "X.2", "Z0", "X0", "Z.5", "G40")
+    assert way(result)[1:] == [
+        ("feed", 0.3, -0.28),
+        ("feed", 0.22, -0.28),
+        ("feed", 0.22, 0),
+        ("arc", 0.2, 0.02),
+        ("feed", 0, 0.02),
+        ("feed", 0, 0.5),
+    ]
+    assert not result.moves[4].clockwise
+
+
+def test_a_bore() -> None:
+    # On the way in the material lies at the left, towards X+, so the nose is at the right.
+    result = run("X.3Z.1F9", "G42", "X.3Z0D2", "Z-.3", "X.2", "Z-.5", "X.1", "G40")
+    assert way(result)[1:] == [
+        ("feed", 0.28, 0),
+        ("feed", 0.28, -0.28),
+        ("feed", 0.2, -0.28),
+        ("arc", 0.18, -0.3),
+        ("feed", 0.18, -0.5),
+        ("feed", 0.1, -0.5),
+    ]
+
+
+def test_diameters_and_radii_alike() -> None:
+    doubled = ("G72", "X0Z.05F9", "G41", "X0Z0D2", "X.4", "Z-.3", "X.6", "Z1", "G40")
+    assert way(run(*doubled)) == way(run(*SHAFT))
+
+
+def test_distances_and_coordinates_alike() -> None:
+    by_distance = ("X0Z.05F9", "G91", "G41", "X0Z-.05D2", "X.2", "Z-.3", "X.1", "Z1.3", "G40")
+    result = run(*by_distance)
+    assert way(result) == way(run(*SHAFT))
+    assert [b.text for b in result.moves][2:5] == ["X.2", "G02X.02Z-.02R.02", "Z-.28"]
+
+
+def test_words_between_the_moves_do_not_matter() -> None:
+    mixed = (
+        "X0Z.05F9",
+        "G41",
+        "G72",
+        "X0Z0D2",
+        "G73",
+        "G91",
+        "X.2",
+        "G90",
+        "G72",
+        "Z-.3",
+        "X.6",
+        "Z1",
+        "G40",
+    )
+    assert way(run(*mixed)) == way(run(*SHAFT))
+
+
+def test_the_pair_of_the_offset_is_added() -> None:
+    moved = [(x, z) for _, x, z in way(run("X0Z.05F9", "G41", "X0Z0D1", *SHAFT[3:]))]
+    assert moved[1:] == [(-0.015, 0), (0.185, 0), (0.2, -0.015), (0.2, -0.3), (0.285, -0.3), (0.285, 0.985)]
+
+
+def test_feeds_and_rapids_stay_with_their_moves() -> None:
+    result = run(*FACING, "X.2F5", "Z-.3F7", "X.3", "G00Z1", "G40")
+    told = [(str(b.kind), round(b.feed * 60 / INCH, 6)) for b in result.moves]
+    assert told[2:] == [("feed", 5), ("arc", 5), ("feed", 7), ("feed", 7), ("rapid", 300)]
+
+
+def test_what_stands_still_stands_on_the_path() -> None:
+    result = run(*FACING, "M08", "X.2M09", "M00(LOOK)", "Z-.3", "G04F1", "X.3", "Z1M09", "G40")
+    still = [(b.line, round(b.x / INCH, 5), round(b.z / INCH, 5)) for b in result.blocks if not b.moves][1:-1]
+    assert still == [(6, 0, 0.02), (7, 0.22, 0), (8, 0.22, 0), (10, 0.22, -0.28), (12, 0.3, 1)]
+    assert ProgramStop(optional=False, message="LOOK") in result.actions
+    assert Dwell(1.0) in result.actions
+    for before, after in pairwise(result.blocks):
+        assert (after.x0, after.z0) == (before.x, before.z)
+    assert [block.n for block in result.blocks] == list(range(1, len(result.blocks) + 1))
+
+
+def test_a_move_of_no_length_changes_nothing() -> None:
+    result = run(*FACING, "X.2", "X.2", "Z-.3", "X.3", "Z1", "G40")
+    assert way(result) == [*way(run(*SHAFT))[:4], ("feed", 0.22, 0), *way(run(*SHAFT))[4:]]
+
+
+def test_blocks_know_that_they_are_compensated() -> None:
+    result = run(*SHAFT)
+    assert [b.modal.nose_comp for b in result.moves] == [40, 41, 41, 41, 41, 41, 41]
+    assert result.interpreter.modal.nose_comp == 40
+    assert not any("G4" in b.text for b in result.blocks)
+
+
+def test_arcs_stay_arcs() -> None:
+    result = run(*FACING, "X.1", "G02X.2Z-.1R.1", "Z-.3", "G03X.25Z-.35R.05", "X.4", "Z1", "G40")
+    assert way(result)[2:] == [
+        ("feed", 0.1, 0.02),
+        ("arc", 0.22, -0.1),
+        ("feed", 0.22, -0.3),
+        ("arc", 0.25, -0.33),
+        ("feed", 0.4, -0.33),
+        ("feed", 0.4, 1),
+    ]
+    assert [b.text for b in result.moves if b.kind is Kind.ARC] == ["G02X.22Z-.1R.12", "G03X.25Z-.33R.03"]
+    assert (result.moves[3].cx / INCH, result.moves[3].cz / INCH) == pytest.approx((0.1, -0.1))
+
+
+def test_a_line_into_a_ball() -> None:
+    # Along a cylinder of .2 into a ball of radius .2 about (.2, -.5): the offsets are x .22 and radius .22.
+    result = run(*FACING, "X.2", "Z-.3", "G02X.4Z-.5I.2K-.5", "Z-.7", "X.6", "Z1", "G40")
+    assert way(result)[4] == ("feed", 0.22, round(-0.5 + sqrt(0.22**2 - 0.02**2), 5))
+
+
+def test_corners_are_cut_before_the_path_is_moved() -> None:
+    cut = run(*FACING, "X.2C.05", "Z-.3R.05", "X.4", "Z1", "G40")
+    written = run(*FACING, "X.15", "X.2Z-.05", "Z-.25", "G03X.25Z-.3R.05", "X.4", "Z1", "G40")
+    assert way(cut) == way(written)
+    assert [b.line for b in cut.moves] == [3, 5, 6, 6, 6, 6, 7, 7, 8, 9]
+
+
+def test_a_corner_before_and_at_the_approach() -> None:
+    result = run("X0Z.2F9", "Z.1C.03", "G42", "X.1Z.1D2", "Z0", "X.3", "Z-1", "G40")
+    assert [b.line for b in result.moves[:4]] == [3, 4, 4, 6]
+    assert (result.moves[2].x / INCH, result.moves[2].z / INCH) == pytest.approx((0.03, 0.1))
+    assert result.errors == []
+
+
+def test_a_tool_ends_it() -> None:
+    result = run(*FACING, "X.2", "Z-.3", "X.3", "Z1", "T2", "X1Z1", "X0", "M08")
+    assert way(result)[:7] == way(run(*SHAFT))
+    assert way(result)[7:] == [("feed", 1, 1), ("feed", 0, 1)]
+
+
+def test_on_again_right_after_it_was_off() -> None:
+    result = run(*SHAFT, "G42", "X.3Z.5D2", "X.2", "Z.8", "G40")
+    assert [(x, z) for _, x, z in way(result)[7:]] == [(0.3, 0.52), (0.2, 0.52), (0.2, 0.8)]
+
+
+def test_off_while_it_is_off_is_nothing() -> None:
+    assert way(run("G40", "X1F9", "G90G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
+
+
+def test_on_and_off_without_a_move() -> None:
+    assert way(run("X1F9", "G41", "M08", "G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
+
+
+def test_no_radius_gives_the_contour_and_a_warning() -> None:
+    result = run("X0Z.05F9", "G41", "X0Z0D4", *SHAFT[3:])
+    assert result.warnings == [(5, 0, "comp-no-radius")]
+    assert [(x, z) for _, x, z in way(result)][1:] == [
+        (0.001, 0.002), (0.201, 0.002), (0.201, -0.298), (0.301, -0.298), (0.301, 1.002),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("program", "warning"),
+    [
+        (("X0Z.039F9", *SHAFT[1:]), (5, 0, "comp-approach-near")),
+        ((*SHAFT[:5], "X.3", "Z-.261", "G40"), (9, 0, "comp-departure-near")),
+    ],
+)
+def test_near_the_part_is_warned_of(program: tuple[str, ...], warning: tuple[int, int, str]) -> None:
+    result = run(*program)
+    assert (result.errors, result.warnings) == ([], [warning])
+
+
+@pytest.mark.parametrize("program", [
+    ("X0Z.04F9", *SHAFT[1:]),
+    (*SHAFT[:5], "X.3", "Z-.26", "G40"),
+    (*FACING, "X.2", "G03X.221Z-.021R.021", "X.4", "Z1", "G40"),
+    (*FACING, "X.2", "Z-.1", "X.15", "Z-.141", "X.2", "Z-.3", "X.3", "Z1", "G40"),
+])  # fmt: skip
+def test_next_to_a_refusal_but_good(program: tuple[str, ...]) -> None:
+    result = run(*program)
+    assert (result.errors, result.warnings) == ([], [])
+
+
+SUB = ("M30", "}1", "X1", "M99")
+REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
+    # where the codes may stand
+    (("G41X1",), (3, 1, "not-alone")),
+    (("G41D2",), (3, 1, "not-alone")),
+    (("M08G42",), (3, 1, "not-alone")),
+    (("G90G41",), (3, 1, "not-alone")),
+    ((*SHAFT[:-1], "G40X1"), (10, 1, "not-alone")),
+    (("G41", "G42"), (4, 1, "comp-on")),
+    (("G42", "G41"), (4, 1, "comp-on")),
+    (("G41", "G41"), (4, 1, "comp-on")),
+    (SHAFT[:-1], (10, 1, "comp-open")),
+    (("G42",), (4, 1, "comp-open")),
+    (("M98P1", "M30", "}1", "G41", "M99"), (6, 1, "comp-subroutine")),
+    ((*FACING, "M98P1", *SUB), (6, 1, "comp-subroutine")),
+    ((*FACING, "P1", *SUB), (6, 1, "comp-subroutine")),
+    ((*FACING, "M97I1C1P1", *SUB), (6, 1, "comp-subroutine")),
+    # what may not stand under them
+    ((*FACING, "G81Z-1F.01"), (6, 1, "comp-with")),
+    ((*FACING, "G83Z-1K.1F.01"), (6, 1, "comp-with")),
+    ((*FACING, "G74X1Z-1I.1U0F.01"), (6, 1, "comp-with")),
+    ((*FACING, "G33X1Z-1I.1K.05"), (6, 1, "comp-with")),
+    ((*FACING, "G92X0Z0"), (6, 1, "comp-with")),
+    ((*FACING, "M19"), (6, 1, "comp-with")),
+    ((*FACING, "CA90"), (6, 1, "comp-with")),
+    ((*FACING, "(~PLXC)", "(END)"), (6, 1, "comp-with")),
+    ((*FACING, "X.2D1"), (6, 1, "comp-d")),
+    ((*FACING, "D0", "X.2"), (6, 1, "comp-d")),
+    # the approach
+    (("X0Z.05F9", "G41", "X0Z0", "X.2"), (5, 0, "comp-approach")),
+    (("X0Z.05F9D2", "G41", "X0Z0", "X.2"), (5, 0, "comp-approach")),
+    (("X0Z.05F9", "G41", "D2", "X0Z0", "X.2"), (6, 0, "comp-approach")),
+    (("X0Z.05F9", "G41", "X0Z0D0", "X.2"), (5, 0, "comp-approach")),
+    (("X0Z.05F9", "G41", "G02X.1Z-.05R.1D2"), (5, 0, "comp-approach")),
+    (("X0Z.05F9", "G41", "X0Z0D3", "X.2"), (5, 0, "comp-radius")),
+    (("X0Z.019F9", *SHAFT[1:]), (5, 0, "comp-approach-short")),
+    (("X0Z.05F9", "G41", "Z.05D2", "X.2", "Z1", "G40"), (5, 0, "comp-approach-short")),
+    (("X-.05Z.01F9", "G41", "X-.2Z0D2", *SHAFT[3:]), (5, 0, "comp-approach-near")),
+    (("X.25Z-.5F9", "G41", "X0Z0D2", *SHAFT[3:]), (5, 0, "comp-gouge")),
+    # the departure
+    ((*FACING, "G40"), (5, 0, "comp-empty")),
+    ((*FACING, "X.2", "G40"), (6, 0, "comp-empty")),
+    ((*SHAFT[:5], "X.3", "Z-.281", "G40"), (9, 0, "comp-departure-short")),
+    ((*SHAFT[:5], "X.3", "X.25Z-.29", "G40"), (9, 0, "comp-departure-near")),
+    ((*SHAFT[:5], "X.3", "X.1Z.2", "G40"), (9, 0, "comp-gouge")),
+    ((*SHAFT[:5], "X.3", "G03X.5Z-.1R.2", "G40"), (9, 0, "comp-departure")),
+    ((*SHAFT[:5], "X.3C.1", "G40", "Z1"), (8, 4, "corner-next")),
+    ((*SHAFT[:5], "X.3", "Z1", "Z1", "G40"), (10, 0, "comp-departure-short")),
+    # the contour
+    ((*FACING, "X.2", "G03X.22Z-.02R.02", "X.4", "Z1", "G40"), (7, 0, "comp-gouge")),
+    ((*FACING, "X.2", "G03X.21Z-.01R.01", "X.4", "Z1", "G40"), (7, 0, "comp-gouge")),
+    ((*FACING, "X.2", "Z-.1", "X.15", "Z-.139", "X.2", "Z-.3", "X.3", "Z1", "G40"), (9, 0, "comp-gouge")),
+    ((*FACING, "X.2", "Z-.1", "X.21Z-.11", "Z-.115", "X.3", "Z1", "G40"), (9, 0, "comp-gouge")),
+    ((*FACING, "X.2", "X.1", "Z1", "G40"), (7, 0, "comp-gouge")),
+    ((*FACING, "X.2", "Z-.3R.019", "X.4", "Z1", "G40"), (7, 0, "comp-gouge")),
+]
+
+
+@pytest.mark.parametrize(("program", "error"), REFUSED, ids=[" ".join(program) for program, _ in REFUSED])
+def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
+    result = run(*program)
+    assert error in result.errors
+    assert all(block.line < error[0] for block in result.moves)
+
+
+def test_an_error_inside_takes_back_what_was_held() -> None:
+    result = run(*FACING, "X.2", "Z-.3", "G05", "X.3", "Z1", "G40", "X2")
+    assert [error[2] for error in result.errors] == ["g-unknown"]
+    assert [b.line for b in result.moves] == [3]
+
+
+def test_the_message_says_the_radius() -> None:
+    found = run(*FACING, "X.2", "G03X.21Z-.01R.01", "X.4", "Z1", "G40").interpreter.diagnostics
+    assert found[0].message.startswith("G41 with a nose radius of 0.02000 in cannot follow this move: ")
+
+
+def test_a_long_contour_is_never_held_whole() -> None:
+    loop = ("LS2000", "G91", "Z-.05", "X.03", "LF", "G90")
+    text = lines("G90G94F300", "M03S1000", *FACING, "X.2", *loop, "X61F300", "Z200", "G40", "M30")
+    interpreter = Interpreter(read_program(Source("LONG", text)), given())
+    most = count = 0
+    for block in interpreter.blocks():
+        count = block.n
+        most = max(most, len(interpreter._shaper._nose._moves))
+    assert not interpreter.failed
+    assert count > 6000
+    assert 64 < most < 2 * WINDOW
