@@ -9,7 +9,6 @@ from core.executor.snapshot import Event
 from core.executor.spindle import SpindleControl
 from core.executor.station_watch import Heard
 from core.machine.model import Machine
-from core.motion.limits import MotionLimits
 from core.ports import AxisSample, MachinePorts
 
 _QUIET = Heard(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
@@ -64,13 +63,3 @@ class Bench:
         """All slides are where they were sent."""
         pairs = zip(self.machine.axes, self.sample.following_error, strict=True)
         return not self.sample.moving and all(abs(error) <= axis.in_position for axis, error in pairs)
-
-
-def motion_limits(machine: Machine) -> MotionLimits:
-    """The machine's axes as the time law takes them."""
-    x, z, c = machine.axes
-    return MotionLimits(
-        vmax=(x.vmax, z.vmax, c.vmax),
-        amax=(x.amax, z.amax, c.amax),
-        interval=machine.timing.setpoint,
-    )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from core.executor import gate
 from core.executor.alarms import Reaction, TroubleError, alarm_of
-from core.executor.bench import Bench, motion_limits
+from core.executor.bench import Bench
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.homing import Homing
@@ -20,6 +20,7 @@ from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.setup import Setup
+from core.motion.limits import MotionLimits
 
 
 class Conductor:
@@ -35,7 +36,9 @@ class Conductor:
         self.jogger = Jogger(bench)
         self.homing = Homing(bench)
         machine = bench.machine
-        self._player = Player(bench.ports.axes, motion_limits(machine), machine.timing.lookahead)
+        self._player = Player(
+            bench.ports.axes, MotionLimits.of(machine.axes, machine.timing.setpoint), machine.timing.lookahead
+        )
         self._giving_up = False
 
     @property

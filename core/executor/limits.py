@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from core.executor.alarms import TroubleError
-from core.geometry.extent import arc_extent
 from core.interpreter.blocks import Block, Kind
 from core.machine.model import Axis, Machine
 
@@ -16,15 +15,7 @@ def check_block(block: Block, machine: Machine) -> None:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
-    if block.plane is not None:
-        low_x, high_x, low_z, high_z = block.plane_box(block.plane)
-    elif block.kind is Kind.ARC:
-        low_x, high_x, low_z, high_z = arc_extent(
-            block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
-        )
-    else:
-        low_x = high_x = block.x
-        low_z = high_z = block.z
+    low_x, high_x, low_z, high_z = block.reach()
     _check(block, machine.axes[0], low_x + block.offset_x, high_x + block.offset_x)
     _check(block, machine.axes[1], low_z + block.offset_z, high_z + block.offset_z)
 

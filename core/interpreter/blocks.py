@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.geometry.extent import arc_extent
 from core.geometry.mill import PlaneMove
 from core.interpreter.actions import Action
 from core.interpreter.modal import Modal
@@ -80,11 +81,18 @@ class Block:
         """Machine C of the end, degrees."""
         return self.c + self.modal.offset_c
 
-    def plane_box(self, way: PlaneMove) -> tuple[float, float, float, float]:
-        """Least and greatest x and z (program frame, mm) along the mill's way of this block."""
-        (low_x, low_z, _), (high_x, high_z, _) = (side.tolist() for side in way.reach())
-        x, z = self.modal.secondary_x, self.modal.secondary_z
-        return low_x + x, high_x + x, low_z + z, high_z + z
+    def reach(self) -> tuple[float, float, float, float]:
+        """(least x, greatest x, least z, greatest z) of what the block goes to, its start left out.
+
+        Program frame, mm. The start belongs to the block before; arcs and mill ways count all along.
+        """
+        if self.plane is not None:
+            (low_x, low_z, _), (high_x, high_z, _) = (side.tolist() for side in self.plane.reach())
+            x, z = self.modal.secondary_x, self.modal.secondary_z
+            return low_x + x, high_x + x, low_z + z, high_z + z
+        if self.kind is Kind.ARC:
+            return arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
+        return self.x, self.x, self.z, self.z
 
     @property
     def moves(self) -> bool:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +21,15 @@ OVERRIDE_MAX = (
     1.5  # largest feed_scale and rapid_scale; the speed for which an arc keeps acceleration in hand
 )
 CENTRIPETAL_SHARE = 0.8  # of the acceleration; the rest, in the vector sum, is left for braking on the arc
+
+
+class AxisLike(Protocol):
+    """An axis as a machine file describes it, as far as the time law needs it."""
+
+    @property
+    def vmax(self) -> float: ...
+    @property
+    def amax(self) -> float: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +53,12 @@ class MotionLimits:
             for axis, value in zip(AXES, getattr(self, name), strict=True):
                 _demand_positive(f"{name} of {axis}", value)
         _demand_positive("interval", self.interval)
+
+    @classmethod
+    def of(cls, axes: Sequence[AxisLike], interval: float) -> MotionLimits:
+        """The limits of a machine's axes X, Z and C."""
+        x, z, c = axes
+        return cls(vmax=(x.vmax, z.vmax, c.vmax), amax=(x.amax, z.amax, c.amax), interval=interval)
 
     @property
     def speeds(self) -> FloatArray:

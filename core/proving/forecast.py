@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 
 from core.machine.model import Machine
-from core.motion.limits import MotionLimits
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08
@@ -106,11 +105,3 @@ class SpindleForecast:
             t += max(0.0, abs(goal - rpm) - inside) / rate
             rpm = goal
         return t + self._model.at_speed_time
-
-
-def motion_limits(machine: Machine) -> MotionLimits:
-    """What the time law must know of a machine."""
-    x, z, c = machine.axes
-    return MotionLimits(
-        vmax=(x.vmax, z.vmax, c.vmax), amax=(x.amax, z.amax, c.amax), interval=machine.timing.setpoint
-    )

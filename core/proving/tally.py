@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.extent import arc_extent, arc_sweep
+from core.geometry.extent import arc_sweep
 from core.geometry.mill import PlaneMove
 from core.interpreter.blocks import Block, Kind
 from core.proving.report import Range, Reach
@@ -66,17 +66,18 @@ class Tally:
             self._feeds(table[~turned])
         self._turning(table[~by_c])
 
+    def _reach(self, block: Block) -> None:
+        low_x, high_x, low_z, high_z = block.reach()
+        self.x.see(low_x, high_x)
+        self.z.see(low_z, high_z)
+
     def _arc(self, block: Block) -> float:
-        box = arc_extent(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
-        self.x.see(box[0], box[1])
-        self.z.see(box[2], box[3])
+        self._reach(block)
         _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
 
     def _plane(self, block: Block, way: PlaneMove) -> float:
-        box = block.plane_box(way)
-        self.x.see(box[0], box[1])
-        self.z.see(box[2], box[3])
+        self._reach(block)
         low, high = way.reach()
         self.c.see(float(low[2]), float(high[2]))
         return way.length

@@ -16,8 +16,9 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.model import Machine
 from core.motion.errors import MotionError
+from core.motion.limits import MotionLimits
 from core.motion.timeline import Chunk, ChunkPlanner
-from core.proving.forecast import SETTLING, SpindleForecast, motion_limits
+from core.proving.forecast import SETTLING, SpindleForecast
 
 
 class Moved(NamedTuple):
@@ -60,7 +61,8 @@ class Timeline:
         self.t = 0.0
         self.start = setup.start
         self._machine = machine
-        self._planner = ChunkPlanner(motion_limits(machine), rpm_max=machine.spindle.rpm_max)
+        limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
+        self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
         self._source = self.interpreter.blocks()
         self._back: Block | None = None  # the block that ended a motion and is still to come
         self._moving: deque[Block] = deque()

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.geometry.extent import arc_extent
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.blocks import Block
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Axis, Machine
 
@@ -21,11 +20,12 @@ def travel_findings(blocks: Sequence[Block], machine: Machine) -> list[Diagnosti
     (x_low, x_high), (z_low, z_high) = _reachable(x_axis), _reachable(z_axis)
     findings = []
     for block in blocks:
-        low_x, high_x, low_z, high_z = _machine_box(block)
-        if low_x < x_low or high_x > x_high:
-            findings.append(_beyond(block, x_axis, low_x, high_x))
-        if low_z < z_low or high_z > z_high:
-            findings.append(_beyond(block, z_axis, low_z, high_z))
+        low_x, high_x, low_z, high_z = block.reach()
+        x, z = block.offset_x, block.offset_z
+        if low_x + x < x_low or high_x + x > x_high:
+            findings.append(_beyond(block, x_axis, low_x + x, high_x + x))
+        if low_z + z < z_low or high_z + z > z_high:
+            findings.append(_beyond(block, z_axis, low_z + z, high_z + z))
     return findings
 
 
@@ -33,19 +33,6 @@ def _reachable(axis: Axis) -> tuple[float, float]:
     if axis.travel is None:
         return float("-inf"), float("inf")
     return axis.travel[0] - TOLERANCE, axis.travel[1] + TOLERANCE
-
-
-def _machine_box(block: Block) -> tuple[float, float, float, float]:
-    """What a block reaches beyond its start, which the block before has answered for."""
-    x, z = block.offset_x, block.offset_z
-    if block.plane is not None:
-        low_x, high_x, low_z, high_z = block.plane_box(block.plane)
-        return low_x + x, high_x + x, low_z + z, high_z + z
-    if block.kind is not Kind.ARC:
-        mx, mz = block.x + block.offset_x, block.z + block.offset_z
-        return mx, mx, mz, mz
-    box = arc_extent(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
-    return box[0] + x, box[1] + x, box[2] + z, box[3] + z
 
 
 def _beyond(block: Block, axis: Axis, low: float, high: float) -> Diagnostic:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine import setup_for
-from core.executor.bench import motion_limits
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.program import read_program
 from core.interpreter.run import Interpreter
 from core.language.source import Source
+from core.motion.limits import MotionLimits
 from core.motion.path import build_path
 from core.motion.plan import plan
 from tests.executor.rig import INCH, CreepingClock, Rig
@@ -235,7 +235,12 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
     rig = Rig()
     setup = setup_for(rig.machine, tools={}, secondary={})
     blocks = Interpreter(read_program(Source("PART", text)), setup).blocks()
-    whole = plan(build_path([block for block in blocks if block.moves], motion_limits(rig.machine)))
+    whole = plan(
+        build_path(
+            [block for block in blocks if block.moves],
+            MotionLimits.of(rig.machine.axes, rig.machine.timing.setpoint),
+        )
+    )
     rig.start(text)
     began = rig.clock.now() + rig.machine.timing.commit
     furthest = 0.0
