@@ -1,0 +1,222 @@
+"""Moves in which C turns: the surface that they leave, the speeds they keep, what they refuse."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.geometry.face import Face
+from core.geometry.mill import PlaneMove, Spot
+from core.geometry.side import Side
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.motion.errors import MotionError
+from core.motion.limits import FloatArray, MotionLimits
+from core.motion.mapped import CHORD_ERROR, chords
+from core.motion.path import Path, build_path
+from core.motion.plan import plan
+from core.motion.profile import Profile
+from core.motion.timeline import sample_positions
+from tests.motion.moves import line
+
+# The shipped lathe: C at 200 rpm and 600 rpm/s at most.
+LIMITS = MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(3048.0, 3048.0, 3600.0), interval=0.001)
+FLAT = 0.00005 * 25.4
+ENDS = np.array([0.0, 1.0])
+
+
+def milled(move: PlaneMove, feed: float = 4.0, n: int = 1) -> Block:
+    """A block of plane switching, as the interpreter makes it."""
+    (x0, z0, c0), (x, z, c) = move.machine(ENDS).tolist()
+    block = line((x0, z0), (x, z), feed, n=n, kind=Kind.PLANE_LINE)
+    return replace(block, c0=c0, c=c, plane=move)
+
+
+def face_line(start: tuple[float, float], end: tuple[float, float], h: float = 0.0) -> PlaneMove:
+    return PlaneMove(Face(0.0, h), (*start, 0.0), (*end, 0.0), math.atan2(start[1], start[0]))
+
+
+def turned(c0: float, c: float, feed: float, n: int = 1, **more: object) -> Block:
+    block = line((10.0, 5.0), (10.0, 5.0), feed, n=n, kind=Kind.ROTATE)
+    return replace(block, c0=c0, c=c, **more)  # type: ignore[arg-type]
+
+
+def fed_by_c(z: float, c: float, feed: float, rpm: float) -> Block:
+    block = line((10.0, 0.0), (10.0, z), feed)
+    return replace(block, c=c, per_rev=True, rpm=rpm)
+
+
+def off_line(profile: Profile, move: PlaneMove, dt: float) -> float:
+    """How far the tool leaves the straight way on the part, mm, sampled every ``dt``."""
+    _, positions, _ = sample_positions(profile, dt)
+    points = move.frame.mill(positions)
+    (x0, y0, _), (x1, y1, _) = move.start, move.end
+    across = (x1 - x0) * (points[:, 1] - y0) - (y1 - y0) * (points[:, 0] - x0)
+    return float(np.abs(across).max() / math.hypot(x1 - x0, y1 - y0))
+
+
+@pytest.mark.parametrize("dt", [0.00037, 0.001, 0.0131])
+@pytest.mark.parametrize(
+    "move",
+    [
+        face_line((8.0, -6.35), (8.0, 6.35)),
+        face_line((0.5, -6.35), (0.5, 6.35)),
+        face_line((9.0, 0.01), (-9.0, 0.01)),
+        face_line((8.0, 2.0), (-8.0, 2.0), h=1.5),
+    ],
+    ids=["flat", "near", "past the centre", "tool above the axis"],
+)
+def test_a_flat_is_flat(move: PlaneMove, dt: float) -> None:
+    assert off_line(plan(build_path([milled(move)], LIMITS)), move, dt) < 0.5 * FLAT
+
+
+def test_what_the_drives_get_is_as_flat_and_ends_at_the_end() -> None:
+    """Pieces of constant acceleration, looked at within them: the same chords."""
+    move = face_line((2.0, -6.0), (2.0, 6.0))
+    profile = plan(build_path([milled(move)], LIMITS))
+    t, dt, p, v, a = profile.segments(0.0, profile.duration)
+    for share in (0.0, 0.3, 0.7, 1.0):
+        tau = (share * dt)[:, None]
+        points = move.frame.mill(p + (v + 0.5 * a * tau) * tau)
+        assert np.abs(points[:, 0] - 2.0).max() < 0.5 * FLAT
+    assert np.abs(np.diff(t) - dt[:-1]).max() < 1e-9
+    assert profile.position(profile.duration)[0].tolist() == pytest.approx(move.machine(ENDS)[1].tolist())
+
+
+def test_the_feed_is_that_of_the_mill() -> None:
+    """12 mm of a flat at 4 mm/s, 8 mm off the axis: 3 s, and a little for the ramps."""
+    move = face_line((8.0, -6.0), (8.0, 6.0))
+    profile = plan(build_path([milled(move)], LIMITS))
+    assert profile.duration == pytest.approx(3.0, abs=0.03)
+    points = move.frame.mill(profile.position(np.array([1.0, 2.0])))
+    assert points[1, 1] - points[0, 1] == pytest.approx(4.0, abs=2e-3)
+
+
+def test_near_the_centre_c_slows_the_feed() -> None:
+    """A hundredth of a millimetre beside the axis C turns half round: over .4 s at 3600 degrees/s²."""
+    move = face_line((3.0, 0.01), (-3.0, 0.01))
+    profile = plan(build_path([milled(move)], LIMITS))
+    assert profile.duration > 6.0 / 4.0 + 0.4
+    assert profile.duration < 6.0 / 4.0 + 1.5
+
+
+def axis_speeds(profile: Profile) -> FloatArray:
+    _, _, _, v, a, piece = profile.phases
+    fastest = np.maximum(v, v + a * profile.phases.dt)
+    speeds: FloatArray = np.abs(profile.path.pieces.direction[piece]) * fastest[:, None]
+    return speeds
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.floats(-12.0, 12.0), st.floats(-12.0, 12.0), st.floats(-12.0, 12.0), st.floats(-12.0, 12.0),
+    st.sampled_from([1.0, 8.0, 120.0]),
+)  # fmt: skip
+def test_no_axis_goes_beyond_its_limits(x: float, y: float, u: float, v: float, feed: float) -> None:
+    move = face_line((x, y), (u, v))
+    if move.length < 0.1 or move.rho(move.nearest()) < 0.01:
+        return
+    path = build_path([milled(move, feed)], LIMITS)
+    profile = plan(path)
+    assert (axis_speeds(profile) <= LIMITS.speeds * (1.0 + 1e-6)).all()
+    assert (joint_steps(profile, path) <= LIMITS.accelerations * LIMITS.interval * (1.0 + 1e-6)).all()
+    assert off_line(profile, move, 0.0047) < 0.5 * FLAT
+
+
+def joint_steps(profile: Profile, path: Path) -> FloatArray:
+    """Change of each axis' velocity (k, 3) at the joints of pieces."""
+    v = profile.at(profile.time_at(path.s[1:-1]))[1]
+    steps: FloatArray = np.abs(np.diff(path.pieces.direction, axis=0)) * v[:, None]
+    return steps
+
+
+def test_chords_of_an_arc_on_the_side_stay_on_it() -> None:
+    move = PlaneMove(
+        Side(0.0, 0.0, 22.0), (0.0, 0.0, 10.0), (5.0, 5.0, 10.0), 0.0, (5.0, 0.0), clockwise=True
+    )
+    share = chords(move, 4.0, LIMITS)
+    path = build_path([milled(move)], LIMITS)
+    assert len(path) == len(share) - 1
+    profile = plan(path)
+    _, positions, _ = sample_positions(profile, 0.0023)
+    points = move.frame.mill(positions)
+    assert np.abs(np.hypot(points[:, 0] - 5.0, points[:, 1]) - 5.0).max() < 1.1 * CHORD_ERROR
+    assert path.length == pytest.approx(2.5 * math.pi)
+
+
+def test_a_line_on_the_side_is_one_piece() -> None:
+    start, end = (0.0, 0.0, 11.0), (5.0, 5.0, 10.0)
+    path = build_path([milled(PlaneMove(Side(0.0, 0.0, 22.0), start, end))], LIMITS)
+    assert len(path) == 1
+    assert path.length == pytest.approx(math.dist(start, end))
+
+
+def test_c_alone_turns_at_its_speed() -> None:
+    """90 degrees at 300 degrees/s and 3600 degrees/s²: 90/300 + 300/3600 s."""
+    profile = plan(build_path([turned(10.0, 100.0, 300.0)], LIMITS))
+    assert profile.duration == pytest.approx(90.0 / 300.0 + 300.0 / 3600.0)
+    assert profile.position(profile.duration)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
+
+
+def test_a_shifted_count_of_c_is_the_machines() -> None:
+    block = turned(-30.0, 0.0, 600.0, modal=Modal(offset_c=-360.0))
+    assert build_path([block], LIMITS).start.tolist() == pytest.approx([10.0, 5.0, -390.0])
+
+
+def test_the_slide_is_fed_by_the_turns_of_c() -> None:
+    """The worked slot: .1 in at .8 in/rev takes 45 of 45.1 degrees; C at 3.5 rpm all the way."""
+    way = 0.1 * 25.4
+    profile = plan(build_path([fed_by_c(-way, -45.1, 0.8 * 25.4, -3.5)], LIMITS))
+    assert len(profile.path) == 2
+    t = np.linspace(0.0, profile.duration, 500)
+    at = profile.position(t)
+    arrived = at[:, 2] <= -45.0
+    assert at[arrived, 1] == pytest.approx(-way)
+    assert at[~arrived, 1] == pytest.approx(at[~arrived, 2] / 45.0 * way)
+    # 45.1 degrees at 21 degrees/s; the ramps take next to nothing
+    assert profile.duration == pytest.approx(45.1 / 21.0, abs=0.02)
+
+
+def test_exactly_enough_is_one_piece() -> None:
+    assert len(build_path([fed_by_c(-10.0, 360.0, 10.0, 5.0)], LIMITS)) == 1
+
+
+def test_too_little_turn_is_refused_with_what_is_needed() -> None:
+    with pytest.raises(MotionError, match="needs 432 degrees of C; it turns 360"):
+        build_path([fed_by_c(-0.3 * 25.4, 360.0, 0.25 * 25.4, 5.0)], LIMITS)
+
+
+def test_a_broken_way_is_refused() -> None:
+    first, second = face_line((8.0, 0.0), (8.0, 1.0)), face_line((8.0, 1.1), (8.0, 2.0))
+    with pytest.raises(MotionError, match="Block 2 starts"):
+        build_path([milled(first), milled(second, n=2)], LIMITS)
+
+
+def test_no_feed_is_refused() -> None:
+    with pytest.raises(MotionError, match="feed is not above zero"):
+        build_path([milled(face_line((8.0, 0.0), (8.0, 1.0)), feed=0.0)], LIMITS)
+
+
+def test_no_way_at_all_is_no_piece() -> None:
+    spot: Spot = (8.0, 1.0, 0.0)
+    stand = PlaneMove(Face(0.0), spot, spot, math.atan2(1.0, 8.0))
+    path = build_path([milled(stand), milled(face_line((8.0, 1.0), (8.0, 2.0)), n=2)], LIMITS)
+    assert path.blocks.tolist() == [1, 2]
+    assert path.first.tolist()[1] == 0
+
+
+def test_stopping_on_the_way_stays_on_the_way() -> None:
+    move = face_line((8.0, -6.0), (8.0, 6.0))
+    path = build_path([milled(move)], LIMITS)
+    running = plan(path)
+    s, v = running.at(1.5)
+    stopped = plan(path, start_s=float(s[0]), start_v=float(v[0]), stop=True)
+    assert stopped.duration < 0.05
+    assert off_line(stopped, move, 0.0005) < 0.5 * FLAT
+    on = plan(path, start_s=stopped.end_s)
+    assert on.position(on.duration)[0].tolist() == pytest.approx(move.machine(ENDS)[1].tolist())
