@@ -22,6 +22,8 @@ _BLEND = 0.01  # s in which a deviation is taken out
 _LONGEST = 0.16  # s; a deviation that takes more is no wander
 _EARLY = 0.03  # s between the first plan and the start, in which the start can still be corrected
 _SHARE = 0.7  # of the acceleration for running up: the rest corrects
+_PATIENCE = 0.002  # s more for a braking, which has one try
+_TRIES = 3
 _AT_START = 1e-6  # mm
 _ALLOWED = 0.01  # of a lead, between setpoints and spindle
 
@@ -69,7 +71,10 @@ class ThreadPass:
         v = self._lead * speed
         earliest = now + self._axes.commit + _EARLY + 0.5 * v / self._ramp
         self._index = math.ceil(turns + speed * (earliest - now) - 1e-9)
-        self._queue(self._lead_time(now))
+        for _ in range(_TRIES):
+            if self._replan():
+                return
+        raise DriverError("the thread could not be queued in time; look for what keeps the computer busy")
 
     def track(self) -> None:
         """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""
@@ -77,14 +82,22 @@ class ThreadPass:
         self._measure(now)
         if self._stopped or self._free or now >= self._leaves:
             return
+        self._replan()
+
+    def _replan(self) -> bool:
+        """Plan and queue; False when that came too late, and what is queued goes on."""
+        now = self._axes.now()
+        t = now + self._axes.commit + 1.5 * self._cost
         try:
-            self._queue(self._lead_time(now))
+            self._queue(t)
         except DriverError:
-            if self._axes.now() + self._axes.commit <= self._lead_time(now):
+            after = self._axes.now()
+            if after + self._axes.commit <= t:
                 raise
-            self._cost = 2.0 * max(self._axes.now() - now, 1e-3)  # came too late: what is queued goes on
-        else:
-            self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
+            self._cost = after - now
+            return False
+        self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
+        return True
 
     def lost_step(self) -> bool:
         """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
@@ -93,7 +106,7 @@ class ThreadPass:
 
     def brake(self) -> None:
         """Come to rest along the thread; a pass that is already leaving it is left alone."""
-        t = self._lead_time(self._axes.now())
+        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
         s, v = self._demand(t)
         if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._way.a >= self._way.length:
             return
@@ -177,9 +190,6 @@ class ThreadPass:
     def _demand(self, t: float) -> tuple[float, float]:
         (_, z, _), (_, v, _) = self._axes.demand_at(t)
         return self._way.place(z, v)
-
-    def _lead_time(self, now: float) -> float:
-        return now + self._axes.commit + 1.5 * self._cost
 
     @property
     def _lead(self) -> float:
