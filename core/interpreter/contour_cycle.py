@@ -24,6 +24,9 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
 
     Raises ProgramError where words are missing, or no tool can run so.
     """
+    if "P" in made.words and made.value("P") is None:
+        text = "P does not say which subroutine describes the contour."
+        raise refused(made, "P", "word-missing", text, "Write its number after P.")
     cut = positive(state, made, "I", "the greatest depth of cut") if made.one_shot == 75 else None
     left = left_over(state, made)
     contour = read_contour(state, made, lines)

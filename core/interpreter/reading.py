@@ -121,7 +121,7 @@ def _check_flow(made: Statement, line: Line) -> None:
         if word.letter not in allowed:
             what = f"holds {word.text} besides {made.flow}, which stands alone"
             raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
-    if made.flow in {"LS", "LF", "}", "M99"} and line.block_delete:
+    if made.flow in {"LS", "LF", "}", "M99", "RF"} and line.block_delete:
         what = f"deletes {made.flow}, without which the rest has no meaning"
         raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
     for letter in allowed - {"M", "LF", "RF"}:

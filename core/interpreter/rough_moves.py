@@ -33,6 +33,7 @@ class Rougher:
         self._rapid, self._lift = rapid, lift
         self._at = 0.0, 0.0
         self._done: list[tuple[float, list[Stretch]]] = []
+        self._free = area.stretches(0.0)
 
     def cut(self, depth: float) -> None:
         """One pass at a depth greater than those before it, through all its stretches."""
@@ -65,7 +66,10 @@ class Rougher:
         way = min(to[1], 0.0) if front else to[1]
         self._over(way)
         done = [depth for depth, stretches in self._done if _covering(stretches, way, to[1])]
-        self._sink(min(max(done, default=0.0), to[0]) if self._done else to[0])
+        if self._done:
+            self._sink(min(max(done, default=0.0), to[0]))
+        elif front:  # at its back end the tool would run into what may still be there
+            self._sink(to[0])
         self._feed(to[0], way)
         self._feed(*to)
 
@@ -105,7 +109,7 @@ class Rougher:
         for depth, stretches in reversed(self._done):
             if _covering(stretches, low, high):
                 return depth - self._lift
-        return min(0.0, self._area.top - self._lift)
+        return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top - self._lift)
 
     def _go(self, depth: float, way: float) -> None:
         self.moves.append(Move(depth, way, self._rapid))
