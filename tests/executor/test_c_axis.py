@@ -1,4 +1,4 @@
-"""The worked examples of the C axis and of plane switching, run on the simulated machine as they were proved."""
+"""The worked examples of the C axis and of plane switching, run on the simulated machine as proved."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_c_does_not_turn_before_the_spindle_stands() -> None:
 
 
 def test_the_spindle_pot_leaves_a_slide_alone_that_c_feeds() -> None:
-    """At half the pot a slide fed by the turns of C would need twice the time, at 0 it would hold for ever."""
+    """Neither the pot nor the switch of the spindle: the slide follows C, which the feed override scales."""
     rig = Rig()
     rig.sim.machine.set_spindle_pot(0.5)
     rig.sim.machine.set_spindle_auto(False)
