@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from core.geometry.contour import Line
 from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
-from core.interpreter import units
+from core.interpreter import codes, units
 from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log, refusal
@@ -19,6 +19,7 @@ from core.interpreter.statement import Statement
 from core.language.diagnostics import ProgramError
 
 STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})
+_OTHER_MOTION = codes.CYCLES | codes.THREADS
 _PARTS = ProgramEnd | ToolChange | Preset | AskInput
 """Actions across which no corner reaches: the program ends, its numbers mean another
 point, or all motion before it must have ended."""
@@ -101,6 +102,13 @@ class Corners:
         else:
             self._held = None
             yield from self._cut(held, item, corner)
+
+    def check(self, made: Statement) -> None:
+        """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
+        held = self._held
+        if held is not None and made.one_shot in _OTHER_MOTION:
+            what = made.code.text if made.code is not None else "another motion"
+            raise _refused(held, "corner-next", f"{what} on line {made.line} is no straight move")
 
     def end(self) -> None:
         """No block comes any more. Raises ProgramError where a corner is left."""

@@ -15,7 +15,7 @@ from core.interpreter.log import Log, refusal
 from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
 from core.interpreter.moves import fast_move, go, on_step, plain_move
-from core.interpreter.nose import check_under_nose, nose_code, switch
+from core.interpreter.nose import nose_code, switch
 from core.interpreter.plain import plain
 from core.interpreter.plane import plane_line
 from core.interpreter.program import Program
@@ -125,16 +125,16 @@ class Interpreter:
             self._stopped = True
             self._arrive(made)
         elif made.flow in codes.CALLS:
-            check_under_nose(self._state, made)
+            self._shaper.check(made)
             yield from self._call(made)
         elif made.flow == PLANE:
-            check_under_nose(self._state, made)
+            self._shaper.check(made)
             for block in plane_line(self._state, made):
                 yield from self._shaped(block)
         elif made.flow:
             self._flow.steer(made)
         else:
-            check_under_nose(self._state, made)
+            self._shaper.check(made)
             if nose_code(made):
                 yield from self._nose(made)
             first = made.line == self._first

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from core.interpreter.blocks import Block
 from core.interpreter.compensate import Compensation
 from core.interpreter.corners import Corners
-from core.interpreter.nose import check_approach, nose_radius
+from core.interpreter.nose import check_approach, check_under_nose, nose_radius
 from core.interpreter.shaping import Corner, Item, Mark
 from core.interpreter.state import State
+from core.interpreter.statement import Statement
 
 
 class Shaper:
@@ -35,6 +36,12 @@ class Shaper:
             check_approach(state, block)
             self._nose.radius = nose_radius(state)
         yield from self._put(block, corner)
+
+    def check(self, made: Statement) -> None:
+        """Whether a line may follow what is held. Raises ProgramError."""
+        if self._state.shape.active:
+            self._corners.check(made)
+            check_under_nose(self._state, made)
 
     def mark(self, mark: Mark) -> Iterator[Block]:
         """G41, G42 or G40, and the blocks that are sure by it. Raises ProgramError."""

@@ -20,7 +20,7 @@ from tests.interpreter.programs import lines, passed, setup
 
 NUMBERS = st.sampled_from(["0", "1", "-1", ".5", "-.25", ".001", "2", "3.12345", "99", "300", "1000"])
 WORD = st.builds(str.__add__, st.sampled_from(list("XZIKRFSTDPC")), NUMBERS)
-G_CODES = [0, 1, 2, 3, 4, 10, 33, 41, 70, 71, 72, 73, 75, 76, 77, 90, 91, 92, 94, 95, 96, 97]
+G_CODES = [0, 1, 2, 3, 4, 10, 33, 40, 41, 42, 70, 71, 72, 73, 75, 76, 77, 90, 91, 92, 94, 95, 96, 97]
 M_CODES = [0, 1, 2, 3, 4, 5, 8, 12, 13, 19, 25, 26, 30, 31, 91, 95, 99]
 OTHERS = [
     "M98P1",

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from core.geometry.arcs import Point, centre_from_radius
 from core.geometry.contour import Element
 from core.geometry.meet import distance
-from core.interpreter.blocks import Block
+from core.interpreter.blocks import Block, Kind
 from core.interpreter.remade import element_of
 from tests.geometry.contours import sampled
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
@@ -71,8 +71,11 @@ def program(steps: list[tuple[float, float, str, float]], *, left: bool, nose: f
     start = writer.words(writer.beside(side, 3 * nose))
     approach = writer.words(writer.at)
     writer.heading -= steps[0][1]
-    for k, step in enumerate(steps):
-        writer.step(*step if k < len(steps) - 1 else (*step[:2], "line", 1.0))
+    for step, after in zip(steps, [*(kind for _, _, kind, _ in steps[1:]), "02"], strict=True):
+        straight = after in {"02", "03"} and step[2] in {"R", "C"}  # a corner needs a line after it
+        writer.step(*step[:2], "line" if straight else step[2], step[3])
+    if steps[-1][2] in {"02", "03"}:  # the way back has to be square to a line
+        writer.step(0.1, 0.3, "line", 1.0)
     departure = writer.words(writer.beside(side, 3 * nose))
     mode, code = "G72" if diameter else "G73", "G41" if left else "G42"
     head = f"G90{mode}G94F300"
@@ -110,7 +113,7 @@ def test_the_path_keeps_the_nose_off_the_contour(
     radius = nose * INCH
     for piece in path_of(result):
         for point in sampled(piece, 21):
-            assert radius - 0.002 <= min(distance(element, point) for element in contour) <= radius + 0.002
+            assert radius - 0.002 <= min(distance(element, point) for element in contour) <= radius + 0.001
     for before, after in pairwise(result.blocks):
         assert dist((before.x, before.z), (after.x0, after.z0)) < 1e-9
 
@@ -127,3 +130,45 @@ def test_the_pair_of_the_offset_moves_the_whole_path(
     assert len(result.moves) == len(still.moves)
     for a, b in zip(result.moves[1:], still.moves[1:], strict=True):
         assert (a.x / INCH - moved, a.z / INCH + moved) == pytest.approx((b.x / INCH, b.z / INCH), abs=1e-9)
+
+
+_PLACE = st.sampled_from(["0", ".1", ".2", ".3", "-.1", "-.2", "1", ".35"])
+_END = st.sampled_from(["", "", "", "C.02", "R.02", "F9", "M08", "D1", "D2", "R.1", "C.3", "M00"])
+_LINE = (
+    st.builds("X{}Z{}{}".format, _PLACE, _PLACE, _END)
+    | st.builds("X{}{}".format, _PLACE, _END)
+    | st.builds("Z{}{}".format, _PLACE, _END)
+    | st.builds("G02X{}Z{}R.3".format, _PLACE, _PLACE)
+    | st.sampled_from(
+        ["G90", "G91", "G72", "G73", "G00", "G94F20", "M09", "G04F1", "T1", "G92X0Z0", "LS2", "LF"]
+    )
+)
+_STRETCH = st.builds(
+    lambda start, code, lead, inner, end: [start, code, lead, *inner, end, "G40"],
+    st.sampled_from(["X0Z.2", "X.5Z.5", "X1Z-1"]),
+    st.sampled_from(["G41", "G42"]),
+    st.sampled_from(["X0Z0D1", "X.3Z0D1", "X.2Z.1D2", "X.2Z.1"]),
+    st.lists(_LINE, max_size=8),
+    st.sampled_from(["X2Z2", "X-2Z-2", "X2Z-2", "Z3"]),
+)
+
+
+@settings(max_examples=500, deadline=None)
+@given(st.lists(_LINE.map(lambda line: [line]) | _STRETCH, max_size=6))
+def test_blocks_follow_each_other_whatever_stands_in_the_program(parts: list[list[str]]) -> None:
+    text = lines("G90G94F300", "M03S500", "F20", *(line for part in parts for line in part), "M30")
+    offsets = {1: (-0.01, -0.01, 0.01), 2: (0.0, 0.0, 0.002)}
+    result = passed(text, setup(secondary=offsets))
+    event("refused" if result.errors else "run")
+    assert [block.n for block in result.blocks] == list(range(1, len(result.blocks) + 1))
+    for before, after in pairwise(result.blocks):
+        assert after.x0 + after.offset_x == pytest.approx(before.mx, abs=1e-6)
+        assert after.z0 + after.offset_z == pytest.approx(before.mz, abs=1e-6)
+    for block in result.blocks:
+        if block.kind is Kind.ARC:
+            radii = [dist(end, (block.cx, block.cz)) for end in ((block.x0, block.z0), (block.x, block.z))]
+            assert radii[0] == pytest.approx(radii[1], abs=0.013)  # what the language allows
+    if not result.errors:
+        assert not result.interpreter._state.shape.active
+        lost = {number for number, line in enumerate(text.splitlines(), 1) if line[0] in "XZ"}
+        assert lost <= {block.line for block in result.blocks}
