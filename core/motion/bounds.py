@@ -8,8 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from core.motion.chords import Asked, asked_over_intervals
 from core.motion.limits import CENTRIPETAL_SHARE, OVERRIDE_MAX, FloatArray, MotionLimits
 from core.motion.pieces import Pieces
+
+_MUCH = 0.2  # of amax: joints of chords that ask less are left as they are
 
 
 def piece_limits(
@@ -25,8 +28,11 @@ def piece_limits(
     if not len(pieces):
         return cap, cap, corner
     turns = corner_turns(pieces)
-    corner[1:-1] = corner_caps(pieces, turns, limits)
-    spare = spare_for_chords(pieces, speeds, turns, corner[1:-1], limits, more=more)
+    single = corner_caps(pieces, turns, limits)
+    asked = _asked(pieces, speeds, turns, single, limits)
+    corner[1:-1] = single
+    corner[1:-1][asked.joint] = asked.squared
+    spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
     return cap, np.minimum(accelerations(pieces, speeds, limits), spare), corner
 
 
@@ -71,7 +77,7 @@ def corner_turns(pieces: Pieces) -> FloatArray:
 
 
 def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Square of the speed (n-1,) at each joint, mm²/s², endless where the direction does not change.
+    """Square of the speed (n-1,) at each joint, standing for itself, mm²/s²; endless where nothing turns.
 
     One interval: v·|Δu| ≤ amax·interval. Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean
     length, which for chords of a circle is its centripetal limit whatever the length of the chords.
@@ -86,21 +92,35 @@ def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Floa
     return caps
 
 
+def _asked(
+    pieces: Pieces, speeds: FloatArray, turns: FloatArray, single: FloatArray, limits: MotionLimits
+) -> Asked:
+    """What short chords ask over an interval, of the joints that would be slow or ask much by themselves."""
+    fastest = np.minimum(speeds[:-1], speeds[1:])
+    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
+    alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
+    much = (alone > _MUCH * limits.accelerations).any(axis=1) | (single < fastest**2)
+    joints = np.flatnonzero(much & (mean < fastest * limits.interval))
+    given = Asked(joints, single[joints], alone[joints])
+    return asked_over_intervals(pieces, given, fastest[joints], limits)
+
+
 def spare_for_chords(
     pieces: Pieces,
     speeds: FloatArray,
     turns: FloatArray,
-    corners: FloatArray,
+    single: FloatArray,
     limits: MotionLimits,
+    asked: Asked,
     *,
     more: bool,
 ) -> FloatArray:
     """Acceleration (n,) that chords shorter than one interval may use besides following their curve.
 
     Chords passed within one setpoint interval are a curve to the machine: v²·|Δu|/ℓ of each axis is spoken
-    for, and (amax - that)/|u| remains. At least a fifth of amax does, by the limit on corners; where ``more``
-    pieces will follow, the last one gets that, so that no later corner can take what a plan has built on.
-    Endless for longer lines and for arcs.
+    for, or what the interval as a whole asks (core/motion/chords.py), and (amax - that)/|u| remains. At least
+    a fifth of amax does, by the limit on corners; where ``more`` pieces will follow, the last one gets that,
+    so that no later corner can take what a plan has built on. Endless for longer lines and for arcs.
     """
     amax = limits.accelerations
     spare = np.full(len(pieces), np.inf)
@@ -108,9 +128,12 @@ def spare_for_chords(
     if not short.any():
         return spare
     bend = turns / (0.5 * (pieces.length[:-1] + pieces.length[1:]))[:, None]
+    before = bend * np.minimum(speeds[1:] ** 2, single)[:, None]
+    after = bend * np.minimum(speeds[:-1] ** 2, single)[:, None]
+    before[asked.joint] = after[asked.joint] = asked.acceleration
     taken = np.zeros((len(pieces), 3))
-    taken[1:] = bend * np.minimum(speeds[1:] ** 2, corners)[:, None]
-    np.maximum(taken[:-1], bend * np.minimum(speeds[:-1] ** 2, corners)[:, None], out=taken[:-1])
+    taken[1:] = before
+    np.maximum(taken[:-1], after, out=taken[:-1])
     if more:
         taken[-1] = CENTRIPETAL_SHARE * amax
     left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)

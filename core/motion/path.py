@@ -47,6 +47,11 @@ class Path:
         """Length of the whole path, mm."""
         return float(self.s[-1] - self.s[0])
 
+    @property
+    def reach(self) -> float:
+        """How far round a joint its limit looks at most, mm: the way of one interval."""
+        return float(self.limits.interval * self.cap.max(initial=0.0))
+
     def block_span(self, n: int) -> tuple[float, float]:
         """Distances at which block ``n`` starts and ends. Raises MotionError when it is not on this path."""
         i = int(np.searchsorted(self.blocks, n))
@@ -122,13 +127,17 @@ class PathBuilder:
         self._closed, self._path = True, None
 
     def drop_before(self, n: int) -> None:
-        """Forget the blocks before block ``n`` but the last with a length: corners need a neighbour."""
+        """Forget the blocks before block ``n`` but the last with a length: corners need a neighbour.
+
+        Short chords need those of one interval.
+        """
         path = self.path()
         keep = int(np.searchsorted(path.blocks, n))
         piece = int(path.first[keep])
         if piece == 0:
             return
-        keep = int(np.searchsorted(path.first, piece - 1, side="right")) - 1
+        near = int(np.searchsorted(path.s, path.s[piece] - path.reach, side="right")) - 1
+        keep = int(np.searchsorted(path.first, max(min(piece - 1, near), 0), side="right")) - 1
         piece = int(path.first[keep])
         self._s0 = float(path.s[piece])
         self._start = path.point(path.s[piece : piece + 1])[0]

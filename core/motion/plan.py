@@ -73,9 +73,14 @@ def settled_joints(path: Path, start_s: float | None = None) -> int:
     soft = np.minimum(path.cap, path.pieces.rate)[first:] ** 2
     np.minimum(limit, soft, out=limit)
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
-    most = reachable_backward(limit, run.gain[:-1])
+    # Joints of short chords near the end may yet be allowed more.
+    known = int(np.searchsorted(path.s[first : first + len(limit)], path.s[-1] - path.reach, side="right"))
+    limit, gain = limit[:known], run.gain[: max(known - 1, 0)]
+    if known < 2:
+        return -1
+    most = reachable_backward(limit, gain)
     limit[-1] = 0.0
-    least = reachable_backward(limit, run.gain[:-1])
+    least = reachable_backward(limit, gain)
     same = np.flatnonzero(most - least <= _SETTLED * most)
     return first + int(same[-1]) if len(same) else -1
 

@@ -58,6 +58,13 @@ def chords(radius: float, angle: float, count: int, feed: float) -> list[Block]:
     return polyline([(radius * math.sin(t), radius * math.cos(t)) for t in steps], feed)
 
 
+def rounded_chords(count: int, feed: float, grid: float) -> list[Block]:
+    """Chords of 0.02 mm of a circle of R 50 mm whose ends lie on a grid, as words of a program do."""
+    turns = [0.0004 * i for i in range(count + 1)]
+    ends = [(50.0 * math.sin(t), 50.0 * math.cos(t)) for t in turns]
+    return polyline([(round(x / grid) * grid, round(z / grid) * grid) for x, z in ends], feed)
+
+
 def backwards(blocks: Sequence[Block]) -> list[Block]:
     """The same path from its end to its start."""
     return [

@@ -9,7 +9,7 @@ import pytest
 
 from core.motion.path import build_path
 from core.motion.plan import plan
-from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline
+from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, rounded_chords
 
 
 def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> float:
@@ -70,6 +70,30 @@ def test_chords_do_not_ask_more_of_an_axis_than_it_has() -> None:
     t = np.arange(0.0, profile.duration, T)
     felt = np.abs(np.diff(profile.position(t), 2, axis=0)) / T**2
     assert felt.max() < 1.02 * A
+
+
+@pytest.mark.parametrize("grid", [0.0001, 0.001, 0.00127])
+def test_chords_that_end_on_the_step_are_as_fast_as_their_circle(grid: float) -> None:
+    """4 places of a millimetre, 3, and .00005 in: directions turn by up to seven degrees a joint."""
+    profile = plan(build_path(rounded_chords(7854, 100.0, grid), LIMITS))
+    assert profile.duration < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
+    felt = np.abs(np.diff(profile.position(np.arange(0.0, profile.duration, T)), 2, axis=0)) / T**2
+    assert felt.max() < 1.02 * A
+
+
+def test_a_coarse_grid_is_felt_and_slows_the_chords() -> None:
+    """Steps of .0001 in: at 100 mm/s the second difference would reach 4 · .00127 mm / (1 ms)² > amax."""
+    profile = plan(build_path(rounded_chords(2000, 100.0, 0.00254), LIMITS))
+    assert profile.duration > 1.5 * (40.0 / 100.0 + 100.0 / A)
+
+
+def test_a_corner_between_short_chords_is_still_a_corner() -> None:
+    """A right angle in chords of 0.02 mm: the axes step by amax in one interval, as between long lines."""
+    there = [(0.0, 0.02 * i) for i in range(200)]
+    across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
+    path = build_path(polyline([*there, *across], 100.0), LIMITS)
+    profile = plan(path)
+    assert float(profile.at(profile.time_at(path.s[199:200]))[1][0]) == pytest.approx(A * T)
 
 
 def test_a_block_without_length_makes_no_corner() -> None:

@@ -14,7 +14,7 @@ from core.interpreter.blocks import Block, Kind
 from core.motion.errors import MotionError
 from core.motion.path import PathBuilder, build_path
 from core.motion.plan import plan
-from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
+from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs, rounded_chords
 
 few = settings(max_examples=60, deadline=None)
 moment = st.floats(0.0, 1.0)
@@ -185,6 +185,24 @@ def test_a_growing_path_never_leads_into_a_state_without_a_future(
     builder.close()
     (s,), (v,) = profile.at(moments[-1] * profile.duration)
     assert plan(builder.path(), start_s=s, start_v=v).end_s == pytest.approx(profile.end_s, abs=1e-9)
+
+
+@pytest.mark.parametrize("grid", [0.001, 0.00127, 0.004])
+@pytest.mark.parametrize("seed", range(4))
+def test_chords_on_the_step_may_come_in_and_be_dropped_at_any_moment(grid: float, seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    blocks = rounded_chords(900, 100.0, grid)
+    builder, at = PathBuilder(LIMITS), 40
+    builder.add(blocks[:at])
+    profile = plan(builder.path())
+    while at < len(blocks):
+        (s,), (v,) = profile.at(float(chance.random()) * min(profile.duration, 0.004))
+        builder.drop_before(int(builder.path().blocks[profile.path.piece_at(np.array([s]))[0]]))
+        count = int(chance.integers(1, 40))
+        builder.add(blocks[at : at + count])
+        at += count
+        profile = plan(builder.path(), start_s=s, start_v=v)
+    assert profile.position(profile.duration)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
 def test_a_corner_that_comes_in_late_takes_nothing_from_the_braking_under_way() -> None:

@@ -17,7 +17,7 @@ from core.motion.limits import MotionLimits
 from core.motion.path import build_path
 from core.motion.plan import plan
 from core.motion.timeline import Chunk, ChunkPlanner, sample_positions
-from tests.motion.moves import LIMITS, A, chords, line, polyline, programs
+from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
 
 
 def planned(blocks: list[Block], window: int) -> list[Chunk]:
@@ -54,6 +54,16 @@ def test_chords_longer_to_brake_on_than_a_window() -> None:
     chunks = planned(blocks, 20)
     assert len(chunks) > 10
     assert chunks[-1].t1[-1] == pytest.approx(whole.duration, rel=1e-9)
+
+
+@pytest.mark.parametrize("window", [3, 40, 300])
+def test_windows_of_chords_on_the_step_equal_the_whole(window: int) -> None:
+    """The limit of a joint looks an interval back and ahead, over what is dropped and what is to come."""
+    blocks = rounded_chords(1500, 100.0, 0.001)
+    whole = plan(build_path(blocks, LIMITS))
+    chunks = planned(blocks, window)
+    assert len(chunks) > 2
+    assert chunks[-1].t1[-1] == pytest.approx(whole.duration, rel=1e-3)
 
 
 def test_blocks_are_taken_lazily_and_memory_stays_bounded() -> None:
