@@ -14,7 +14,7 @@ from app.compose.machine import read_machine, setup_for
 from app.compose.offsets import Offsets, stored_offsets
 from app.compose.simulated import simulated
 from app.desk.desk import Desk
-from app.desk.editing.bench import Bench
+from app.desk.editing.bench import Bench, NoArchive
 from app.desk.editing.editor import Editor
 from app.desk.home import home
 from app.desk.session import Proved, Session, Watch, Workshop
@@ -89,15 +89,15 @@ def desk_and_executor(
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         machine=f"{machine.name} · SIMULATED",
-        editor=_editor(machine, offsets, journal) if journal is not None else None,
+        editor=_editor(machine, offsets, journal),
     )
     heard.append(desk)
     return desk, executor
 
 
-def _editor(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Editor:
+def _editor(machine: Machine, offsets: Callable[[], Offsets], journal: Journal | None) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
-    return Editor(Bench(workshop(machine, offsets), journal, home() / "programs", samples()))
+    return Editor(Bench(workshop(machine, offsets), journal or NoArchive(), home() / "programs", samples()))
 
 
 def step_clock() -> StepClock:

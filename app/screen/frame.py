@@ -83,7 +83,7 @@ class Frame(QWidget):
     def _front(self) -> None:
         page = self.page
         self.desk.starts_here = page.STARTS
-        self.keys.show_labels(page.LABELS)
+        self.keys.show_labels(page.labels())
         self._lay_out()
         self.log.hide()
         self.notice.stackUnder(self.log)
@@ -180,6 +180,7 @@ class Frame(QWidget):
         if self.dock is not None:
             self.dock.show_station(snapshot)
         self.page.refresh(snapshot, view, loaded)
+        self.keys.show_labels(self.page.labels())
 
     def _show_large(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
         self.position.show_position(view.position)

@@ -6,12 +6,23 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import MENU
+from app.desk.pages import EDITOR, MENU
 from app.screen.menu import MenuPage
 from app.screen.pages import Host, Page
 
 MakePage = Callable[[Host, QWidget], Page]
 
+
+def _editor(host: Host, parent: QWidget) -> Page:
+    from app.screen.editor.page import EditorPage
+
+    editor = host.desk.editor
+    if editor is None:
+        raise RuntimeError("the desk was put together without an editor")
+    return EditorPage(host, editor, parent)
+
+
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
+    EDITOR: _editor,
 }

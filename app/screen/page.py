@@ -101,7 +101,7 @@ class AutomaticPage(Page):
         """What the page itself does, by key."""
         return {
             "F2": self.ask_file,
-            "F3": partial(self._go, pages.EDITOR),
+            "F3": self._edit,
             "F4": self.desk.next_readout,
             "F5": self.path.fit,
             "F6": partial(self.desk.later, "F6"),
@@ -121,6 +121,12 @@ class AutomaticPage(Page):
 
     def _go(self, name: str) -> None:
         self.host.go(name)
+
+    def _edit(self) -> None:
+        """The program on the desk, or whatever name stands in the question for a file."""
+        if self.desk.editor is not None:
+            self.desk.editor.wanted = self.files.edit.text() if self.files.isVisible() else ""
+        self._go(pages.EDITOR)
 
     def ask_file(self) -> None:
         """``FILE TO BE PROCESSED``, unless a program is under way."""

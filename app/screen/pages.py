@@ -7,6 +7,7 @@ It is made when it is first opened. What a page gives:
 
 ``NAME``      its name in ``app.desk.pages``; the title line shows it.
 ``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
+``labels()``  the same, where they change with what the page is doing.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
 ``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
               E, D, R, A and the pots work on every page, as does F1.
@@ -66,6 +67,10 @@ class Page(QWidget):
         super().__init__(parent)
         self.host, self.look, self.desk = host, host.look, host.desk
         self.hide()
+
+    def labels(self) -> tuple[str, ...]:
+        """The labels of this moment; asked for once a frame."""
+        return self.LABELS
 
     def doings(self) -> Doings:
         """Keys of this page alone."""

@@ -27,7 +27,8 @@ def left_over() -> list[str]:
     """Windows, running timers and threads that nobody has put away."""
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     gc.collect()
-    found = [f"thread {thread.name}" for thread in threading.enumerate() if thread.name.startswith("loading")]
+    names = [thread.name for thread in threading.enumerate()]
+    found = [f"thread {name}" for name in names if name.startswith(("loading", "editing"))]
     for thing in shiboken6.getAllValidWrappers():
         if isinstance(thing, QTimer) and thing.isActive():
             found.append(f"timer of {thing.parent()}")

@@ -7,6 +7,8 @@ from pathlib import Path
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.desk.desk import Desk
+from app.desk.editing.bench import Archive, Bench, NoArchive
+from app.desk.editing.editor import Editor
 from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
@@ -22,7 +24,9 @@ SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
 TOOLS = {n: ToolOffset(x, z) for n, x, z in ((1, -12.7, -76.2), (2, 6.35, -63.5), (3, -25.4, -81.28))}
 
 
-def desk_on(machine: FakeMachine, *folders: Path, two_hand: bool = True) -> Desk:
+def desk_on(
+    machine: FakeMachine, *folders: Path, two_hand: bool = True, archive: Archive | None = None
+) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
 
@@ -38,13 +42,16 @@ def desk_on(machine: FakeMachine, *folders: Path, two_hand: bool = True) -> Desk
         machine.blocks = list(timed_blocks(Timeline.of(job.source, job.setup, lathe)))
         return sketched(machine.blocks, watch)
 
+    work = Workshop(load_source, make_job, proved, draw)
+    archive = archive or NoArchive()
     return Desk(
         post=machine.post,
         snapshot=machine.snapshot,
-        session=Session(Workshop(load_source, make_job, proved, draw), machine.post),
+        session=Session(work, machine.post),
         shelf=Shelf(folders or (SAMPLES,)),
         station=machine,
         two_hand=two_hand,
+        editor=Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)),
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )

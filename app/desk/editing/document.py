@@ -38,8 +38,12 @@ class Document:
 
     def encoded(self, text: str) -> bytes:
         """``text`` as it goes to the disk, with the line ends that the file has."""
-        ended = text if text.endswith("\n") or not text else text + "\n"
-        return ended.replace("\n", self.line_end).encode("utf-8", "replace")
+        return ended(text).replace("\n", self.line_end).encode("utf-8", "replace")
+
+
+def ended(text: str) -> str:
+    """The text with its last line ended, as it is saved and proved: nobody need press Return for that."""
+    return text if text.endswith("\n") or not text else text + "\n"
 
 
 def opened(path: Path, samples: Path) -> Document:

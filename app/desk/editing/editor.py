@@ -14,7 +14,7 @@ from pathlib import Path
 from app.desk.editing import saving, words
 from app.desk.editing.bench import Bench
 from app.desk.editing.checking import Checker
-from app.desk.editing.document import Document, NameRefusedError, created, opened
+from app.desk.editing.document import Document, NameRefusedError, created, ended, opened
 from app.desk.editing.worker import Worker
 
 
@@ -44,6 +44,7 @@ class Editor:
     notice: str = ""
     text_number: int = 0  # counts texts put into the field from here: opened, created, restored
     text: str = ""  # the last of them
+    wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
     restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
     checker: Checker = field(init=False)
@@ -52,7 +53,7 @@ class Editor:
     _leaving: bool = False
     _replace: bool = False  # a file changed by somebody else was shown and is replaced all the same
     _abandoning: bool = False
-    _wanted: str = ""  # text whose saving waits for a name
+    _unnamed: str = ""  # text whose saving waits for a name
 
     def __post_init__(self) -> None:
         self.checker = Checker(self.bench.workshop)
@@ -122,7 +123,7 @@ class Editor:
 
     def changed(self, text: str) -> None:
         """This is in the field now: have it proved."""
-        self.checker.submit(self.name, text, self.block_delete)
+        self.checker.submit(self.name, ended(text), self.block_delete)
 
     def is_dirty(self, text: str) -> bool:
         """Whether leaving now would have something to save."""
@@ -151,7 +152,7 @@ class Editor:
         if not text.strip():
             self.notice = words.EMPTY
         elif document.protected:
-            self.stage, self.notice, self._wanted = Stage.NAMING, words.SAMPLE, text
+            self.stage, self.notice, self._unnamed = Stage.NAMING, words.SAMPLE, text
         else:
             self._write(document, text)
 
@@ -169,7 +170,7 @@ class Editor:
             self.notice = words.THERE_ALREADY.format(path.name)
             return False
         self.clear()
-        self._write(replace(document, path=path, protected=False, fresh=True), self._wanted)
+        self._write(replace(document, path=path, protected=False, fresh=True), self._unnamed)
         return True
 
     def keep_no_name(self) -> None:

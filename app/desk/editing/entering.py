@@ -37,6 +37,7 @@ def enter(desk: Desk, typed: str = "") -> bool:
     if editor is None:
         desk.later("F3")
         return False
+    editor.wanted = ""
     why = refusal(desk.snapshot())
     name, now = typed.strip(), desk.session.now
     path = desk.shelf.find(name) if name else now.path

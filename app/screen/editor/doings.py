@@ -7,6 +7,8 @@ from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from app.desk import pages
+
 if TYPE_CHECKING:
     from app.screen.editor.page import EditorPage
 
@@ -44,8 +46,9 @@ def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
 
 def _text(page: EditorPage) -> dict[int, Doing]:
     return {
+        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
         2: Doing("SAVE", page.save),
-        3: Doing("LEAVE", page.leave),
+        3: Doing("LEAVE", partial(page.leave_to, pages.AUTOMATIC)),
         4: Doing("FIND", page.ask_text),
         5: Doing("GO TO", page.ask_line),
         6: Doing("NEXT ERR", page.next_finding),

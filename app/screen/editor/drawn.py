@@ -18,6 +18,11 @@ class EditedPath(PathView):
     title = "PATH TO THE CURSOR"
     _by_hand = False
 
+    @property
+    def tip(self) -> Tip:
+        """Where the line of the cursor ends."""
+        return self._tip
+
     def show_picture(self, picture: Picture | None) -> None:
         """The path as it is after the last key."""
         if picture is self._picture:

@@ -1,7 +1,6 @@
-"""The F3 editor: the text with its margin, the path beside it, what proving has found, and the function keys.
+"""The F3 editor: the text with its margin, the path beside it, and what proving has found.
 
-``refresh`` is called once a frame while the page is shown. Everything is done by keys alone, and every key in
-the lowest row is a target for a finger.
+Everything is done by keys alone, and every function key is a target for a finger.
 """
 
 from __future__ import annotations
@@ -12,41 +11,42 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.desk import Desk
-from app.desk.editing import words
+from app.desk import pages
 from app.desk.editing.editor import Editor, Stage
+from app.desk.editing.entering import enter
 from app.desk.editing.history import History
-from app.desk.prompts import MOVING
-from app.screen.bars import PromptLine
+from app.desk.session import Loaded
+from app.desk.view import View
 from app.screen.editor.ask import AskLine
-from app.screen.editor.bars import EditorTitle, Heading, KeyRow
 from app.screen.editor.doings import Doing, Mode, doings
 from app.screen.editor.drawn import EditedPath
 from app.screen.editor.finder import Finder
 from app.screen.editor.findings import FindingList
+from app.screen.editor.heading import Heading, HeadLine
 from app.screen.editor.layout import editor_places
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
-from app.screen.layout import unit
-from app.screen.look import Look
+from app.screen.pages import Doings, Host, Page
+from core.executor.snapshot import Snapshot
 
 _ASKING = {Mode.FIND, Mode.GO_TO, Mode.NAME}
 
 
-class EditorPage(QWidget):
-    """``closed`` is called when the editor has been left and the page should go."""
+class EditorPage(Page):
+    """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed."""
 
-    def __init__(
-        self, look: Look, desk: Desk, editor: Editor, closed: Callable[[], None], parent: QWidget
-    ) -> None:
-        super().__init__(parent)
-        self.look, self.desk, self.editor, self._closed = look, desk, editor, closed
+    NAME = pages.EDITOR
+
+    def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        look, self.editor = host.look, editor
         self._mode = Mode.TEXT
+        self._target = pages.AUTOMATIC  # where leaving leads to
         self._taken = 0  # number of the text of the editor that stands in the field
         self._stale = False  # the text has changed since it was given to the editor
         self._text = ""
         self._dirty = False
-        self.title = EditorTitle(look, self)
+        self.head = HeadLine(look, self)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self)
         self.findings = FindingList(look, self.go_to, self)
@@ -54,17 +54,61 @@ class EditorPage(QWidget):
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
-        self.prompt = PromptLine(look, self)
-        self.keys = KeyRow(look, self._press, self)
         self.field.textChanged.connect(self._changed)
-        self.dress()
 
-    # --- once a frame --------------------------------------------------------------------------------
+    # --- the frame's calls ---------------------------------------------------------------------------
 
-    def refresh(self) -> None:
-        """Take up what the workers have finished, prove what has been typed, show one snapshot."""
+    def opens(self) -> bool:
+        """Not while a program is under way, nor beside a turning spindle."""
+        return self.editor.stage is not Stage.CLOSED or enter(self.desk, self.editor.wanted)
+
+    def opened(self) -> None:
+        """The program on the desk, or the name that was typed for a new one, is being fetched."""
+        self._target = pages.AUTOMATIC
+        self.field.setFocus()
+
+    def leave(self) -> bool:
+        """Save first; the page goes by itself when that is done."""
+        if self.editor.stage is Stage.OFFERED:
+            self.editor.abort()
+        if self.editor.stage is not Stage.CLOSED:
+            self.leave_to(pages.AUTOMATIC)
+        return self.editor.stage is Stage.CLOSED
+
+    def labels(self) -> tuple[str, ...]:
+        """What the function keys do now."""
+        now = self._doings()
+        return tuple(now[n].label if n in now else "" for n in range(1, 11))
+
+    def doings(self) -> Doings:
+        """The function keys of the moment."""
+        return {f"F{number}": doing.act for number, doing in self._doings().items()}
+
+    def escape(self) -> bool:
+        """A question is taken back, else the answer of the last key."""
+        if self.editor.stage is Stage.OFFERED:
+            self.editor.abort()
+        elif self._mode is not Mode.TEXT:
+            self.back()
+        elif self.editor.notice:
+            self.editor.clear()
+        else:
+            return False
+        return True
+
+    def prompt(self) -> str:
+        """The answer of the last key, or else what was found in the cursor's line."""
+        if self.editor.notice:
+            return self.editor.notice
+        line = self.field.line
+        found = self.field.finding_at(line)
+        if found is not None:
+            return f"LINE {line}: {found.message} {found.hint}".strip()
+        return "F3 SAVES AND PUTS THE PROGRAM ON THE DESK, PROVED ANEW"
+
+    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """Take up what the workers have finished, prove what has been typed, show it."""
         editor = self.editor
-        snapshot, view, _loaded = self.desk.look()
         editor.poll()
         if editor.stage is Stage.CLOSED:
             self._go()
@@ -74,9 +118,7 @@ class EditorPage(QWidget):
         self._follow_stage()
         line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.title.show_heading(
-            Heading(editor.name, self._mark(), view.state, view.tone, place, self.desk.time_of_day())
-        )
+        self.head.show_heading(Heading(editor.name, self._mark(), place))
         findings = editor.checker.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
@@ -84,8 +126,6 @@ class EditorPage(QWidget):
         self.path.follow(line, snapshot.modal.metric)
         self.path.advance()
         self.versions.refresh()
-        self.keys.show_labels({number: doing.label for number, doing in self._doings().items()})
-        self.prompt.show_text(self._words(line, moving=snapshot.state in MOVING), answer=bool(editor.notice))
 
     def _take_text(self) -> None:
         editor = self.editor
@@ -127,19 +167,8 @@ class EditorPage(QWidget):
             return "NEW"
         return "CHANGED" if self._dirty else ""
 
-    def _words(self, line: int, *, moving: bool) -> str:
-        if self.editor.notice:
-            return self.editor.notice
-        if moving:
-            return "THE MACHINE MOVES BY THE PROGRAM AS IT WAS LOADED: ESC FOR FEED HOLD"
-        found = self.field.finding_at(line)
-        if found is not None:
-            return f"LINE {line}: {found.message} {found.hint}".strip()
-        return "F3 SAVES AND PUTS THE PROGRAM ON THE DESK, PROVED ANEW"
-
     def _changed(self) -> None:
-        if self.field.document().revision() >= 0:
-            self._stale = True
+        self._stale = True
 
     # --- what keys do --------------------------------------------------------------------------------
 
@@ -150,18 +179,6 @@ class EditorPage(QWidget):
 
     def _doings(self) -> dict[int, Doing]:
         return doings(self, self._mode)
-
-    def _press(self, number: int) -> None:
-        """A function key, or a finger on it."""
-        doing = self._doings().get(number)
-        if doing is not None:
-            doing.act()
-            self.refresh_if_shown()
-
-    def refresh_if_shown(self) -> None:
-        """What a key has done is seen at once."""
-        if self.editor.stage is not Stage.CLOSED:
-            self.refresh()
 
     def _enter(self, mode: Mode) -> None:
         self._mode = mode
@@ -221,8 +238,9 @@ class EditorPage(QWidget):
         """Save and go on."""
         self.editor.save(self._now())
 
-    def leave(self) -> None:
-        """Save and go."""
+    def leave_to(self, page: str) -> None:
+        """Save and go to another page."""
+        self._target = page
         self.editor.leave(self._now())
 
     def abandon(self) -> None:
@@ -253,16 +271,6 @@ class EditorPage(QWidget):
         self._enter(Mode.TEXT)
         self.go_to(int(number))
 
-    def _escape(self) -> None:
-        if self.desk.snapshot().state in MOVING:
-            self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
-        elif self.editor.stage is Stage.OFFERED:
-            self.editor.abort()
-        elif self._mode is not Mode.TEXT:
-            self.back()
-        else:
-            self.editor.clear()
-
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
@@ -272,30 +280,17 @@ class EditorPage(QWidget):
         return False
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Keys that no field has taken. None goes further: a letter typed here starts nothing elsewhere."""
-        self._key(event)
-        event.accept()
-
-    def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        """Nor does a release."""
-        event.accept()
+        """Keys that no field has taken; what means nothing here is the frame's."""
+        if not self._key(event):
+            event.ignore()
 
     def _key(self, event: QKeyEvent) -> bool:
-        number = event.key() - Qt.Key.Key_F1 + 1
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         control = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
-        if 1 <= number <= 10:
-            if not event.isAutoRepeat():
-                self._press(number)
-            return True
-        if number in {11, 12}:
-            self.editor.notice = words.NO_START
-            return True
         action = self._chords().get(event.key()) if control else self._plain(shift).get(event.key())
         if action is None:
             return False
         action()
-        self.refresh_if_shown()
         return True
 
     def _chords(self) -> dict[int, Callable[[], None]]:
@@ -309,42 +304,42 @@ class EditorPage(QWidget):
         }
 
     def _plain(self, shift: bool) -> dict[int, Callable[[], None]]:
-        keys: dict[int, Callable[[], None]] = {Qt.Key.Key_Escape: self._escape}
         if self._mode in _ASKING:
             back = self._mode is Mode.FIND and shift
-            enter = (lambda: self.finder.step(-1)) if back else self.take
+            enter_key = (lambda: self.finder.step(-1)) if back else self.take
             tab = self.ask.other_field
-            keys |= {Qt.Key.Key_Return: enter, Qt.Key.Key_Enter: enter}
-            keys |= {Qt.Key.Key_Tab: tab, Qt.Key.Key_Backtab: tab}
-        elif self._mode is Mode.HISTORY:
-            page = self.versions.lines
-            keys |= {
-                Qt.Key.Key_Up: lambda: self.history.mark(self.history.marked - 1),
-                Qt.Key.Key_Down: lambda: self.history.mark(self.history.marked + 1),
-                Qt.Key.Key_PageUp: lambda: self.versions.look_at(-page),
-                Qt.Key.Key_PageDown: lambda: self.versions.look_at(page),
-                Qt.Key.Key_Return: self.restore,
-                Qt.Key.Key_Enter: self.restore,
+            return {
+                Qt.Key.Key_Return: enter_key,
+                Qt.Key.Key_Enter: enter_key,
+                Qt.Key.Key_Tab: tab,
+                Qt.Key.Key_Backtab: tab,
             }
-        return keys
+        if self._mode is not Mode.HISTORY:
+            return {}
+        page = self.versions.lines
+        return {
+            Qt.Key.Key_Up: lambda: self.history.mark(self.history.marked - 1),
+            Qt.Key.Key_Down: lambda: self.history.mark(self.history.marked + 1),
+            Qt.Key.Key_PageUp: lambda: self.versions.look_at(-page),
+            Qt.Key.Key_PageDown: lambda: self.versions.look_at(page),
+            Qt.Key.Key_Return: self.restore,
+            Qt.Key.Key_Enter: self.restore,
+        }
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Everything again, in the new unit."""
-        self.look.resize(unit(self.width(), self.height()))
         self._lay_out()
         self.dress()
 
     def _lay_out(self) -> None:
-        at = editor_places(self.width(), self.height(), asking=self._mode in _ASKING)
+        at = editor_places(self.width(), self.height(), self.look.u, asking=self._mode in _ASKING)
         for part, rect in (
-            (self.title, at.title),
+            (self.head, at.head),
             (self.field, at.text),
             (self.path, at.path),
             (self.findings, at.findings),
             (self.versions, at.body),
             (self.ask, at.ask),
-            (self.prompt, at.prompt),
-            (self.keys, at.keys),
         ):
             part.setGeometry(*rect)
             part.update()
@@ -354,8 +349,6 @@ class EditorPage(QWidget):
         self.field.dress()
         self.ask.dress()
         self.path.restart()
-        for part in self.findChildren(QWidget):
-            part.update()
 
     def _go(self) -> None:
         """The editor has been left."""
@@ -365,4 +358,4 @@ class EditorPage(QWidget):
         self._mode = Mode.TEXT
         self.ask.hide()
         self.versions.hide()
-        self._closed()
+        self.host.go(self._target)

@@ -1,0 +1,54 @@
+"""The line over the text: what is edited, whether it differs from its file, where the cursor stands."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+
+
+class Heading(NamedTuple):
+    """``mark`` is CHANGED, SAMPLE or NEW, empty for what is as its file."""
+
+    name: str = ""
+    mark: str = ""
+    place: str = ""
+
+
+class HeadLine(Panel):
+    """The program being written, which need not be the one on the desk that the title line names."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.heading = Heading()
+
+    def show_heading(self, heading: Heading) -> None:
+        """What stands in the line."""
+        if heading != self.heading:
+            self.heading = heading
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u, high, now = self.look, self.look.u, self.height(), self.heading
+        painter.setPen(look.colour("text"))
+        font = look.fit(now.name, 2.3, 40 * u, bold=True)
+        painter.setFont(font)
+        put(painter, QRectF(1.4 * u, 0, 41 * u, high), LEFT, now.name)
+        left = 3.0 * u + min(40 * u, QFontMetricsF(font).horizontalAdvance(now.name))
+        if now.mark:
+            painter.setFont(look.font(1.7, bold=True))
+            wide = QFontMetricsF(painter.font()).horizontalAdvance(now.mark) + 1.6 * u
+            box = QRectF(left, 0.4 * u, wide, high - 0.8 * u)
+            painter.fillRect(box, look.colour("mark"))
+            painter.setPen(look.colour("on_mark"))
+            put(painter, box, CENTRE, now.mark)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.9))
+        put(painter, QRectF(self.width() - 46 * u, 0, 44.6 * u, high), RIGHT, now.place)

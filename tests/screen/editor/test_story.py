@@ -1,0 +1,243 @@
+"""Programs written, mended, saved and brought back, by keys alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+
+from app.desk import pages
+from app.desk.editing import words
+from app.desk.session import Phase
+from core.executor.commands import CycleStart
+from core.executor.snapshot import State
+from core.language.diagnostics import Severity
+from tests.desk.editing.shop import GOOD, Memory
+from tests.screen.desks import SAMPLES
+from tests.screen.editor.writer import Writer
+from tests.screen.hands import Key
+
+CTRL = Qt.KeyboardModifier.ControlModifier
+
+
+def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: Path, memory: Memory) -> None:
+    writer.key(Key.Key_F2)
+    writer.type("first")
+    writer.key(Key.Key_Return)
+    writer.key(Key.Key_X)  # FILE NOT FOUND, any key
+    writer.key(Key.Key_F3)
+    assert writer.prompt() == "PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT"
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.editor.head.heading.mark == "NEW")
+    writer.write(GOOD.replace("Z-.5", "Z-.5.5"))
+    writer.sees(writer.proved)
+    found = writer.editor.field.finding_at(5)
+    assert found is not None
+    assert found.severity is Severity.ERROR
+    writer.key(Key.Key_F6)
+    writer.sees(lambda: writer.editor.field.line == 5)
+    writer.sees(lambda: found.message in writer.prompt())
+    writer.key(Key.Key_End)
+    writer.key(Key.Key_Backspace)
+    writer.key(Key.Key_Backspace)
+    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.diagnostics)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    assert writer.desk.session.now.name == "first.nc"
+    assert (tmp_path / "first.nc").read_text() == GOOD
+    assert [text for text, _why in memory.kept["first.nc"]] == [GOOD.encode()]
+    writer.sees(lambda: writer.prompt().startswith("TO START"))
+
+
+def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
+    writer.key(Key.Key_F2)
+    writer.type("first")
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.prompt() == words.CREATE)
+    writer.key(Key.Key_Escape)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
+    writer.key(Key.Key_F2)
+    writer.type("bad?name")
+    writer.key(Key.Key_F3)
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: "CANNOT NAME A PROGRAM" in writer.prompt())
+    writer.key(Key.Key_Escape)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+
+
+def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) -> None:
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.prompt() == words.NO_PROGRAM)
+    assert writer.front == pages.AUTOMATIC
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.BLOCK_END, State.WAIT])
+def test_refused_while_a_program_is_under_way(writer: Writer, state: State) -> None:
+    writer.load("pin")
+    writer.machine.now = replace(writer.machine.now, state=state)
+    writer.machine.blocks = ()
+    writer.key(Key.Key_F3)
+    assert writer.prompt() == words.UNDER_WAY
+    assert writer.front == pages.AUTOMATIC
+
+
+@pytest.mark.parametrize(
+    ("command", "measured", "why"), [(900, 0, words.SPINDLE_ON), (0, 80, words.COASTING)]
+)
+def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured: int, why: str) -> None:
+    writer.load("pin")
+    writer.machine.now = replace(writer.machine.now, rpm_command=command, rpm_actual=measured)
+    writer.key(Key.Key_F3)
+    assert writer.prompt() == why
+    assert writer.front == pages.AUTOMATIC
+
+
+def test_the_palms_start_nothing_from_the_editor(writer: Writer) -> None:
+    writer.edit("pin")
+    writer.both_palms()
+    assert CycleStart() not in writer.machine.posted
+
+
+def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: Path) -> None:
+    before = (SAMPLES / "pin.nc").read_bytes()
+    writer.edit("pin")
+    assert writer.editor.head.heading.mark == "SAMPLE"
+    writer.type("(MINE)")
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: writer.prompt() == words.SAMPLE)
+    writer.sees(writer.editor.ask.first.hasFocus)
+    writer.type("mine")
+    writer.key(Key.Key_Return)
+    writer.sees(lambda: writer.prompt() == "mine.nc IS SAVED")
+    assert (SAMPLES / "pin.nc").read_bytes() == before
+    assert (tmp_path / "mine.nc").read_bytes() == b"(MINE)" + before
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    assert writer.desk.session.now.name == "mine.nc"
+
+
+def test_esc_at_the_name_of_a_sample_goes_on_editing(writer: Writer, tmp_path: Path) -> None:
+    writer.edit("pin")
+    writer.type("(MINE)")
+    writer.key(Key.Key_F3)
+    writer.sees(writer.editor.ask.first.hasFocus)
+    writer.key(Key.Key_Escape)
+    writer.sees(writer.editor.field.hasFocus)
+    writer.type("X")
+    assert writer.text().startswith("(MINE)X")
+    assert not list(tmp_path.iterdir())
+
+
+def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
+    writer.new("feeds")
+    writer.write("F100\nX1F1000\nZ1F100")
+    writer.key(Key.Key_F, CTRL)
+    writer.type("f100")
+    writer.sees(lambda: writer.editor.ask.answer == "2 FOUND, 1 MORE INSIDE LONGER WORDS")
+    writer.key(Key.Key_Tab)
+    writer.type("F300")
+    writer.key(Key.Key_F5)
+    assert writer.editor.ask.answer == "2 REPLACED"
+    assert writer.text() == "F300\nX1F1000\nZ1F300"
+    writer.key(Key.Key_Escape)
+    writer.key(Key.Key_Z, CTRL)
+    assert writer.text() == "F100\nX1F1000\nZ1F100"
+
+
+def test_replace_one_by_one(writer: Writer) -> None:
+    writer.new("feeds")
+    writer.write("F1\nF1\nF1")
+    writer.key(Key.Key_F4)
+    writer.type("F1")
+    writer.key(Key.Key_Tab)
+    writer.type("F2")
+    for _ in range(2):
+        writer.key(Key.Key_F4)
+    assert writer.text().count("F2") == 2
+    assert writer.text().count("F1") == 1
+
+
+def test_go_to_a_line_and_what_is_no_line(writer: Writer) -> None:
+    writer.edit("pin")
+    writer.key(Key.Key_F5)
+    writer.type("0")
+    writer.key(Key.Key_Return)
+    assert writer.editor.ask.answer.startswith("A NUMBER FROM 1 TO")
+    writer.key(Key.Key_Backspace)
+    writer.type("7")
+    writer.key(Key.Key_Return)
+    assert writer.editor.field.line == 7
+
+
+def test_the_path_follows_the_cursor(writer: Writer) -> None:
+    writer.new("path")
+    writer.write(GOOD)
+    writer.sees(writer.proved)
+    writer.key(Key.Key_G, CTRL)
+    writer.type("4")
+    writer.key(Key.Key_Return)
+    writer.sees(lambda: writer.editor.path.tip.z == pytest.approx(2.54))
+    writer.key(Key.Key_Down)
+    writer.sees(lambda: writer.editor.path.tip.z == pytest.approx(-12.7))
+    assert writer.editor.path.tip.x == pytest.approx(12.7)  # X1 is a diameter of one inch
+
+
+def test_an_older_version_is_restored_and_can_be_undone(writer: Writer, memory: Memory) -> None:
+    writer.new("part")
+    writer.write(GOOD)
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.type("(SECOND)")
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: len(memory.kept["part.nc"]) == 2)
+    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.key(Key.Key_F7)
+    writer.sees(lambda: len(writer.editor.history.rows) == 2)
+    writer.key(Key.Key_Down)
+    writer.sees(lambda: [row.sign for row in writer.editor.history.changes].count("-") == 1)
+    writer.key(Key.Key_Return)
+    writer.sees(lambda: writer.text() == GOOD)
+    writer.key(Key.Key_Z, CTRL)
+    assert writer.text() == GOOD.rstrip("\n") + "(SECOND)"
+
+
+def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> None:
+    writer.new("gone")
+    writer.write("X1")
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_empty_program_is_not_saved(writer: Writer) -> None:
+    writer.new("empty")
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: writer.prompt() == words.EMPTY)
+    writer.key(Key.Key_F3)  # an untouched new file is forgotten
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+
+
+def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> None:
+    writer.new("menu")
+    writer.write(GOOD)
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.front == pages.MENU)
+    assert (tmp_path / "menu.nc").exists()
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+
+
+def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None:
+    writer.new("letters")
+    posted = len(writer.machine.posted)
+    writer.type("SOCHRDEAT/,.+-Z")
+    assert writer.text() == "SOCHRDEAT/,.+-Z"
+    assert len(writer.machine.posted) == posted

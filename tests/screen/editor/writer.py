@@ -1,0 +1,56 @@
+"""The operator at the editor: the same hands, and what he sees of the text."""
+
+from __future__ import annotations
+
+from app.desk import pages
+from app.screen.editor.page import EditorPage
+from tests.screen.hands import Hands, Key
+
+
+class Writer(Hands):
+    """Types programs."""
+
+    @property
+    def editor(self) -> EditorPage:
+        """The page, which must be in front."""
+        page = self.frame.page
+        assert isinstance(page, EditorPage)
+        return page
+
+    @property
+    def front(self) -> str:
+        """The name of the page in front."""
+        return self.frame.page.NAME
+
+    def text(self) -> str:
+        """What stands in the field."""
+        return self.editor.field.toPlainText()
+
+    def write(self, text: str) -> None:
+        """Type lines."""
+        for number, line in enumerate(text.splitlines()):
+            if number:
+                self.key(Key.Key_Return)
+            self.type(line)
+
+    def new(self, name: str) -> None:
+        """A new file, by the control's own dialogue."""
+        self.key(Key.Key_F2)
+        self.type(name)
+        self.key(Key.Key_Return)
+        self.key(Key.Key_X)
+        self.key(Key.Key_F3)
+        self.key(Key.Key_F1)
+        self.sees(lambda: self.front == pages.EDITOR and self.editor.field.hasFocus())
+
+    def edit(self, name: str) -> None:
+        """A program of the shelf, from the desk into the editor."""
+        self.load(name)
+        self.key(Key.Key_F3)
+        self.sees(lambda: self.front == pages.EDITOR and bool(self.text()))
+
+    def proved(self) -> bool:
+        """Whether what is typed is proved."""
+        page = self.editor
+        checker = page.editor.checker
+        return not checker.behind and page.findings.findings is checker.now and checker.now.number > 0
