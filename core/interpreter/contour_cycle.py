@@ -17,6 +17,7 @@ from core.interpreter.view import View, view_from
 
 _WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _MOST_ELEMENTS = 2_000
+_MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
 def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> list[Move]:
@@ -41,7 +42,7 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
         raise refused(made, "U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
-        _passes(state, made, rougher, area, cut)
+        _passes(state, made, rougher, area, cut, len(contour))
     try:
         rougher.finish(backwards=view.backwards)
     except StartNearError:
@@ -54,12 +55,15 @@ def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> 
     return [view.placed(move) for move in rougher.moves]
 
 
-def _passes(state: State, made: Statement, rougher: Rougher, area: Area, cut: float) -> None:
+def _passes(state: State, made: Statement, rougher: Rougher, area: Area, cut: float, elements: int) -> None:
     if area.deepest <= 0:
         text = "The contour leaves nothing to cut between it and the start point."
         raise refused(made, "G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(made, "I", count, "passes")
+    if count * elements > _MOST_LOOKS:
+        text = f"{count:,} passes beside a contour of {elements:,} lines and arcs are too many to work out."
+        raise refused(made, "I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
     if rougher.plunged:

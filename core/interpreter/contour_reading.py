@@ -14,7 +14,7 @@ from core.interpreter.log import refusal
 from core.interpreter.modes import geometry_modes
 from core.interpreter.moves import go, on_step
 from core.interpreter.state import State
-from core.interpreter.statement import Statement
+from core.interpreter.statement import UNREADABLE, Statement
 from core.interpreter.tools import frame
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
@@ -22,6 +22,8 @@ from core.language.omniturn import Word
 _SAME = 1e-6  # mm
 _MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
 _NOSE = frozenset({40, 41, 42})
+_TURNS = frozenset({"CA", "CI"})
+_CORNERS = frozenset({"C", "R"})
 
 
 def read_contour(state: State, made: Statement, lines: Sequence[Statement]) -> list[Element]:
@@ -57,8 +59,12 @@ class _Reader:
         self._pieces: list[Piece] = []
 
     def take(self, line: Statement) -> None:
-        if line.flow:
-            raise _refused(line, 1, f"{line.flow} cannot stand in a contour", "Write the lines out.")
+        if line.flow == UNREADABLE:
+            raise _refused(line, 1, "The contour cannot be read here", "Correct the line.")
+        idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
+        if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
+            what = f"{line.text} cannot stand in a contour"
+            raise _refused(line, 1, what, "A contour holds moves, arcs and corners written out.")
         if line.one_shot not in {None, 4, 10, 92, *codes.ARCS}:
             column = line.code.column if line.code else 1
             raise _refused(line, column, f"G{line.one_shot} cannot stand in a contour", "Take it out.")

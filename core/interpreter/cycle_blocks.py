@@ -7,11 +7,13 @@ from math import hypot
 from typing import NamedTuple
 
 from core.geometry.arcs import Point, arc_length
+from core.geometry.contour import Arc, Line
 from core.interpreter import units
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.feeds import check_move
 from core.interpreter.log import refusal
 from core.interpreter.moves import on_step
+from core.interpreter.shown import move_words
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
@@ -142,30 +144,7 @@ def _block(state: State, made: Statement, move: Move) -> Block:
 
 def move_text(state: State, start: Point, move: Move) -> str:
     """The motion as a line of the program would say it, in the mode and unit in force."""
-    words = "" if move.rapid is None else "G00"
+    end = move.x, move.z
     if move.centre is not None:
-        words = "G02" if move.clockwise else "G03"
-    # A coordinate lacks the secondary offset, a distance has none in it.
-    base_x, base_z = (state.dx, state.dz) if state.absolute else start
-    if abs(move.x - start[0]) > _SAME or move.centre is not None:
-        words += "X" + _number(state, (move.x - base_x) / state.scale_x)
-    if abs(move.z - start[1]) > _SAME or move.centre is not None:
-        words += "Z" + _number(state, (move.z - base_z) / state.scale_z)
-    if move.centre is not None:
-        words += _centre_words(state, start, move.centre)
-    return words
-
-
-def _centre_words(state: State, start: Point, centre: Point) -> str:
-    """I and K: coordinates under G90 and G73, else distances; lengths of a radius in both."""
-    distances = state.modal.diameter or not state.absolute
-    base_x, base_z = start if distances else (state.dx, state.dz)
-    scale = state.scale_z
-    return f"I{_number(state, (centre[0] - base_x) / scale)}K{_number(state, (centre[1] - base_z) / scale)}"
-
-
-def _number(state: State, value: float) -> str:
-    text = f"{value:.{4 if state.modal.metric else 5}f}".rstrip("0").rstrip(".")
-    if text in {"-0", ""}:
-        return "0"
-    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+        return move_words(state.modal, Arc(start, end, move.centre, move.clockwise))
+    return ("" if move.rapid is None else "G00") + move_words(state.modal, Line(start, end))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from core.interpreter import codes
-from core.interpreter.statement import Statement
+from core.interpreter.statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, Severity
+
+_CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
 
 class Structure(NamedTuple):
@@ -33,6 +36,7 @@ class _Finder:
         self._ended = False
         self._stray = False  # a line that nothing reaches has been told
         self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
+        self._contour_lost = False  # it is on a line that cannot be read
 
     def take(self, made: Statement) -> None:
         if self._in_contour(made):
@@ -56,12 +60,14 @@ class _Finder:
     def _in_contour(self, made: Statement) -> bool:
         """Whether the line is one of a contour, or its RF; it steers nothing then."""
         if made.flow == "RF":
-            if self._contour is None:
+            if self._contour is None and not self._contour_lost:
                 self._refuse(made, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out.")
-            else:
+            elif self._contour is not None:
                 self.found.contours[self._contour.line - 1] = made.line - 1
-                self._contour = None
+            self._contour, self._contour_lost = None, False
             return True
+        if made.flow == UNREADABLE and _CONTOUR_CYCLE.search(made.text):
+            self._contour_lost = True  # told already; its RF is no second mistake
         if made.flow in {"}", "M99"} or made.m in codes.ENDS:
             self._open_contour()
         inside = self._contour is not None

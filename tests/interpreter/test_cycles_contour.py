@@ -148,7 +148,7 @@ def test_behind_a_rise_the_tool_plunges() -> None:
         "X.32", "Z-.49", "G00X.34", "G00Z-.21",
         "X.265", "Z-.49", "G00X.285", "G00Z-.21",
         "X.21", "Z-.49", "G00X.34", "G00Z.1",
-        "X.31", "Z0", "Z-.2", "G02X.3Z-.21I.3K-.2", "X.21", "Z-.49", "X.4",
+        "X.31", "Z0", "Z-.2", "G02X.3Z-.21R.01", "X.21", "Z-.49", "X.4",
         "G00Z.1", "G00X.43",
     ]  # fmt: skip
 
@@ -222,6 +222,10 @@ def test_an_edge_that_runs_back_is_told() -> None:
         (("G75I.1U.02F4", "X.2Z.1", "X.39", "Z-.5", "RF"), (4, 1, "cycle-start-near")),
         (("G75I.1F4", "X.2Z0", "LS2", "Z-.5", "LF", "X.4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "G81Z-.5", "RF"), (6, 1, "cycle-contour-line")),
+        (("G75I.1F4", "X.2Z0", "R.1", "X.4", "RF"), (6, 1, "cycle-contour-line")),
+        (("G75I.1F4", "X.2Z0", "CA90", "X.4", "RF"), (6, 1, "cycle-contour-line")),
+        (("G75I.1F4", "X.2Z0", "(~PLXC)", "(END)", "RF"), (6, 1, "cycle-contour-line")),
+        (("G75I.1F4", "X.2Z0", "X,4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "M98P1", "X.4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "G42", "Z-.5", "X.4", "RF"), (6, 1, "cycle-nose-comp")),
         (("G75I.1F4", "X.2Z0R.1", "Z-.5", "X.4", "RF"), (5, 6, "cycle-contour-line")),
@@ -246,6 +250,17 @@ def test_refused_per_revolution_of_a_spindle_that_stands() -> None:
     result = passed(body("M05", "X.4Z.1", "G95G75I.1F.003", *SHAFT, "RF"))
     assert result.errors == [(5, 0, "spindle-stopped")]
     assert all(block.line < 5 for block in result.blocks)
+
+
+def test_a_cycle_that_cannot_be_read_makes_no_second_mistake_of_its_rf() -> None:
+    result = passed(body("X.4Z.1", "G75I,1F4", *SHAFT, "RF"))
+    assert [error for error in result.errors if error[0] != 4] == []
+
+
+def test_refused_where_it_would_take_too_long_to_work_out() -> None:
+    teeth = [f"X{0.2 + 0.0005 * (k % 2):.4f}Z{-0.001 * k:.3f}" for k in range(400)]
+    result = passed(body("X.4Z.1", "G75I.0003F4", *teeth, "RF"))
+    assert result.errors == [(4, 4, "cycle-passes")]
 
 
 def test_lines_after_a_refused_cycle_are_judged_from_its_start() -> None:
