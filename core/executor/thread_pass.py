@@ -20,7 +20,7 @@ from core.ports import AxisSink, DriverError, Segments
 
 _BLEND = 0.01  # s in which a deviation is taken out
 _LONGEST = 0.16  # s; a deviation that takes more is no wander
-_EARLY = 0.03  # s between the first plan and the start, in which the start can still be corrected
+_EARLY = 0.01  # s between the first plan and the start, in which the start can still be corrected
 _SHARE = 0.7  # of the acceleration for running up: the rest corrects
 _PATIENCE = 0.002  # s more for a braking, which has one try
 _TRIES = 3

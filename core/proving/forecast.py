@@ -14,6 +14,10 @@ DRIVE_LATENCY = 0.08
 SETTLING = 0.035
 
 
+# Seconds that the executor leaves between the plan of a thread pass and its start.
+THREAD_EARLY = 0.01
+
+
 class SpindleForecast:
     """The spindle as its drive ramps it: signed rpm over time, and when it will have been at speed.
 

@@ -18,7 +18,7 @@ from core.machine.model import Machine
 from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.timeline import Chunk, ChunkPlanner
-from core.proving.forecast import SETTLING, SpindleForecast
+from core.proving.forecast import SETTLING, THREAD_EARLY, SpindleForecast
 
 
 class Moved(NamedTuple):
@@ -142,8 +142,8 @@ class Timeline:
         if not turn:
             return self._rest(0.0)
         ramp = block.feed * turn / (2.0 * self._machine.axes[1].amax)
-        ahead = abs(self.spindle.turns(self.t)) + turn * ramp
-        return self._rest((math.ceil(ahead - 1e-9) - ahead) / turn)
+        ahead = abs(self.spindle.turns(self.t)) + turn * (ramp + THREAD_EARLY)
+        return self._rest(THREAD_EARLY + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
     def _moved(self, start: float, chunk: Chunk) -> Moved:
         blocks = [self._moving.popleft() for _ in range(len(chunk.n))]

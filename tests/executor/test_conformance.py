@@ -26,6 +26,9 @@ NAMES = (
     "loop-notches",
     "secondary-taper",
     "tapping",
+    "thread-cleanup",
+    "thread-external",
+    "thread-internal",
     "workshift-bar-loop",
     "workshift-dry-run",
 )
