@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import dist, hypot, sqrt
 
 from core.geometry.arcs import Point
-from core.geometry.contour import Arc, Box, Element, Line
+from core.geometry.contour import Arc, Element, Line
 from core.geometry.extent import SAME_POINT
 
 # Curves that miss each other by less than this touch: the offsets of tangent elements are that exact, and a
@@ -105,10 +105,3 @@ def _facing(element: Element, other: Element) -> list[Point]:
         (element.centre[0] - rx, element.centre[1] - rz),
     )
     return [point for point in both if 0.0 < element.along(point) < element.length]
-
-
-def boxes_apart(a: Box, b: Box) -> float:
-    """How far two boxes are apart, mm; what lies in them is no nearer."""
-    dx = max(a[0] - b[1], b[0] - a[1], 0.0)
-    dz = max(a[2] - b[3], b[2] - a[3], 0.0)
-    return hypot(dx, dz)
