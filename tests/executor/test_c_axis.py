@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from app.compose.machine import setup_for
-from core.executor.commands import CycleStart, LoadJob
+from core.executor.commands import CycleStart, FeedHold, FeedOverride, LoadJob, Reset, SetSwitch
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.setup import ToolOffset
@@ -80,3 +81,88 @@ def test_a_part_after_six_flats_begins_at_zero_again_without_unwinding() -> None
     rig.until(State.IDLE, State.FAULT, limit=60)
     # M19 turns 40 degrees to -360, which counts as 0; C-400 then ends at -760.
     assert rig.shot.demand[2] == pytest.approx(-760.0)
+
+
+FLAT = "G90G94F300\nM19\nX-.5Z0F100\n(~PLXC)\n(X.3Y-.3F20)\n(Y.3)\n(X-.3)\n(END)\nX-.6\nM30\n"
+INCH = 25.4
+
+
+def off_the_flat(shot: Snapshot) -> float:
+    """How far the tool lies beside the line X = .3 in on the part, mm."""
+    x, _, c = shot.demand
+    return abs(-x * math.cos(math.radians(c)) - 0.3 * INCH)
+
+
+def on_the_flat(shot: Snapshot) -> bool:
+    return shot.line == 6
+
+
+def test_a_hold_in_a_plane_stays_on_the_flat_and_goes_on() -> None:
+    rig = Rig()
+    worst: list[float] = []
+    rig.watch.append(lambda shot: worst.append(off_the_flat(shot)) if on_the_flat(shot) else None)
+    rig.start(FLAT)
+    rig.until_true(on_the_flat)
+    rig.run(0.3)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    assert rig.shot.line == 6
+    rig.run(0.5)
+    rig.post(FeedOverride(1.5), CycleStart())
+    rig.until_true(lambda shot: shot.line != 6)
+    rig.until(State.IDLE, State.FAULT)
+    assert rig.shot.alarms == ()
+    assert max(worst[:-2]) < 0.00005 * INCH
+    assert rig.shot.demand == pytest.approx((-0.6 * INCH, 0.0, -135.0), abs=1e-6)
+
+
+def test_single_block_stops_at_every_corner_of_the_mill() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("single_block", on=True))
+    rig.start(FLAT)
+    stops = []
+    for _ in range(20):
+        rig.until(State.BLOCK_END, State.IDLE)
+        if rig.state is State.IDLE:
+            break
+        stops.append((rig.shot.line, round(rig.shot.demand[2], 3)))
+        rig.run(0.4)
+        rig.post(CycleStart())
+    assert stops == [(2, 0.0), (3, 0.0), (5, 45.0), (6, -45.0), (7, -135.0), (9, -135.0)]
+
+
+def test_reset_in_a_plane_and_a_new_start() -> None:
+    rig = Rig()
+    rig.start(FLAT)
+    rig.until_true(on_the_flat)
+    rig.run(0.2)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    turned = rig.shot.demand[2]
+    assert -45.0 < turned < 45.0
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until(State.IDLE, State.FAULT)
+    assert rig.shot.alarms == ()
+    assert rig.shot.demand[2] == pytest.approx(-135.0)
+
+
+def test_no_flat_beyond_the_travel_of_x() -> None:
+    """X at the entry lies inside, a corner of the figure does not."""
+    rig = Rig()
+    source = Source("FAR", "G90G94F300\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
+    setup = setup_for(rig.machine, tools={}, secondary={})
+    assert [(d.line, d.code) for d in prove(source, setup, rig.machine).errors] == [(5, "soft-limit")]
+    rig.start(source.text)
+    rig.until(State.FAULT)
+    assert rig.shot.alarms[0].code == "travel"
+
+
+def test_a_spindle_that_does_not_stop_never_lets_c_turn() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S1000\nG04F2\nM19\nC90\nG04F1\nM30\n")
+    rig.run(1.0)
+    rig.sim.machine.spindle_ignores_stop()
+    rig.until(State.FAULT)
+    assert rig.shot.alarms[0].code == "ignores-stop"
+    assert rig.shot.demand[2] == 0.0
