@@ -149,7 +149,7 @@ def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
 def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
     """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
     whole = start == element.start and end == element.end
-    if not whole and element.along(end) - element.along(start) < SAME_POINT:
+    if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:  # else an arc could close
         raise GougeError(index, "nothing of the element is left between its neighbours")
     return element.part(start, end)
 

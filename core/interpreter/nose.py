@@ -63,7 +63,8 @@ def check_under_nose(state: State, made: Statement) -> None:
         word = made.code or made.m_word
         what = word.text if word is not None else "C"
         raise _refused(made, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
-    if "D" in made.words and "T" not in made.words and not state.shape.approach:
+    other = made.value("D") not in {None, state.modal.secondary}
+    if other and "T" not in made.words and not state.shape.approach:
         text = f"D changes while G{on} is on."
         raise _refused(made, "comp-d", text, "D belongs on the first move after G41 or G42 alone.")
 

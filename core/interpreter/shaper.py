@@ -78,4 +78,5 @@ class Shaper:
         state.shape.active = self._corners.active or self._nose.active
         if not state.shape.active:
             state.blocks = count
+            state.shape.approach = 0  # a T may have ended what had not begun
             self._count = None

@@ -188,6 +188,15 @@ def test_on_again_right_after_it_was_off() -> None:
     assert [(x, z) for _, x, z in way(result)[7:]] == [(0.3, 0.52), (0.2, 0.52), (0.2, 0.8)]
 
 
+def test_a_tool_before_the_approach_leaves_nothing_behind() -> None:
+    result = run("X1Z1F9", "G41", "T2", "X0Z0", "X.5C.03", "Z-1")
+    assert way(result)[1:] == [("feed", 0, 0), ("feed", 0.47, 0), ("feed", 0.5, -0.03), ("feed", 0.5, -1)]
+
+
+def test_the_same_offset_may_be_named_again() -> None:
+    assert way(run(*FACING, "X.2D2", "Z-.3D2", "X.3", "Z1D2", "G40")) == way(run(*SHAFT))
+
+
 def test_off_while_it_is_off_is_nothing() -> None:
     assert way(run("G40", "X1F9", "G90G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
 
