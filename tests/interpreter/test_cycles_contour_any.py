@@ -23,37 +23,46 @@ STEPS = st.lists(_STEP, min_size=1, max_size=7)
 FALLING = STEPS.map(
     lambda steps: [(w, 12.0 - 11.0 * k / len(steps), "line", r) for k, (w, _, _, r) in enumerate(steps)]
 )
-SIDES = st.tuples(st.sampled_from([20.0, -20.0]), st.sampled_from([1, -1]), st.sampled_from([1, -1]))
-"""X of the start, whether X grows towards the contour, and whether Z does."""
+Side = tuple[float, int, int, bool]
+SIDES = st.tuples(
+    st.sampled_from([20.0, -20.0]), st.sampled_from([1, -1]), st.sampled_from([1, -1]), st.booleans()
+)
+"""X of the start, whether X grows towards the contour and whether Z does, whether it is written backwards."""
 
 REFUSALS = {"cycle-no-way", "cycle-start-near", "cycle-nothing"}
 
 
-def program(steps: list[tuple[float, float, str, float]], side: tuple[float, int, int], cycle: str) -> str:
-    """A contour from depth 14, way 2, in millimetres; the start stands at depth 0, way 0, which is Z3."""
-    x0, x, z = side
-    at, lines = (14.0, 2.0), [_words(side, (14.0, 2.0))]
+def program(steps: list[tuple[float, float, str, float]], side: Side, cycle: str) -> str:
+    """A contour between depth 14, way 2 and its other end, in millimetres, written from either end.
+
+    The start stands at depth 0, way 0, which is Z3.
+    """
+    x0, x, z, backwards = side
+    points, arcs = [(14.0, 2.0)], list[tuple[str, float]]()
     for way, depth, kind, radius in steps:
-        end = round(depth, 3), round(at[1] + (0 if kind == "wall" else way), 3)
-        if dist(at, end) < 0.1:
-            continue
+        end = round(depth, 3), round(points[-1][1] + (0 if kind == "wall" else way), 3)
+        if dist(points[-1], end) >= 0.1:
+            arcs.append((kind, ceil(radius * dist(points[-1], end) * 1000) / 1000))
+            points.append(end)
+    if backwards:
+        points, arcs = points[::-1], arcs[::-1]
+    lines = [_words(side, points[0])]
+    for end, (kind, size) in zip(points[1:], arcs, strict=True):
         if kind in {"left", "right"}:
-            clockwise = (kind == "right") == (x * z > 0)
-            size = ceil(radius * dist(at, end) * 1000) / 1000
+            clockwise = ((kind == "right") == (x * z > 0)) != backwards
             lines.append(f"G0{2 if clockwise else 3}{_words(side, end)}R{size:.3f}")
         else:
             lines.append(_words(side, end))
-        at = end
     head = ["G90G71G94F7000", "M03S1000", f"X{x0}Z3", f"{cycle}F100P1", "P1", "M30", "}1"]
     return "\n".join([*head, *lines, "M99", ""])
 
 
-def _words(side: tuple[float, int, int], point: tuple[float, float]) -> str:
-    x0, x, z = side
+def _words(side: Side, point: tuple[float, float]) -> str:
+    x0, x, z, _ = side
     return f"X{x0 + x * point[0]:.3f}Z{3 + z * point[1]:.3f}"
 
 
-def run(text: str, side: tuple[float, int, int]) -> tuple[Pass, list[Block]]:
+def run(text: str, side: Side) -> tuple[Pass, list[Block]]:
     result = passed(text, setup(start=(side[0] / 25.4, 3 / 25.4)))
     codes = {code for _, _, code in result.errors}
     assert codes <= REFUSALS
@@ -63,9 +72,7 @@ def run(text: str, side: tuple[float, int, int]) -> tuple[Pass, list[Block]]:
     return result, cycle
 
 
-def check(
-    steps: list[tuple[float, float, str, float]], side: tuple[float, int, int], cut: float, left: float
-) -> None:
+def check(steps: list[tuple[float, float, str, float]], side: Side, cut: float, left: float) -> None:
     result, cycle = run(program(steps, side, f"G75I{cut}U{left}"), side)
     contour = contour_of([block for block in result.moves if block.line > 8])
     assert nearest(cycle, contour) >= left - 0.002
@@ -83,7 +90,7 @@ def check(
 @settings(max_examples=100, deadline=None)
 @given(FALLING, SIDES, st.sampled_from([0.3, 1.0, 2.5]), st.sampled_from([0.0, 0.2, 0.8]))
 def test_contours_that_only_fall(
-    steps: list[tuple[float, float, str, float]], side: tuple[float, int, int], cut: float, left: float
+    steps: list[tuple[float, float, str, float]], side: Side, cut: float, left: float
 ) -> None:
     check(steps, side, cut, left)
 
@@ -91,7 +98,7 @@ def test_contours_that_only_fall(
 @settings(max_examples=150, deadline=None)
 @given(STEPS, SIDES, st.sampled_from([0.5, 1.0, 2.5]), st.sampled_from([0.0, 0.2, 0.8, 1.5]))
 def test_contours_that_rise_and_fall(
-    steps: list[tuple[float, float, str, float]], side: tuple[float, int, int], cut: float, left: float
+    steps: list[tuple[float, float, str, float]], side: Side, cut: float, left: float
 ) -> None:
     check(steps, side, cut, left)
 
@@ -99,7 +106,7 @@ def test_contours_that_rise_and_fall(
 @settings(max_examples=60, deadline=None)
 @given(STEPS, SIDES, st.sampled_from([0.0, 0.2, 0.8]))
 def test_one_pass_along_the_contour(
-    steps: list[tuple[float, float, str, float]], side: tuple[float, int, int], left: float
+    steps: list[tuple[float, float, str, float]], side: Side, left: float
 ) -> None:
     result, cycle = run(program(steps, side, f"G78U{left}"), side)
     contour = contour_of([block for block in result.moves if block.line > 8])
