@@ -30,4 +30,5 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     ]
     mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
     refuse(path, mistakes)
-    return {"TB2-9": table["7"], **table} if "7" in table else dict(table)
+    also = "7" in table and (not known or "TB2-9" in known)
+    return {"TB2-9": table["7"], **table} if also else dict(table)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -61,13 +62,13 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
     return Circumstances(machine, setup)
 
 
-def input_states(path: str | None) -> dict[str, bool]:
-    """The inputs file of the options, empty without one; raises CommandError."""
+def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
+    """The inputs file of the options, empty without one; with ``known`` no others. Raises CommandError."""
     if path is None:
         return {}
     from app.cli.inputs_file import read_inputs
 
-    return read_inputs(Path(path))
+    return read_inputs(Path(path), known)
 
 
 def read_source(path: Path, args: argparse.Namespace) -> Source:

@@ -56,6 +56,7 @@ def _run(args: argparse.Namespace, around: Circumstances, source: Source, report
     from core.executor.job import make_job
 
     job = make_job(source, around.setup)
+    inputs = input_states(args.inputs, around.machine.inputs)
     path = Path(args.file)
     with (
         EventLog.new(path.name) as log,
@@ -63,7 +64,7 @@ def _run(args: argparse.Namespace, around: Circumstances, source: Source, report
     ):
         play = headless(
             around.machine,
-            inputs=input_states(args.inputs),
+            inputs=inputs,
             realtime=args.realtime,
             log=log,
             say=lambda text: _say(path, text),

@@ -12,6 +12,7 @@ from core.executor.snapshot import Snapshot, State
 
 TICK = 0.01  # s between two looks at the machine
 PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
+_PRESSES = 10  # of Cycle Start at one stop, .2 s apart
 UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
 
@@ -85,7 +86,8 @@ class HeadlessRun:
                 return self._ended()
             if snapshot.state is State.PROGRAM_STOP:
                 self._say(f"line {snapshot.line}: stop {snapshot.message!r}: Cycle Start pressed")
-                self._until(lambda s: s.state is not State.PROGRAM_STOP, CycleStart(), tries=20)
+                if not self._started_again():
+                    return self._outcome("waiting", snapshot.start_refused or "Cycle Start is not obeyed")
             elif snapshot.state is State.HOLD:
                 return self._outcome("hold", snapshot.waiting_for or "feed hold")
             elif self._stuck(snapshot):
@@ -95,6 +97,14 @@ class HeadlessRun:
                 return self._outcome("waiting", hint)
             self._progress(snapshot.cycle_elapsed)
             self._step()
+
+    def _started_again(self) -> bool:
+        """Press Cycle Start until it goes on: a press just after the last one counts as its bounce."""
+        for _ in range(_PRESSES):
+            self._until(lambda s: s.state is not State.PROGRAM_STOP, CycleStart(), tries=20)
+            if self._executor.snapshot.state is not State.PROGRAM_STOP:
+                return True
+        return False
 
     def _stuck(self, snapshot: Snapshot) -> bool:
         """Whether it has waited too long for an input, which nobody will ever change here."""

@@ -68,7 +68,7 @@ def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
 def damaged(path: Path, error: object) -> StoreError:
     """The sentence for a store that SQLite itself refuses."""
     return StoreError(
-        f"{path} is damaged or cannot be used ({error}); it is left as it is. "
+        f"{path} is damaged or cannot be used ({' '.join(str(error).split())}); it is left as it is. "
         "Restore a backup: turndesk store restore FILE"
     )
 

@@ -96,6 +96,8 @@ def test_bad_inputs_are_refused(tmp_path: Path, text: str, told: str) -> None:
 def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     assert read_inputs(path) == {"TB25": True}
+    assert read_inputs(written(tmp_path, "[inputs]\n7 = true\n"), known=("7",)) == {"7": True}
+    path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     with pytest.raises(CommandError, match="did you mean TB2-5"):
         read_inputs(path, known=("TB2-5", "10"))
 

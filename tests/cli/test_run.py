@@ -48,6 +48,7 @@ def test_cycle_start_is_pressed_for_m00_and_said_so(
     told = turndesk("run", path, "--headless", "--offsets", offsets, "--json")
     assert told.status == 0
     assert "TURN THE PART" in told.err
+    assert told.err.count("TURN THE PART") == 1  # one press of Cycle Start, told once
 
 
 @pytest.mark.parametrize("options", [(), ("--optional-stop",)])
@@ -109,3 +110,14 @@ def test_without_headless_it_says_what_to_do(turndesk: Turndesk, part: Callable[
     told = turndesk("run", part(HEAD + "M30\n"))
     assert told.status == 2
     assert "--headless" in told.err
+
+
+def test_an_input_that_the_machine_does_not_have_is_told_before_anything_moves(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, part: Callable[[str], Path]
+) -> None:
+    inputs = tmp_path / "inputs.toml"
+    inputs.write_text('[inputs]\n"TB25" = true\n')
+    told = turndesk("run", part(HEAD + "X1Z1\nM30\n"), "--headless", "--offsets", offsets, "--inputs", inputs)
+    assert (told.status, told.out) == (2, "")
+    assert "did you mean TB2-5" in told.err
+    assert told.err.count("\n") == 1

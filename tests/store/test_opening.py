@@ -137,6 +137,7 @@ def test_bad_file_is_told_and_left_as_it_is(closed: Path, spoil: Callable[[Path]
         Store.open(closed.parent)
     assert str(closed) in str(caught.value)
     assert "left as it is" in str(caught.value)
+    assert "\n" not in str(caught.value)
     assert digest(closed) == before
 
 
