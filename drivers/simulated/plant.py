@@ -18,6 +18,7 @@ from drivers.straight import straight
 
 _NEVER = float("inf")
 _PAST = 0.1  # s of setpoints that may still be asked for
+_STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
 
 
@@ -157,6 +158,8 @@ class Plant:
             axis = servo.axis
             if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
                 raise DriverError(f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued")
+            if axis.name == "C" and abs(segments.v[:, i]).max() > 0.0 and abs(self.spindle.speed) > _STANDS:
+                raise DriverError(f"C: the spindle turns at {self.spindle.speed:.0f} rpm; nothing was queued")
             if axis.travel is None or not servo.homed:
                 continue
             low, high = axis.travel

@@ -220,3 +220,18 @@ def test_terminals_refuse_unknown_names() -> None:
         sim.ports.io.write("laser", True)
     with pytest.raises(DriverError, match="input '77' is not in the machine file"):
         sim.machine.set_input("77", True)
+
+
+def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
+    sim, clock = simulation()
+    turn = ramp(0.03, ZERO, 100.0, 0.2)
+    turn = turn._replace(p=turn.p[:, [1, 2, 0]], v=turn.v[:, [1, 2, 0]], a=turn.a[:, [1, 2, 0]])
+    sim.ports.spindle.run(500.0)
+    play(sim, clock, 1.0)
+    with pytest.raises(DriverError, match="C: the spindle turns at 500 rpm"):
+        sim.ports.axes.splice(turn._replace(t=turn.t + 1.0))
+    sim.ports.spindle.run(0.0)
+    play(sim, clock, 1.0)
+    sim.ports.axes.splice(turn._replace(t=turn.t + 2.0))
+    play(sim, clock, 1.0)
+    assert sim.ports.axes.sample().actual[2] == pytest.approx(100.0 * 0.2333, abs=0.05)
