@@ -16,8 +16,8 @@ from core.language.source import Source
 if TYPE_CHECKING:
     from app.desk.picture import Picture
 
-QUIET = 0.02  # seconds without a key after which proving begins
-LONGEST = 0.05  # seconds that typing may put it off
+QUIET = 0.008  # seconds without a key after which proving begins
+LONGEST = 0.03  # seconds that typing may put it off
 PATIENCE = 0.2  # seconds of work after which a newer text takes the worker
 _WEIGHT = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 

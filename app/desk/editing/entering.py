@@ -13,6 +13,7 @@ from pathlib import Path
 from app.desk import prompts
 from app.desk.desk import Desk
 from app.desk.editing import words
+from app.desk.editing.editor import Editor
 from app.desk.lamps import TURNING
 from core.executor.snapshot import Snapshot
 
@@ -28,18 +29,14 @@ def refusal(snapshot: Snapshot) -> str:
     return words.COASTING if abs(snapshot.rpm_actual) > TURNING else ""
 
 
-def enter(desk: Desk, typed: str = "") -> bool:
-    """Go into the editor: with the program of a typed name, or else with that on the desk.
+def enter(desk: Desk, editor: Editor) -> bool:
+    """Go into the editor: with the program of the name that was typed, or else with that on the desk.
 
     A name that no program has is offered as a new file. False when it is refused; the desk says why.
     """
-    editor = desk.editor
-    if editor is None:
-        desk.later("F3")
-        return False
-    editor.wanted = ""
     why = refusal(desk.snapshot())
-    name, now = typed.strip(), desk.session.now
+    name, now = editor.wanted.strip(), desk.session.now
+    editor.wanted = ""
     path = desk.shelf.find(name) if name else now.path
     if why or not (name or path):
         desk.say(why or words.NO_PROGRAM)
@@ -56,6 +53,6 @@ def enter(desk: Desk, typed: str = "") -> bool:
 def _reload(desk: Desk, path: Path) -> None:
     """What was edited becomes the program on the desk, read and proved anew."""
     if desk.snapshot().state in UNDER_WAY:
-        desk.say(words.RUNS_OLD)  # somebody started a cycle at the station meanwhile
+        desk.say(words.RELOAD)  # somebody started a cycle at the station meanwhile
     else:
         desk.session.load(path, desk.session.now.block_delete)

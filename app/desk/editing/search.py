@@ -45,7 +45,9 @@ class Search:
         """The count as the screen tells it."""
         count = len(self.places(text))
         found = f"{count} FOUND" if count else "NOT FOUND"
-        more = self.inside(text) if self.whole else 0
+        if not self.whole:
+            return f"{found}, PARTS OF WORDS TOO"
+        more = self.inside(text)
         return f"{found}, {more} MORE INSIDE LONGER WORDS" if more else found
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk import pages
+from app.desk.editing import words
 
 if TYPE_CHECKING:
     from app.screen.editor.page import EditorPage
@@ -29,6 +30,10 @@ class Doing(NamedTuple):
 
     label: str
     act: Callable[[], None]
+
+
+PROMPTS = {Mode.FIND: words.FINDING, Mode.GO_TO: words.GOING, Mode.HISTORY: words.CHOOSING}
+"""What the prompt line says while nothing else is to be said."""
 
 
 def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
@@ -62,11 +67,12 @@ def _text(page: EditorPage) -> dict[int, Doing]:
 def _finding(page: EditorPage) -> dict[int, Doing]:
     finder = page.finder
     return {
+        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
         2: Doing("NEXT", partial(finder.step, 1)),
         3: Doing("BEFORE", partial(finder.step, -1)),
         4: Doing("REPLACE", finder.replace),
         5: Doing("ALL", finder.replace_all),
-        6: Doing("WHOLE" if finder.whole else "PARTS", finder.other_width),
+        6: Doing("PARTS" if finder.whole else "WHOLE", finder.other_width),
         8: Doing("UNDO", page.field.undo),
         9: Doing("REDO", page.field.redo),
         10: Doing("BACK", page.back),
@@ -76,6 +82,7 @@ def _finding(page: EditorPage) -> dict[int, Doing]:
 def _history(page: EditorPage) -> dict[int, Doing]:
     history, versions = page.history, page.versions
     return {
+        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
         2: Doing("RESTORE", page.restore),
         4: Doing("NEWER", lambda: history.mark(history.marked - 1)),
         5: Doing("OLDER", lambda: history.mark(history.marked + 1)),

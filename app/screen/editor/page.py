@@ -12,13 +12,15 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.editing import words
 from app.desk.editing.editor import Editor, Stage
 from app.desk.editing.entering import enter
 from app.desk.editing.history import History
+from app.desk.prompts import MOVING
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.editor.ask import AskLine
-from app.screen.editor.doings import Doing, Mode, doings
+from app.screen.editor.doings import PROMPTS, Doing, Mode, doings
 from app.screen.editor.drawn import EditedPath
 from app.screen.editor.finder import Finder
 from app.screen.editor.findings import FindingList
@@ -46,6 +48,7 @@ class EditorPage(Page):
         self._stale = False  # the text has changed since it was given to the editor
         self._text = ""
         self._dirty = False
+        self._moving = False
         self.head = HeadLine(look, self)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self)
@@ -60,12 +63,12 @@ class EditorPage(Page):
 
     def opens(self) -> bool:
         """Not while a program is under way, nor beside a turning spindle."""
-        return self.editor.stage is not Stage.CLOSED or enter(self.desk, self.editor.wanted)
+        return self.editor.stage is not Stage.CLOSED or enter(self.desk, self.editor)
 
     def opened(self) -> None:
         """The program on the desk, or the name that was typed for a new one, is being fetched."""
         self._target = pages.AUTOMATIC
-        self.field.setFocus()
+        self._enter(Mode.TEXT)
 
     def leave(self) -> bool:
         """Save first; the page goes by itself when that is done."""
@@ -86,7 +89,9 @@ class EditorPage(Page):
 
     def escape(self) -> bool:
         """A question is taken back, else the answer of the last key."""
-        if self.editor.stage is Stage.OFFERED:
+        if self._moving:
+            self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
+        elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         elif self._mode is not Mode.TEXT:
             self.back()
@@ -100,15 +105,20 @@ class EditorPage(Page):
         """The answer of the last key, or else what was found in the cursor's line."""
         if self.editor.notice:
             return self.editor.notice
+        if self._moving:
+            return words.RUNS_OLD
+        if self._mode in PROMPTS:
+            return PROMPTS[self._mode]
         line = self.field.line
         found = self.field.finding_at(line)
         if found is not None:
             return f"LINE {line}: {found.message} {found.hint}".strip()
-        return "F3 SAVES AND PUTS THE PROGRAM ON THE DESK, PROVED ANEW"
+        return words.STANDING
 
     def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
         """Take up what the workers have finished, prove what has been typed, show it."""
         editor = self.editor
+        self._moving = snapshot.state in MOVING
         editor.poll()
         if editor.stage is Stage.CLOSED:
             self._go()
@@ -355,7 +365,4 @@ class EditorPage(Page):
         if self.editor.notice:
             self.desk.say(self.editor.notice)
             self.editor.clear()
-        self._mode = Mode.TEXT
-        self.ask.hide()
-        self.versions.hide()
         self.host.go(self._target)

@@ -104,6 +104,8 @@ class TextField(QPlainTextEdit):
             f"QPlainTextEdit {{ background: {colours.panel}; color: {colours.text};"
             f" border: {max(1, round(0.16 * self.look.u))}px solid {colours.frame};"
             f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
+            f"QScrollBar:vertical {{ width: {round(3.4 * self.look.u)}px; }}"
+            f"QScrollBar:horizontal {{ height: {round(2.4 * self.look.u)}px; }}"
         )
         self.setCursorWidth(max(2, round(0.3 * self.look.u)))
         self.setTabStopDistance(4 * QFontMetricsF(self.font()).horizontalAdvance("0"))
