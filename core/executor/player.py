@@ -102,14 +102,14 @@ class Player:
         self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon)
 
     def hold(self, scales: Scales) -> None:
-        """Come to rest as soon as the path allows, in a thread behind its pull-out."""
+        """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
         self._resplice(lambda t: self._plan_stop(t, scales), soon=True)
 
     def brake(self) -> None:
         """Come to rest at once on the path, thread or not."""
         if self._pass is not None:
             self._pass.brake()
-        self._resplice(lambda t: self._plan_stop(t, None), soon=True)
+        self._resplice(lambda t: self._plan_stop(t, Scales()), soon=True)
 
     def let_stop(self) -> None:
         """Leave the tail in the queue as it is: what was planned beyond it no longer holds."""
@@ -137,7 +137,7 @@ class Player:
         assert self._stretch is not None
         if self._tracks.last is None:
             return self._stretch.stoppable(last, -np.inf)
-        return self._stretch.stoppable(last, self._plan_stop(self._lead(now), None).end_s)
+        return self._stretch.stoppable(last, self._plan_stop(self._lead(now), Scales()).end_s)
 
     def at_rest(self) -> bool:
         """Nothing that was queued moves any more. The clock goes on between two questions: ask it last."""
@@ -191,16 +191,13 @@ class Player:
         s, v = track.state(t)
         return plan(path, start_s=s, start_v=v)
 
-    def _plan_stop(self, t: float, scales: Scales | None) -> Profile:
-        """``scales`` None: whatever is being cut; otherwise a thread is finished first."""
+    def _plan_stop(self, t: float, scales: Scales) -> Profile:
         assert self._stretch is not None
         track = self._tracks.at(t)
-        path = self._stretch.path(scales or Scales(), None)
+        path = self._stretch.path(scales, None)
         if track is None:
             return plan(path, stop=True)
         s, v = track.state(t)
-        if scales is not None and self._stretch.is_protected(track.block(t)):
-            return plan(self._stretch.path(Scales(0.0, 0.0, scales.turn), None), start_s=s, start_v=v)
         return plan(path, start_s=s, start_v=v, stop=True)
 
     def _resplice(self, make: Callable[[float], Profile], *, soon: bool) -> None:

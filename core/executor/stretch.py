@@ -1,4 +1,4 @@
-"""Blocks of one stretch of motion and their path; what overrides, threads and stops make of its speeds."""
+"""Blocks of one stretch of motion and their path; what overrides and stops make of its speeds."""
 
 from __future__ import annotations
 
@@ -27,21 +27,15 @@ class Stretch:
     def __init__(self, limits: MotionLimits, rpm_max: float) -> None:
         self._builder = PathBuilder(limits, rpm_max=rpm_max)
         self._blocks: dict[int, Block] = {}
-        self._protected: set[int] = set()
-        self._after_thread = False
         self.first_block: Block | None = None
 
     def add(self, blocks: Iterable[Block]) -> None:
-        """Append; a thread pass and the pull-out behind it are protected: no stop within."""
+        """Append."""
         new = list(blocks)
-        self._builder.add([_planned(block) for block in new])
+        self._builder.add(new)
         for block in new:
             self.first_block = self.first_block or block
             self._blocks[block.n] = block
-            thread = block.kind is Kind.THREAD
-            if thread or self._after_thread:
-                self._protected.add(block.n)
-            self._after_thread = thread
 
     def block(self, n: int) -> Block | None:
         """The block with this number."""
@@ -50,10 +44,6 @@ class Stretch:
     def behind(self, n: int) -> list[Block]:
         """The blocks after this one, in order."""
         return [block for number, block in sorted(self._blocks.items()) if number > n]
-
-    def is_protected(self, n: int) -> bool:
-        """Whether the slides must not stop within this block."""
-        return n in self._protected
 
     @property
     def length(self) -> float:
@@ -73,13 +63,12 @@ class Stretch:
         kept = set(self._builder.path().blocks.tolist())
         for old in [number for number in self._blocks if number not in kept and number < n]:
             del self._blocks[old]
-            self._protected.discard(old)
 
     def path(self, scales: Scales, last: int | None) -> Path:
         """The path with its speeds scaled; behind block ``last`` they are 0, so that a plan stops there.
 
-        A thread keeps its lead: only the spindle's own speed scales it. Limits do not depend on the scales,
-        so a plan made from a moving state meets the limits of the plan that it replaces.
+        Limits do not depend on the scales, so a plan made from a moving state meets the limits of the plan
+        that it replaces.
         """
         path = self._builder.path()
         if last is None and scales == (1.0, 1.0, 1.0):
@@ -94,28 +83,15 @@ class Stretch:
         numbers: list[int] = path.blocks.tolist()
         ends: list[float] = path.s[path.first[1:]].tolist()
         for n, end in zip(numbers, ends, strict=True):
-            if (last is None or n >= last) and end >= s - 1e-9 and not self._is_thread(n):
+            if (last is None or n >= last) and end >= s - 1e-9:
                 return n
         return None
-
-    def _is_thread(self, n: int) -> bool:
-        block = self._blocks.get(n)
-        return block is not None and block.kind is Kind.THREAD
 
     def _factor(self, n: int, scales: Scales, last: int | None) -> float:
         if last is not None and n > last:
             return 0.0
         block = self._blocks[n]
         if block.kind is Kind.RAPID:
-            return scales.rapid if n not in self._protected else max(scales.rapid, 1.0)
-        if block.kind is Kind.THREAD:
-            return scales.turn
-        feed = max(scales.feed, 1.0) if n in self._protected else scales.feed
-        return feed * scales.turn if block.per_rev and not block.modal.c_locked else feed
-
-
-def _planned(block: Block) -> Block:
-    """A thread moves as a feed per revolution does; only its start waits for the spindle's index."""
-    if block.kind is not Kind.THREAD:
-        return block
-    return dataclasses.replace(block, kind=Kind.FEED, per_rev=True)
+            return scales.rapid
+        turns = block.per_rev and not block.modal.c_locked
+        return scales.feed * scales.turn if turns else scales.feed

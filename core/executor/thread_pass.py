@@ -38,6 +38,7 @@ class ThreadPass:
         self._axes = axes
         self._turns = turns
         self._way = Way.of(blocks, limits)
+        self._lead, self._ramp = self._way.lead, _SHARE * self._way.a
         self.blocks = tuple(blocks)
         self._index = 0.0  # turns, unsigned, at which s = 0 is in step
         self._sign = 1.0
@@ -190,14 +191,6 @@ class ThreadPass:
     def _demand(self, t: float) -> tuple[float, float]:
         (_, z, _), (_, v, _) = self._axes.demand_at(t)
         return self._way.place(z, v)
-
-    @property
-    def _lead(self) -> float:
-        return self._way.lead
-
-    @property
-    def _ramp(self) -> float:
-        return _SHARE * self._way.a
 
 
 def _end(segments: Segments) -> float:
