@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from app.desk.home import home
+from app.desk.offsets.book import OffsetBook
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store.errors import StoreError
@@ -36,6 +37,12 @@ class Journal:
     def trouble(self) -> str:
         """Why nothing is kept, or why the last write failed; empty while all is well."""
         return self._trouble or (self._store.trouble if self._store else "")
+
+    def book(self) -> OffsetBook:
+        """The offsets of the store, for the screen to show and to change."""
+        if self._store is None:
+            return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
+        return OffsetBook(self._store)
 
     def hear(self, event: Event) -> None:
         """Keep an event; a finished part counts for the program that made it."""

@@ -9,11 +9,15 @@ from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
 from app.desk.home import home
+from app.desk.offsets.book import OffsetBook
 from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.store.rows import Kind
 
 if TYPE_CHECKING:
+    from app.compose.journal import Journal
     from core.store.store import Store
 
+OF_A_FILE = "THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT"
 Offsets = tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]
 
 
@@ -39,6 +43,21 @@ def offsets_of(store: Store) -> Offsets:
     tools = {n: ToolOffset(row.x, row.z, row.nose_radius) for n, row in store.tools().items()}
     secondary = {n: SecondaryOffset(row.x, row.z, row.r) for n, row in store.secondary().items()}
     return tools, secondary
+
+
+def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
+    """For the screen: the offsets of the journal's store, or those of a file, which are not changed here.
+
+    Raises CommandError when the file has mistakes.
+    """
+    if journal is not None and offsets is stored_offsets:
+        return journal.book()
+    tools, secondary = offsets()
+    values = {
+        Kind.TOOL: {n: (row.x, row.z, row.nose_radius) for n, row in tools.items()},
+        Kind.SECONDARY: {n: (row.x, row.z, row.r) for n, row in secondary.items()},
+    }
+    return OffsetBook(locked=OF_A_FILE, values=values)
 
 
 def chosen_offsets(path: str | None) -> Callable[[], Offsets]:

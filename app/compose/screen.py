@@ -11,7 +11,7 @@ from app.cli.errors import CommandError
 from app.compose.journal import Journal
 from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
-from app.compose.offsets import Offsets, stored_offsets
+from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.simulated import simulated
 from app.desk.desk import Desk
 from app.desk.editing.bench import Bench, NoArchive
@@ -89,6 +89,7 @@ def desk_and_executor(
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         machine=f"{machine.name} · SIMULATED",
+        book=book_of(offsets, journal),
         editor=_editor(machine, offsets, journal),
     )
     heard.append(desk)

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
 from app.desk.hands import OVERRIDE_MOST, StationHands, stepped
+from app.desk.offsets.book import NONE_KEPT, OffsetBook
 from app.desk.pulse import Pulse
-from app.desk.session import Loaded, Session
+from app.desk.session import Loaded, Phase, Session
 from app.desk.shelf import Shelf
 from app.desk.station import StationPanel
 from app.desk.view import Readout, Tone, View, view_of
@@ -70,10 +71,13 @@ class Desk:
     editor: Editor | None = None
     readout: Readout = Readout.POSITION
     notice: str = ""
+    book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     _giving_up: bool = False
+    _rebuild: bool = False
+    _changes: int = 0  # of the book, as far as they were seen
     _refused: str = ""
     _noticed_in: State | None = None
     _pulse: Pulse = field(default_factory=Pulse)
@@ -91,6 +95,7 @@ class Desk:
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
         self._answer(snapshot)
+        self._build_anew(snapshot)
         view = view_of(snapshot, self.readout, self.with_c)
         if self._pulse.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
@@ -161,6 +166,20 @@ class Desk:
         self.clear()
         self.session.load(path, self.session.now.block_delete)
         return True
+
+    def _build_anew(self, snapshot: Snapshot) -> None:
+        """When offsets were changed the program is read and proved anew, as soon as none is under way."""
+        trouble, before = self.book.poll(), self._changes
+        self._changes = self.book.changes
+        if trouble:
+            self.say(f"REFUSED: {trouble}")
+        if self._changes != before:
+            self._rebuild = True
+        if self._rebuild and snapshot.state not in UNDER_WAY and not self.book.busy:
+            self._rebuild = False
+            now = self.session.now
+            if now.path is not None:
+                self.session.load(now.path, now.block_delete)
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -254,7 +273,10 @@ class Desk:
 
     def _barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
-        return "" if self.starts_here else prompts.NOT_HERE
+        if not self.starts_here:
+            return prompts.NOT_HERE
+        stale = self._rebuild or self.book.busy or self.session.now.phase in {Phase.READING, Phase.UNREADABLE}
+        return prompts.STALE if stale and self.snapshot().state is State.IDLE else ""
 
     def _starting(self) -> None:
         """A start is tried: the same refusal again is worth saying again."""

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, MENU
+from app.desk.pages import EDITOR, MENU, SECCMP, TOOLS
 from app.screen.menu import MenuPage
+from app.screen.offsets.page import SeccmpPage, ToolsPage
 from app.screen.pages import Host, Page
 
 MakePage = Callable[[Host, QWidget], Page]
@@ -25,4 +26,6 @@ def _editor(host: Host, parent: QWidget) -> Page:
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
+    SECCMP: SeccmpPage,
+    TOOLS: ToolsPage,
 }

@@ -100,15 +100,16 @@ def _apply(
     return step
 
 
-def undo(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
+def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = None) -> tuple[Change, ...]:
     """Takes the last step back that is not undone yet; answers the changes this made.
 
-    Undoing is itself a step of the history; asking again goes further back. Raises StoreError when there is
-    nothing left to undo.
+    With ``kind`` the last step of that table. Undoing is itself a step of the history; asking again goes
+    further back. Raises StoreError when there is nothing left to undo.
     """
     step = connection.execute(
-        "SELECT max(step) FROM offset_changes WHERE undoes IS NULL"
-        " AND step NOT IN (SELECT undoes FROM offset_changes WHERE undoes IS NOT NULL)"
+        "SELECT max(step) FROM offset_changes WHERE undoes IS NULL AND kind = coalesce(?, kind)"
+        " AND step NOT IN (SELECT undoes FROM offset_changes WHERE undoes IS NOT NULL)",
+        (kind.value if kind else None,),
     ).fetchone()[0]
     if step is None:
         raise StoreError("there is no offset change to undo")

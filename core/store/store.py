@@ -105,9 +105,14 @@ class Store(StoreReader):
         """All D offsets at once, as one step of the history; answers how many were set."""
         return self.write(lambda c: offsets.clear(c, Kind.SECONDARY, Reason(why, who)))
 
-    def undo_offset(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
-        """Takes the last change of offsets back; again: the one before. StoreError when there is none."""
-        return self.write(lambda c: offsets.undo(c, Reason(why, who)))
+    def undo_offset(
+        self, why: str = "undo", *, kind: Kind | None = None, who: str = "operator"
+    ) -> Future[tuple[Change, ...]]:
+        """Takes the last change of offsets (of one ``kind``) back; again: the one before.
+
+        StoreError when there is none.
+        """
+        return self.write(lambda c: offsets.undo(c, Reason(why, who), kind))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""

@@ -13,11 +13,12 @@ from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
 from core.executor.job import Job
-from core.interpreter.setup import ToolOffset
+from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove
 from core.proving.timeline import Timeline, timed_blocks
+from core.store.rows import Kind
 from tests.screen.fake import FakeMachine
 
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
@@ -30,8 +31,10 @@ def desk_on(
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
 
+    built: list[Desk] = []
+
     def make_job(source: Source, block_delete: bool) -> Job:
-        setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
+        setup = setup_for(lathe, tools=TOOLS, secondary=_secondary(built[0]), block_delete=block_delete)
         return Job(source, setup, f"{source.name}{block_delete}", frozenset(TOOLS))
 
     def proved(job: Job, watch: Watch) -> Proved:
@@ -44,7 +47,7 @@ def desk_on(
 
     work = Workshop(load_source, make_job, proved, draw)
     archive = archive or NoArchive()
-    return Desk(
+    desk = Desk(
         post=machine.post,
         snapshot=machine.snapshot,
         session=Session(work, machine.post),
@@ -55,3 +58,9 @@ def desk_on(
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )
+    built.append(desk)
+    return desk
+
+
+def _secondary(desk: Desk) -> dict[int, SecondaryOffset]:
+    return {n: SecondaryOffset(*values) for n, values in desk.book.values[Kind.SECONDARY].items()}

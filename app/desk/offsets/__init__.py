@@ -1,0 +1,1 @@
+"""Tool and secondary offsets as the operator enters them; no Qt."""

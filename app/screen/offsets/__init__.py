@@ -1,0 +1,1 @@
+"""F8 and F9: tables of offsets with their dialogue."""

@@ -1,0 +1,84 @@
+"""A desk with a store of its own, and a machine whose state the test decides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pytest
+
+from app.desk.desk import Desk
+from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.desk import OffsetDesk, seccmp, tool_offsets
+from app.desk.picture import Sketch
+from app.desk.session import Proved, Session, Workshop
+from app.desk.shelf import Shelf
+from core.executor.job import Job, Proof
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.setup import Setup
+from core.language.source import Source
+from core.store.store import Store
+
+LIMIT = 5.0
+
+
+@dataclass
+class Room:
+    """Everything around one offset page."""
+
+    desk: Desk
+    store: Store
+    now: list[Snapshot]
+    loads: list[str] = field(default_factory=list)
+
+    def at(self, state: State = State.IDLE, *, metric: bool = False, diameter: bool = False) -> None:
+        """The machine is in this state and mode."""
+        modal = self.now[0].modal._replace(metric=metric, diameter=diameter)
+        self.now[0] = replace(self.now[0], state=state, modal=modal)
+
+    def page(self, *, tools: bool = False) -> OffsetDesk:
+        """F8 or F9, on the desk's book."""
+        return (tool_offsets if tools else seccmp)(self.desk, self.desk.book)
+
+    def enter(self, page: OffsetDesk, *answers: str) -> None:
+        """Type each answer with its Return, and wait until what they change is saved."""
+        page.look(self.now[0])
+        for answer in answers:
+            for key in answer:
+                assert page.typed(key)
+            assert page.typed("Enter")
+        self.settle(page)
+
+    def settle(self, page: OffsetDesk) -> None:
+        """Wait for the disk, then look as a frame would."""
+        self.store.write(lambda _connection: None).result(LIMIT)
+        self.desk.look()
+        page.look(self.now[0])
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[Room]:
+    store, now, loads = Store.open(tmp_path / "home"), [Snapshot(state=State.IDLE)], []
+
+    def read(path: Path) -> Source:
+        loads.append(path.name)
+        return Source(path.name, "G90\nM30\n")
+
+    workshop = Workshop(
+        read,
+        lambda source, block_delete: Job(source, Setup(block_delete=block_delete), source.name),
+        lambda job, _watch: Proved(Proof(job.digest)),
+        lambda _job, _watch: Sketch().picture(),
+    )
+    desk = Desk(
+        post=lambda _command: None,
+        snapshot=lambda: now[0],
+        session=Session(workshop, lambda _command: None),
+        shelf=Shelf(()),
+        clock=lambda: 0.0,
+        book=OffsetBook(store),
+    )
+    yield Room(desk, store, now, loads)
+    desk.close()
+    store.close()

@@ -1,0 +1,183 @@
+"""F8 and F9 by keys alone: a wear correction between two parts, undo, clear, history, a tool."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.desk import pages
+from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.desk import CLEAR, CLEAR_ASKED, KEEPS_ITS_OWN, LEAVE, TOOLS_REFUSED
+from app.desk.session import Phase
+from app.screen.offsets.page import OffsetPage
+from core.executor.commands import FeedHold, LoadJob
+from core.executor.snapshot import State
+from core.store.store import Store
+from tests.screen.hands import Hands, Key
+
+
+@pytest.fixture
+def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
+    with Store.open(tmp_path / "home") as store:
+        hands.desk.book = OffsetBook(store)
+        yield store
+
+
+def page_of(hands: Hands) -> OffsetPage:
+    page = hands.frame.page
+    assert isinstance(page, OffsetPage)
+    return page
+
+
+def answer(hands: Hands, *texts: str) -> None:
+    for text in texts:
+        hands.type(text)
+        hands.key(Key.Key_Return)
+
+
+def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, store: Store) -> None:
+    hands.load("bushing")
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    assert hands.frame.title.page == pages.SECCMP
+    hands.sees(lambda: page.asked.question == "Offset Number?")
+    assert (page.asked.which, page.asked.foot) == ("Secondary offset number:", f"{LEAVE}        {CLEAR}")
+    answer(hands, "1")
+    hands.sees(lambda: page.asked.question == "X DIAMETER CORRECTION?")
+    answer(hands, ".5-.502", "")
+    hands.sees(lambda: page.asked.question == "R?")
+    assert page.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
+    answer(hands, "")
+    hands.sees(lambda: 1 in page.table.offsets)
+    assert store.secondary()[1].x == pytest.approx(-0.001 * 25.4)
+    hands.sees(lambda: hands.prompt() == "D1 SAVED")
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is hands.page
+    hands.sees(lambda: hands.prompt().startswith("TO START"))
+    job = [command.job for command in hands.machine.posted if isinstance(command, LoadJob)][-1]
+    assert job.setup.secondary[1].x == pytest.approx(-0.001 * 25.4)
+
+
+def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    answer(hands, "2", "0,5")
+    assert hands.prompt() == "REFUSED: , in 0,5 is no number; the decimal sign is a point"
+    assert page.asked.text == "0,5"
+    hands.key(Key.Key_Backspace)
+    hands.key(Key.Key_Delete)
+    answer(hands, ".005", "", "")
+    hands.sees(lambda: 2 in page.table.offsets)
+    assert store.secondary()[2].x == pytest.approx(0.0025 * 25.4)
+
+
+def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F9)
+    before = (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot)
+    hands.type("1+1-/.,")
+    hands.type("c")
+    assert not hands.machine.now.cycle_repeat
+    assert (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot) == before
+    assert page_of(hands).asked.text == "1+1-/.,"
+
+
+def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    for number in ("1", "32"):
+        answer(hands, number, ".1", "", "")
+        hands.sees(lambda: not page.model.book.busy and page.asked.question == "Offset Number?")
+    hands.key(Key.Key_C)
+    assert hands.prompt() == CLEAR_ASKED
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is page
+    hands.key(Key.Key_C)
+    hands.key(Key.Key_C)
+    hands.sees(lambda: page.table.offsets == {})
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: sorted(page.table.offsets) == [1, 32])
+
+
+def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
+    for step in range(40):
+        store.set_secondary(1, f"change {step}", z=step + 1.0)
+    store.write(lambda _connection: None).result(5)
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    hands.key(Key.Key_F5)
+    hands.sees(page.history.isVisible)
+    assert len(page.history.entries) == 40
+    assert page.history.entries[0][3] == "change 39"
+    hands.key(Key.Key_PageDown)
+    assert page.history.top == page.history.rows
+    hands.key(Key.Key_Escape)
+    hands.sees(page.table.isVisible)
+
+
+def test_between_cycles_and_while_running(hands: Hands, store: Store) -> None:
+    hands.load("bushing")
+    hands.both_palms()
+    hands.sees_state(State.RUN)
+    loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
+    hands.key(Key.Key_F9)
+    hands.sees(lambda: hands.prompt() == KEEPS_ITS_OWN)
+    answer(hands, "1", ".1", "", "")
+    hands.sees(lambda: hands.prompt() == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START")
+    hands.key(Key.Key_Space)
+    assert FeedHold() in hands.machine.posted
+    hands.sees_state(State.HOLD)
+    assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
+    hands.machine.idle()
+    hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
+    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+
+
+def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
+    store.set_secondary(1, "inch", z=2.54).result(5)
+    hands.desk.book = OffsetBook(store)
+    hands.key(Key.Key_F9)
+    modal = hands.machine.now.modal._replace(metric=True)
+    hands.machine.now = replace(hands.machine.now, modal=modal)
+    answer(hands, "1")
+    hands.sees(lambda: "Z +2.5400" in page_of(hands).asked.change)
+
+
+def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: Store) -> None:
+    hands.load("pin")
+    hands.key(Key.Key_F8)
+    page = page_of(hands)
+    assert hands.frame.title.page == pages.TOOLS
+    answer(hands, "9", "-.5", "-3-.25", ".0156")
+    hands.sees(lambda: 9 in page.table.offsets)
+    assert store.tools()[9] == pytest.approx((-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4))
+    assert page.asked.change.startswith("T9   not set  →  X −0.50000  Z −3.25000")
+    hands.machine.now = replace(hands.machine.now, state=State.HOLD)
+    answer(hands, "9")
+    hands.sees(lambda: hands.prompt() == TOOLS_REFUSED)
+    assert page.asked.question == "Tool Number?"
+
+
+def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
+    hands.key(Key.Key_F9)
+    answer(hands, "1")
+    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
+
+
+def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    hands.sees(lambda: bool(page.pad._places) and len(page.table._places) == 32)
+    row, _choose = page.table._places[16]  # the seventeenth: first of the right column
+    QTest.mouseClick(page.table, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, row.center().toTuple())))
+    assert page.model.dialogue.number == 17
+    point, two, enter = 13, 9, 20  # places on the pad, row by row
+    for key in (point, two, enter, enter, enter):
+        spot, _press = page.pad._places[key]
+        QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
+    hands.sees(lambda: 17 in page.table.offsets)
+    assert store.secondary()[17].x == pytest.approx(0.1 * 25.4)
