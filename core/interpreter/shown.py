@@ -10,7 +10,7 @@ from core.interpreter import units
 from core.interpreter.blocks import Block
 from core.interpreter.modal import Modal
 
-_WORD = re.compile(r"([A-Z])[-+0-9.]*", re.IGNORECASE)
+_WORD = re.compile(r"([A-Z])([-+0-9.]*)")
 _PLACE = frozenset("XZIKRC")
 _ANEW = frozenset({"G02", "G03"})
 _SAME = 1e-9  # mm
@@ -51,10 +51,25 @@ def _arc(modal: Modal, arc: Arc, words: str) -> str:
 
 def with_other_words(block: Block, element: Element) -> str:
     """The text of a block that now follows ``element``: its own modal words, feed and D, the place anew."""
-    words = [match[0] for match in _WORD.finditer(block.text) if match[1].upper() not in _PLACE]
-    before = "".join(word for word in words if word.upper() not in _ANEW and word[0] not in "Dd")
-    offset = "".join(word for word in words if word[0] in "Dd")
+    words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ANEW]
+    before = "".join(word[0] for word in words if word[1] not in _PLACE and word[1] != "D")
+    offset = "".join(word[0] for word in words if word[1] == "D")
+    if offset and block.modal.absolute is False:
+        element = _without_change(block, element, {word[1]: float(word[2] or 0) for word in words})
     return before + move_words(block.modal, element, block.text.upper()) + offset
+
+
+def _without_change(block: Block, element: Element, words: dict[str, float]) -> Element:
+    """The element whose distances lack what D adds to the way of its line: more than X and Z say."""
+    scale = units.per_unit(metric=block.modal.metric)
+    scale_x = scale / 2 if block.modal.diameter else scale
+    x = block.x - block.x0 - words.get("X", 0.0) * scale_x
+    z = block.z - block.z0 - words.get("Z", 0.0) * scale
+    return (
+        Line((element.start[0] + x, element.start[1] + z), element.end)
+        if isinstance(element, Line)
+        else element
+    )
 
 
 def number(value: float, *, metric: bool) -> str:

@@ -197,6 +197,32 @@ def test_the_same_offset_may_be_named_again() -> None:
     assert way(run(*FACING, "X.2D2", "Z-.3D2", "X.3", "Z1D2", "G40")) == way(run(*SHAFT))
 
 
+CUT = ("X0Z.05F9", "G41", "X0Z-.05D1", "X.1", "G02X.2Z-.15R.1M08", "Z-.3C.03", "X.3R.03F7", "Z-.5", "X.6")
+WIDE = ("X0Z.05F9", "G41", "X0Z-.05D1", "X.2", "G02X.4Z-.15R.1M08", "Z-.3C.03", "X.6R.03F7", "Z-.5", "X1.2")
+STEPS = ("X0Z.05F9", "G41", "X0Z-.1D1", "X.2", "Z-.25M08", "X.1Z-.1", "Z-.3C.03", "X.3R.03F7", "Z-.4", "X.5")
+
+
+@pytest.mark.parametrize(
+    ("mode", "source", "nose"),
+    [("G90", CUT, 0.015), ("G91", STEPS, 0.015), ("G90G72", WIDE, 0.015), ("G90G71", CUT, 0.015 / INCH)],
+    ids=["coordinates", "distances", "diameters", "millimetres"],
+)
+def test_the_generated_lines_are_a_program_of_the_same_path(
+    mode: str, source: tuple[str, ...], nose: float
+) -> None:
+    offsets = setup(secondary={1: (-nose, -nose, nose)})
+    head = f"{mode}G94F300"
+    first = passed(lines(head, "M03S1000", *source, "G00Z3", "G40", "M30"), offsets)
+    assert first.errors == []
+    again = passed(lines(head, *(block.text for block in first.blocks)), offsets)
+    assert again.errors == []
+    assert [(b.kind, b.feed, b.per_rev, b.clockwise) for b in again.blocks] == [
+        (b.kind, b.feed, b.per_rev, b.clockwise) for b in first.blocks
+    ]
+    for a, b in zip(first.blocks, again.blocks, strict=True):
+        assert (a.x, a.z) == pytest.approx((b.x, b.z), abs=0.001)  # last places add up under G91
+
+
 def test_off_while_it_is_off_is_nothing() -> None:
     assert way(run("G40", "X1F9", "G90G40", "Z1")) == [("feed", 1, 0), ("feed", 1, 1)]
 
