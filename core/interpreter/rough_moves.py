@@ -83,8 +83,7 @@ class Rougher:
 
     def _leave(self, *, front: bool) -> None:
         if front:
-            self._go(self._at[0], min(self._at[1], 0.0))
-            self._go(0.0, self._at[1])
+            self._feed(self._at[0], min(self._at[1], 0.0))  # no pass need have been so deep here
         else:
             self._over(0.0)
         self._go(0.0, self._at[1])

@@ -131,7 +131,7 @@ def test_a_contour_from_its_back_end() -> None:
     """The same area; the pass along the contour runs as the contour does, entered from above."""
     result = rough("X.4Z-.5", "X.2", "Z0", code="G78U.02F4")
     assert result.errors == []
-    assert [b[0] for b in cycle(result)] == ["G00Z-.48", "X.22", "Z0", "G00Z.1", "G00X.4"]
+    assert [b[0] for b in cycle(result)] == ["G00Z-.48", "X.22", "Z0", "Z.1", "G00X.4"]
 
 
 GROOVE = ("X.3Z0", "Z-.2", "X.2", "Z-.5", "X.4")
