@@ -10,21 +10,18 @@ from math import dist
 from core.geometry.arcs import Point
 from core.geometry.contour import Element, Line
 from core.geometry.extent import SAME_POINT
-from core.geometry.meet import clearance, distance
-from core.geometry.offset import NEARER, WINDOW, GougeError, Offset, Piece
+from core.geometry.offset import WINDOW, GougeError, Offset, Piece
 from core.interpreter import units
 from core.interpreter.actions import ToolChange
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.corners import STRAIGHT
+from core.interpreter.lead import Lead, check_clear, check_distance
 from core.interpreter.log import Log, refusal
 from core.interpreter.remade import element_of, follow, insert, stand
 from core.interpreter.shaping import Item, Mark
 from core.language.diagnostics import ProgramError
 
 _FOLLOWED = STRAIGHT | {Kind.ARC}
-
-# An approach of one nose radius along the first move itself passes its start at .71 of the radius.
-_BESIDE = 0.5
 
 
 @dataclass(slots=True)
@@ -145,9 +142,10 @@ class Compensation:
             block.x0 - self._mark.dx + modal.secondary_x,
             block.z0 - self._mark.dz + modal.secondary_z,
         )
-        self._check_way(block, begun, (block.x, block.z), self._first, "approach")
         way = Line((block.x0, block.z0), to)
-        self._check_clear(block, way, self._first, "approach")
+        lead = Lead(block, False, self._code, self.radius, self._first)
+        check_distance(lead, begun, (block.x, block.z), self._log)
+        check_clear(lead, way)
         self._at = to
         yield follow(block, way, self._max_rpm)
         yield from self._standing(approach)
@@ -162,64 +160,29 @@ class Compensation:
             text = f"No move follows the contour between the approach and the departure of {self._name}."
             raise _refused((last or approach).block, "comp-empty", text, "Write the contour between them.")
         try:
-            for piece in self._offset.close():
-                yield from self._hand_out(piece)
+            pieces = list(self._offset.close())
         except GougeError as problem:
             raise self._gouge(problem) from None
+        way = Line(pieces[-1].element.end, (last.block.x, last.block.z))
+        self._check_departure(last, way)  # before anything that was held comes out
+        for piece in pieces:
+            yield from self._hand_out(piece)
         yield from self._standing(self._moves.pop(self._index))
-        yield from self._departed(last)
+        yield follow(last.block, way, self._max_rpm)
+        yield from last.after
         self.drop()
 
-    def _departed(self, move: _Move) -> Iterator[Block]:
+    def _check_departure(self, move: _Move, way: Line) -> None:
         block = move.block
-        assert self._at is not None
+        lead = Lead(block, True, self._code, self.radius, list(reversed(self._recent)))
         if any(each.moves for each in move.after):
             text = "The departure, the last move before G40, has no length."
-            raise _refused(move.after[-1], "comp-departure-short", text, "Move off the part.")
+            raise lead._replace(block=move.after[-1]).refused("-short", text, "Move off the part.")
         if block.kind not in STRAIGHT:
             text = "The departure, the move before G40, is no straight line."
-            raise _refused(block, "comp-departure", text, "Move off the part on a straight line.")
-        end = block.x, block.z
-        self._check_way(block, end, (block.x0, block.z0), self._recent, "departure")
-        way = Line(self._at, end)
-        self._check_clear(block, way, list(reversed(self._recent)), "departure")
-        yield follow(block, way, self._max_rpm)
-        yield from move.after
-
-    def _check_way(
-        self, block: Block, free: Point, corner: Point, contour: list[Element] | deque[Element], what: str
-    ) -> None:
-        """The approach's start or the departure's end: R or more from the part, and better 2R."""
-        metric, radius = block.modal.metric, self.radius
-        nose = units.length(radius, metric=metric)
-        if dist(free, corner) < radius - SAME_POINT:
-            length = units.length(dist(free, corner), metric=metric)
-            text = f"The {what} is {length} long, less than the nose radius {nose}."
-            raise _refused(block, f"comp-{what}-short", text, "Move farther off the part.")
-        off = min(distance(element, free) for element in contour)
-        shown = units.length(off, metric=metric)
-        place = "starts" if what == "approach" else "ends"
-        text = f"The {what} {place} {shown} off the part"
-        hint = "Keep twice the nose radius off the part."
-        if off < radius - SAME_POINT:
-            raise _refused(block, f"comp-{what}-near", f"{text}, less than the nose radius {nose}.", hint)
-        if off < 2 * radius - SAME_POINT:
-            text = f"{text}, less than twice the nose radius {nose}."
-            self._log.warn(block.line, 0, f"comp-{what}-near", text, hint)
-
-    def _check_clear(self, block: Block, way: Line, contour: list[Element], what: str) -> None:
-        """The nose on its way to or from the contour, which is given from the near end on.
-
-        Next to that end it always comes nearer than its radius where it does not come square; what it takes
-        there is less than _BESIDE of it.
-        """
-        far = 0.0
-        for element in contour:
-            least = self.radius * _BESIDE if far < 2 * self.radius else self.radius - NEARER
-            far += element.length
-            if way.length > SAME_POINT and clearance(way, element) < least - SAME_POINT:
-                text = f"On the {what} the nose of {self._name} cuts into the part."
-                raise _refused(block, "comp-gouge", text, f"Choose another way for the {what}.")
+            raise lead.refused("", text, "Move off the part on a straight line.")
+        check_distance(lead, way.end, (block.x0, block.z0), self._log)
+        check_clear(lead, way)
 
     def _gouge(self, problem: GougeError) -> ProgramError:
         block = self._moves[problem.index].block

@@ -333,6 +333,12 @@ def test_an_error_inside_takes_back_what_was_held() -> None:
     assert [b.line for b in result.moves] == [3]
 
 
+def test_a_bad_departure_is_known_before_the_contour_is_run() -> None:
+    result = run(*SHAFT[:5], "X.3", "Z-.281", "G40")
+    assert result.errors == [(9, 0, "comp-departure-short")]
+    assert [b.line for b in result.moves] == [3]
+
+
 def test_the_message_says_the_radius() -> None:
     found = run(*FACING, "X.2", "G03X.21Z-.01R.01", "X.4", "Z1", "G40").interpreter.diagnostics
     assert found[0].message.startswith("G41 with a nose radius of 0.02000 in cannot follow this move: ")
