@@ -99,10 +99,14 @@ class Player:
         ``soon`` takes effect as soon as the queue allows; without it what is queued stays and the plan goes
         on behind it. Raises MotionError and DriverError.
         """
+        if self._pass is not None:
+            self._pass.go_on()
         self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon)
 
     def hold(self, scales: Scales) -> None:
         """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
+        if self._pass is not None:
+            self._pass.hold()
         self._resplice(lambda t: self._plan_stop(t, scales), soon=True)
 
     def brake(self) -> None:

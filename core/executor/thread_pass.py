@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from core.executor.alarms import TroubleError
 from core.executor.thread_way import Phases, Way
 from core.executor.turns import Turns
@@ -24,6 +26,7 @@ _EARLY = 0.01  # s between the first plan and the start, in which the start can 
 _SHARE = 0.7  # of the acceleration for running up: the rest corrects
 _PATIENCE = 0.002  # s more for a braking, which has one try
 _TRIES = 3
+_OVER = 1.0005  # of the greatest speed, for what corrections need
 _AT_START = 1e-6  # mm
 _ALLOWED = 0.01  # of a lead, between setpoints and spindle
 
@@ -38,6 +41,7 @@ class ThreadPass:
         self._axes = axes
         self._turns = turns
         self._way = Way.of(blocks, limits)
+        self._top = limits.vmax[1]
         self._lead, self._ramp = self._way.lead, _SHARE * self._way.a
         self.blocks = tuple(blocks)
         self._index = 0.0  # turns, unsigned, at which s = 0 is in step
@@ -68,8 +72,9 @@ class ThreadPass:
     def begin(self) -> None:
         """Choose the index and queue the pass from rest."""
         now = self._axes.now()
+        self._stopped, self._index = False, 0.0
         turns, speed = self._state(now)
-        v = self._lead * speed
+        v = min(self._lead * speed, self._top)
         earliest = now + self._axes.commit + _EARLY + 0.5 * v / self._ramp
         self._index = math.ceil(turns + speed * (earliest - now) - 1e-9)
         for _ in range(_TRIES):
@@ -80,8 +85,10 @@ class ThreadPass:
     def track(self) -> None:
         """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""
         now = self._axes.now()
+        if self._stopped or now >= self._leaves or self._turns.at(now) is None:
+            return  # without an encoder what is queued is the best way out
         self._measure(now)
-        if self._stopped or self._free or now >= self._leaves:
+        if self._free:
             return
         self._replan()
 
@@ -105,6 +112,22 @@ class ThreadPass:
         told, self._told = self._told, self.worst > _ALLOWED
         return self._told and not told
 
+    def hold(self) -> None:
+        """A pass that has not begun to move does not begin; any other is finished."""
+        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
+        if self._stopped or t >= self._begins[0]:
+            return
+        place, _ = self._axes.demand_at(t)
+        still = np.zeros((1, 3))
+        self._axes.splice(Segments(np.array([t]), np.zeros(1), np.array([place]), still, still))
+        self._stopped, self._ends, self._leaves = True, t, math.inf
+
+    def go_on(self) -> None:
+        """Begin again after a hold before the first motion, at another index."""
+        s, v = self._demand(self._axes.now())
+        if self._stopped and abs(s) <= _AT_START and v == 0.0:
+            self.begin()
+
     def brake(self) -> None:
         """Come to rest along the thread; a pass that is already leaving it is left alone."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
@@ -122,6 +145,8 @@ class ThreadPass:
         if lead_in is None:
             return
         segments, leaves = self._way.onwards(t, s, v, lead_in)
+        if np.abs(segments.v[:, 1]).max() > self._top * _OVER:
+            return  # faster than the slide: it falls behind, and that is told
         self._axes.splice(segments)
         self._leaves, self._ends = leaves, _end(segments)
 
@@ -169,7 +194,8 @@ class ThreadPass:
         for _ in range(3):
             turns, speed = self._state(at)
             at += (self._index - turns) / speed
-        return at - 0.5 * self._lead * speed / self._ramp, self._lead * speed
+        v = min(self._lead * speed, self._top)
+        return at - 0.5 * v / self._ramp, v
 
     def _state(self, t: float) -> tuple[float, float]:
         """Turns and turns per second at ``t``, both counted in the direction in which the spindle turns."""
@@ -184,7 +210,7 @@ class ThreadPass:
         """How far the setpoints are from the spindle, in leads, once the slide is up to speed."""
         s, v = self._demand(now)
         turns, speed = self._state(now)
-        if self._stopped or now >= self._leaves or v < 0.9 * self._lead * speed:
+        if v < 0.9 * self._lead * speed:
             return
         self.worst = max(self.worst, abs(s / self._lead - (turns - self._index)))
 

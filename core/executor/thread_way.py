@@ -51,7 +51,7 @@ class Way(NamedTuple):
         return cls(
             x=first.x0 + first.offset_x,
             z=first.z0 + first.offset_z,
-            c=first.c0,
+            c=first.c0 + first.modal.offset_c,
             along=math.copysign(1.0, first.z - first.z0),
             length=length,
             slope=slope,

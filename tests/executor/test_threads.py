@@ -187,6 +187,43 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float) -> None:
     assert rig.shot.rpm_command == 0.0
 
 
+def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold() -> None:
+    rig = Rig()
+    recorder = Recorder(rig)
+    rig.start(EXTERNAL.replace("S600", "S60"), TOOLS)  # a turn takes a second
+    rig.until_true(lambda shot: shot.block_text.startswith("G33"))
+    stood = rig.shot.demand
+    rig.post(FeedHold())
+    rig.until(State.HOLD, limit=0.2)
+    rig.run(3.0)
+    assert rig.shot.demand == pytest.approx(stood)
+    rig.post(CycleStart())
+    rig.until(State.IDLE, State.FAULT, limit=300)
+    assert rig.shot.parts == 1
+    assert entries(recorder.phases(0)).max() < 0.2
+
+
+def test_a_thread_at_the_slides_greatest_speed_is_no_alarm() -> None:
+    """300 in/min and a spindle that runs 2 % fast: the slide falls behind, and that is told."""
+    rig = Rig()
+    rig.sim.machine.spindle_wander(0.02, 2.0)
+    rig.start(HEAD.replace("S600", "S2000").replace("Z.2", "Z.5") + "G33X.212Z-2.I.025K.15P\nM30\n", TOOLS)
+    rig.until(State.IDLE, State.FAULT)
+    assert rig.shot.alarms == ()
+    assert rig.shot.parts == 1
+    assert rig.said("thread")
+
+
+def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    rig.start(EXTERNAL, TOOLS)
+    in_thread(rig)
+    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
+    rig.until(State.FAULT)
+    assert rig.shot.alarms[0].code == "program"
+    assert rig.shot.demand[1] == pytest.approx(0.2 * INCH)  # the next pass did not begin
+
+
 def test_reset_in_a_pass_stops_along_the_thread() -> None:
     rig = Rig()
     rig.start(EXTERNAL, TOOLS)
