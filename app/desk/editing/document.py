@@ -11,7 +11,12 @@ from core.store.errors import StoreError
 from core.store.programs import check_name
 
 USUAL_ENDING = ".nc"
+MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them
 _DOS = "\r\n"
+
+
+class TooLongError(ValueError):
+    """A text that the field would hold up the screen with; the sentence says so."""
 
 
 class NameRefusedError(ValueError):
@@ -47,8 +52,12 @@ def ended(text: str) -> str:
 
 
 def opened(path: Path, samples: Path) -> Document:
-    """The document of a file. Raises SourceError with a sentence when it holds no program text."""
+    """The document of a file. Raises SourceError when it is no program text, TooLongError when too much."""
     text = _text(path)
+    if text.count("\n") >= MOST_LINES:
+        raise TooLongError(
+            f"{path.name} has over {MOST_LINES} lines: too long for this editor; split it elsewhere"
+        )
     line_end = _DOS if _DOS in text else "\n"
     protected = path.resolve().is_relative_to(samples.resolve())
     return Document(path, text.replace(_DOS, "\n").replace("\r", "\n"), line_end, protected)

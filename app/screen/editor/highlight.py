@@ -30,12 +30,15 @@ class Highlighter(QSyntaxHighlighter):
     def __init__(self, look: Look, document: QTextDocument) -> None:
         super().__init__(document)
         self._look = look
+        self._dressed = look.palette
         self._formats: dict[tuple[str, bool], QTextCharFormat] = {}
 
     def dress(self) -> None:
-        """The colours that are in force now."""
-        self._formats.clear()
-        self.rehighlight()
+        """The colours that are in force now; the whole text is gone through only when they have changed."""
+        if self._dressed is not self._look.palette:
+            self._dressed = self._look.palette
+            self._formats.clear()
+            self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
         """Qt's call for a line that has changed."""

@@ -5,9 +5,7 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
@@ -21,17 +19,17 @@ from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.editor.ask import AskLine
 from app.screen.editor.doings import PROMPTS, Doing, Mode, doings
+from app.screen.editor.draft import Draft
 from app.screen.editor.drawn import EditedPath
 from app.screen.editor.finder import Finder
 from app.screen.editor.findings import FindingList
 from app.screen.editor.heading import Heading, HeadLine
+from app.screen.editor.keyboard import ASKING, action_of
 from app.screen.editor.layout import editor_places
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
 from app.screen.pages import Doings, Host, Page
 from core.executor.snapshot import Snapshot
-
-_ASKING = {Mode.FIND, Mode.GO_TO, Mode.NAME}
 
 
 class EditorPage(Page):
@@ -44,10 +42,6 @@ class EditorPage(Page):
         look, self.editor = host.look, editor
         self._mode = Mode.TEXT
         self._target = pages.AUTOMATIC  # where leaving leads to
-        self._taken = 0  # number of the text of the editor that stands in the field
-        self._stale = False  # the text has changed since it was given to the editor
-        self._text = ""
-        self._dirty = False
         self._moving = False
         self.head = HeadLine(look, self)
         self.field = TextField(look, self)
@@ -57,7 +51,7 @@ class EditorPage(Page):
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
-        self.field.textChanged.connect(self._changed)
+        self.draft = Draft(self.field, self.editor)
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -123,12 +117,11 @@ class EditorPage(Page):
         if editor.stage is Stage.CLOSED:
             self._go()
             return
-        self._take_text()
-        self._hand_over()
+        self.draft.refresh()
         self._follow_stage()
         line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.head.show_heading(Heading(editor.name, self._mark(), place))
+        self.head.show_heading(Heading(editor.name, self.draft.mark, place))
         findings = editor.checker.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
@@ -136,24 +129,6 @@ class EditorPage(Page):
         self.path.follow(line, snapshot.modal.metric)
         self.path.advance()
         self.versions.refresh()
-
-    def _take_text(self) -> None:
-        editor = self.editor
-        if editor.text_number == self._taken:
-            return
-        self._taken = editor.text_number
-        self.field.put_text(editor.text, afresh=not editor.restored)
-        self._stale = True
-        self.field.setFocus()
-
-    def _hand_over(self) -> None:
-        if not self._stale:
-            return
-        self._stale = False
-        text = self.field.toPlainText()
-        self._dirty = self.editor.is_dirty(text)
-        self._text = text
-        self.editor.changed(text)
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
@@ -164,21 +139,6 @@ class EditorPage(Page):
             self._enter(Mode.OFFER)
         elif stage is Stage.OPEN and self._mode in {Mode.NAME, Mode.OFFER}:
             self._enter(Mode.TEXT)
-        self.field.setReadOnly(stage is not Stage.OPEN)
-        self._dirty = self.editor.is_dirty(self._text)
-
-    def _mark(self) -> str:
-        document = self.editor.document
-        if document is None:
-            return ""
-        if document.protected:
-            return "SAMPLE, CHANGED" if self._dirty else "SAMPLE"
-        if document.fresh:
-            return "NEW"
-        return "CHANGED" if self._dirty else ""
-
-    def _changed(self) -> None:
-        self._stale = True
 
     # --- what keys do --------------------------------------------------------------------------------
 
@@ -205,14 +165,11 @@ class EditorPage(Page):
         self._lay_out()
         if mode is Mode.HISTORY:
             self.versions.raise_()
-            self.history.look(self.editor.name, self._now())
+            self.history.look(self.editor.name, self.draft.now())
         if mode in {Mode.HISTORY, Mode.OFFER}:
             self.setFocus()
         elif mode is Mode.TEXT:
             self.field.setFocus()
-
-    def _now(self) -> str:
-        return self.field.toPlainText()
 
     def ask_text(self) -> None:
         """Find and replace."""
@@ -246,16 +203,16 @@ class EditorPage(Page):
 
     def save(self) -> None:
         """Save and go on."""
-        self.editor.save(self._now())
+        self.editor.save(self.draft.now())
 
     def leave_to(self, page: str) -> None:
         """Save and go to another page."""
         self._target = page
-        self.editor.leave(self._now())
+        self.editor.leave(self.draft.now())
 
     def abandon(self) -> None:
         """Go without saving."""
-        self.editor.abandon(self._now())
+        self.editor.abandon(self.draft.now())
 
     def restore(self) -> None:
         """The marked version into the editor."""
@@ -295,46 +252,10 @@ class EditorPage(Page):
             event.ignore()
 
     def _key(self, event: QKeyEvent) -> bool:
-        shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        control = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
-        action = self._chords().get(event.key()) if control else self._plain(shift).get(event.key())
-        if action is None:
-            return False
-        action()
-        return True
-
-    def _chords(self) -> dict[int, Callable[[], None]]:
-        if self._mode is Mode.HISTORY:
-            return {}
-        return {
-            Qt.Key.Key_S: self.save,
-            Qt.Key.Key_F: self.ask_text,
-            Qt.Key.Key_H: self.ask_text,
-            Qt.Key.Key_G: self.ask_line,
-        }
-
-    def _plain(self, shift: bool) -> dict[int, Callable[[], None]]:
-        if self._mode in _ASKING:
-            back = self._mode is Mode.FIND and shift
-            enter_key = (lambda: self.finder.step(-1)) if back else self.take
-            tab = self.ask.other_field
-            return {
-                Qt.Key.Key_Return: enter_key,
-                Qt.Key.Key_Enter: enter_key,
-                Qt.Key.Key_Tab: tab,
-                Qt.Key.Key_Backtab: tab,
-            }
-        if self._mode is not Mode.HISTORY:
-            return {}
-        page = self.versions.lines
-        return {
-            Qt.Key.Key_Up: lambda: self.history.mark(self.history.marked - 1),
-            Qt.Key.Key_Down: lambda: self.history.mark(self.history.marked + 1),
-            Qt.Key.Key_PageUp: lambda: self.versions.look_at(-page),
-            Qt.Key.Key_PageDown: lambda: self.versions.look_at(page),
-            Qt.Key.Key_Return: self.restore,
-            Qt.Key.Key_Enter: self.restore,
-        }
+        action = action_of(self, event)
+        if action is not None:
+            action()
+        return action is not None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Everything again, in the new unit."""
@@ -342,7 +263,7 @@ class EditorPage(Page):
         self.dress()
 
     def _lay_out(self) -> None:
-        at = editor_places(self.width(), self.height(), self.look.u, asking=self._mode in _ASKING)
+        at = editor_places(self.width(), self.height(), self.look.u, asking=self._mode in ASKING)
         for part, rect in (
             (self.head, at.head),
             (self.field, at.text),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.editing.document import created, opened
+from app.desk.editing.document import MOST_LINES, TooLongError, created, opened
 from app.desk.editing.files import SavingError, write_whole
 from app.desk.editing.saving import CHANGED, save
 from core.language.source import SourceError
@@ -120,3 +120,11 @@ def test_what_is_no_program_is_not_opened(tmp_path: Path) -> None:
     (tmp_path / "picture.nc").write_bytes(b"\x89PNG\0\0")
     with pytest.raises(SourceError, match="zero bytes"):
         opened(tmp_path / "picture.nc", tmp_path)
+
+
+def test_a_text_too_long_for_the_field_is_not_opened(tmp_path: Path) -> None:
+    (tmp_path / "long.nc").write_text("X1\n" * MOST_LINES)
+    with pytest.raises(TooLongError, match="over 50000 lines"):
+        opened(tmp_path / "long.nc", tmp_path)
+    (tmp_path / "long.nc").write_text("X1\n" * (MOST_LINES - 1))
+    assert opened(tmp_path / "long.nc", tmp_path).text

@@ -1,0 +1,109 @@
+"""The parts of the page: colours by the lexer's words, places without overlap, the real store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.compose.screen import desk_and_executor, step_clock
+from app.desk.editing.editor import Stage
+from app.desk.editing.entering import enter
+from app.screen.editor.layout import editor_places
+from app.screen.editor.textfield import TextField
+from app.screen.editor.versions import local_time
+from app.screen.look import Look
+from app.screen.theme import DARK, LIGHT
+from tests.desk.editing.shop import GOOD
+
+
+@pytest.fixture
+def field(qtbot: QtBot) -> Iterator[TextField]:
+    window = QWidget()
+    qtbot.addWidget(window)
+    yield TextField(Look(DARK), window)
+    window.close()
+
+
+def inks(field: TextField, line: int) -> list[tuple[str, str]]:
+    """What is written in which colour."""
+    block = field.document().findBlockByNumber(line - 1)
+    text, found = block.text(), []
+    for part in block.layout().formats():
+        ink = part.format.foreground().color()
+        found.append((text[part.start : part.start + part.length], QColor(ink).name()))
+    return found
+
+
+def test_words_are_coloured_as_the_lexer_reads_them(field: TextField) -> None:
+    field.put_text("g0 1X.5F.1(G05)T1", afresh=True)
+    field.dress()
+    assert inks(field, 1) == [
+        ("g0 1", DARK.accent),
+        ("X.5", DARK.text),
+        ("F.1", DARK.run),
+        ("(G05)", DARK.soft),
+        ("T1", DARK.pause),
+    ]
+
+
+def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: TextField) -> None:
+    field.put_text("X1?", afresh=True)
+    field.dress()
+    assert ("?", DARK.alarm) in inks(field, 1)
+    field.put_text("X1", afresh=True)
+    assert DARK.alarm not in {ink for _text, ink in inks(field, 1)}
+
+
+def test_other_colours_reach_the_text(field: TextField) -> None:
+    field.put_text("G01", afresh=True)
+    field.dress()
+    field.look.repaint(LIGHT)
+    field.dress()
+    assert inks(field, 1) == [("G01", LIGHT.accent)]
+
+
+@pytest.mark.parametrize("asking", [True, False])
+@pytest.mark.parametrize(("width", "height", "u"), [(860, 390, 6.4), (1600, 700, 12.0), (3200, 1400, 24.0)])
+def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> None:
+    at = editor_places(width, height, u, asking=asking)
+    parts = [at.head, at.text, at.path, at.findings, *([at.ask] if asking else [])]
+    for one, other in combinations(parts, 2):
+        apart = one.right <= other.x or other.right <= one.x or one.bottom <= other.y or other.bottom <= one.y
+        assert apart, (one, other)
+    assert all(p.x >= 0 and p.y >= 0 and p.right <= width and p.bottom <= height for p in parts)
+    assert all(p.w > 20 * u and p.h > 3 * u for p in parts)
+
+
+def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    journal = Journal.at_home()
+    desk, executor = desk_and_executor(None, lambda: ({}, {}), step_clock(), journal)
+    executor.tick()
+    editor = desk.editor
+    assert editor is not None
+    editor.wanted = "new"
+    assert enter(desk, editor)
+    editor.create()
+    for text in (GOOD, GOOD, GOOD + "(2)\n"):
+        editor.save(text)
+        editor.worker.settle(10)
+    editor.leave(GOOD + "(2)\n")
+    assert editor.stage is Stage.CLOSED
+    assert desk.session.settled(20).name == "new.nc"
+    rows = journal.versions("new.nc")
+    assert [row.number for row in rows] == [2, 1]
+    assert journal.text_of("new.nc", 1) == GOOD.encode()
+    assert (tmp_path / "programs" / "new.nc").read_text() == GOOD + "(2)\n"
+    desk.close()
+    journal.close()
+
+
+def test_times_are_those_of_the_shop() -> None:
+    assert local_time("2026-03-01T10:00:00.000Z").endswith(":00:00")
