@@ -31,7 +31,8 @@ def piece_limits(
     single = corner_caps(pieces, turns, limits)
     asked = _asked(pieces, speeds, turns, single, limits)
     corner[1:-1] = single
-    corner[1:-1][asked.joint] = asked.squared
+    # A step of the velocity at one joint stays within amax·interval: the queue of the drives takes no more.
+    corner[1:-1][asked.joint] = np.minimum(asked.squared, step_caps(turns[asked.joint], limits))
     spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
     return cap, np.minimum(accelerations(pieces, speeds, limits), spare), corner
 
@@ -84,11 +85,17 @@ def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Floa
     """
     amax = limits.accelerations
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])[:, None]
-    sharp = np.full(turns.shape, np.inf)
-    np.divide(amax * limits.interval, turns, out=sharp, where=turns > 0.0)
     curved = np.full(turns.shape, np.inf)
     np.divide(CENTRIPETAL_SHARE * amax * mean, turns, out=curved, where=turns > 0.0)
-    caps: FloatArray = np.minimum(sharp**2, curved).min(axis=1)
+    caps: FloatArray = np.minimum(step_caps(turns, limits), curved.min(axis=1))
+    return caps
+
+
+def step_caps(turns: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Square of the speed (k,) at which each axis steps by amax·interval at a joint that turns so."""
+    sharp = np.full(turns.shape, np.inf)
+    np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
+    caps: FloatArray = sharp.min(axis=1) ** 2
     return caps
 
 

@@ -41,7 +41,7 @@ def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limi
     asked = np.zeros((_HALVINGS, len(at), 3))
     for i, speed in enumerate(speeds):
         asked[i] = _second_difference(pieces, s, at, speed * limits.interval) / limits.interval**2
-    asked[speeds * limits.interval < mean] = 0.0  # one joint an interval at most asks less the slower it goes
+    asked[speeds * limits.interval < mean] = 0.0  # one joint an interval: its own limit sees to it
     ratio = (asked / share).max(axis=2)
     over = ratio > 1.0
     squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
