@@ -8,14 +8,14 @@ from core.interpreter import codes
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import looks_ahead
-from core.interpreter.count import MOST_BLOCKS, MOST_LINES, refuse_too_large, takes_call, terminal
+from core.interpreter.count import MOST_BLOCKS, MOST_LINES, takes_call, terminal
 from core.interpreter.execute import execute
 from core.interpreter.flow import Flow
 from core.interpreter.log import Log, refusal
-from core.interpreter.mcodes import check_m_codes
 from core.interpreter.modal import Modal
 from core.interpreter.moves import fast_move, go, on_step, plain_move
 from core.interpreter.nose import nose_code, switch
+from core.interpreter.opening import check_opening
 from core.interpreter.plain import plain
 from core.interpreter.plane import plane_line
 from core.interpreter.program import Program
@@ -45,9 +45,8 @@ class Interpreter:
         self._shaper = Shaper(self._state)
         self._tools = ToolUse()
         self._flow = Flow(program)
-        self._refused = False
         self._stopped = False  # an error has been met: no more blocks
-        self._check()
+        self._first, self._refused = check_opening(self._state, program)
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
@@ -123,6 +122,7 @@ class Interpreter:
             return
         if made.flow == UNREADABLE:
             self._stopped = True
+            self._shaper.drop()  # what is held back lacks this line
             self._arrive(made)
         elif made.flow in codes.CALLS:
             self._shaper.check(made)
@@ -207,32 +207,3 @@ class Interpreter:
         self._stopped = True
         text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
         self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the loops."))
-
-    def _check(self) -> None:
-        """What can be said before the first block."""
-        state, program = self._state, self._program
-        check_m_codes(state, program.m_codes)
-        self._first = self._first_line()
-        large = refuse_too_large(program, state.setup.inputs)
-        if large is not None:
-            self._refused = True
-            self._log.add(large)
-        if state.setup.metric and not program.names_units and self._first:
-            text = "The program names neither G70 nor G71; it runs in millimetres, as the job before it."
-            self._log.warn(self._first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
-
-    def _first_line(self) -> int:
-        """Number of the first line to execute, 0 where there is none; it must say G90 or G91."""
-        delete = self._state.setup.block_delete
-        for number, step in enumerate(self._program.steps, start=1):
-            if step is None:
-                continue
-            if isinstance(step, Statement):
-                if not step.executable or (delete and step.block_delete):
-                    continue
-                if step.flow == UNREADABLE or {90, 91}.intersection(step.modal):
-                    return number
-            text = "The first line must say G90 (absolute) or G91 (incremental)."
-            self._log.add(refusal(number, 1, "first-line", text, "Begin with G90G94F300."))
-            return number
-        return 0

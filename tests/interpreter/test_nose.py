@@ -333,6 +333,11 @@ def test_an_error_inside_takes_back_what_was_held() -> None:
     assert [b.line for b in result.moves] == [3]
 
 
+def test_after_an_unreadable_line_nothing_is_judged_by_a_contour_with_a_gap() -> None:
+    assert [error[2] for error in run(*FACING, "X.2", "X.1ZO", *SHAFT[4:]).errors] == ["letter-o"]
+    assert [error[2] for error in run("X0Z0F9", "X.5C.1", "X.1ZO", "X.9").errors] == ["letter-o"]
+
+
 def test_a_bad_departure_is_known_before_the_contour_is_run() -> None:
     result = run(*SHAFT[:5], "X.3", "Z-.281", "G40")
     assert result.errors == [(9, 0, "comp-departure-short")]
