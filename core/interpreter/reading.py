@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from core.interpreter import codes
-from core.interpreter.not_yet import not_yet
 from core.interpreter.statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, Word
@@ -17,9 +16,6 @@ def statement(line: Line) -> Statement:
     if line.errors:
         return unreadable(line)
     made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
-    refusal = not_yet(line.number, line.words)
-    if refusal is not None:
-        raise ProgramError(refusal)
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
         message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."

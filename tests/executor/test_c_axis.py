@@ -34,8 +34,6 @@ def run(rig: Rig, name: str, text: str) -> None:
     source = Source(name, text)
     setup = setup_for(rig.machine, tools={n: ToolOffset() for n in range(1, 33)}, secondary={})
     report = prove(source, setup, rig.machine)
-    if any(d.code == "not-yet" for d in report.errors):
-        pytest.skip("holds a code that cannot run yet")
     assert report.errors == ()
     rig.ready()
     job = make_job(source, setup)
