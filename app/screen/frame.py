@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk import formats, pages
 from app.desk.desk import Desk
@@ -169,7 +169,8 @@ class Frame(QWidget):
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
         self._show_bars(snapshot, view, loaded)
-        self.strip.show_lamps(self._lamps(snapshot, view))
+        lamps = self._lamps(snapshot, view)
+        self.strip.show_lamps(lamps, frozenset(lamp.key for lamp in lamps if self._is_text(lamp.key)))
         if self.page is self.automatic:
             self._show_large(snapshot, view, loaded)
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarm)
@@ -181,6 +182,11 @@ class Frame(QWidget):
             self.dock.show_station(snapshot)
         self.page.refresh(snapshot, view, loaded)
         self.keys.show_labels(self.page.labels())
+
+    def _is_text(self, key: str) -> bool:
+        """Whether a key goes to an entry now: to that of the page, or to a field that has the keyboard."""
+        at = QApplication.focusWidget()
+        return self.page.takes(key) or (at is not None and at is not self.window() and self.isAncestorOf(at))
 
     def _show_large(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
         self.position.show_position(view.position)

@@ -81,5 +81,5 @@ class HeadLine(Panel):
             put(painter, QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), LEFT, label)
             painter.setPen(look.colour("text"))
             painter.setFont(look.fit(figure, 2.3, wide - u, bold=True))
-            put(painter, QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.5 * u), LEFT, figure)
+            put(painter, QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.7 * u), LEFT, figure)
             x += wide

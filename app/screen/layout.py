@@ -106,7 +106,7 @@ def low_places(width: int, height: int, dock: bool) -> LowPlaces:
     """The same window with one low row of readouts; title, dock, prompt and keys stay where they are."""
     at, u = places(width, height, dock), unit(width, height)
     gap, wide = _gap(u), at.strip.w
-    head = Rect(at.strip.x, at.position.y, wide, round(6.6 * u))
+    head = Rect(at.strip.x, at.position.y, wide, round(7.4 * u))
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
     top = strip.bottom + gap
     return LowPlaces(head, strip, Rect(head.x, top, wide, at.prompt.y - gap - top))

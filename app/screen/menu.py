@@ -10,7 +10,7 @@ from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
-from app.desk.pages import ENTRIES, LATER, Entry
+from app.desk.pages import ENTRIES, Entry
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.pages import Doings, Host, Page
 from app.screen.panel import Panel
@@ -88,6 +88,6 @@ class _Tiles(Panel):
         painter.setFont(look.fit(entry.name, 3.0, text.width(), bold=True))
         put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, entry.name)
         painter.setPen(look.colour("soft"))
-        words = entry.use if there else LATER[entry.name].lower()
+        words = entry.use if there else "comes with a later version"
         painter.setFont(look.fit(words, 1.9, text.width()))
         put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, words)

@@ -14,6 +14,7 @@ It is made when it is first opened. What a page gives:
 ``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
               ``Page up``, ``Page down``; True when it was taken. A stock widget
               that has the focus takes its keys by itself.
+``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
 ``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
 ``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
 ``opened()``  it has come up; it may take the focus (the window has it otherwise).
@@ -78,6 +79,10 @@ class Page(QWidget):
 
     def typed(self, _key: str) -> bool:
         """Take a typed key; False leaves it to the window."""
+        return False
+
+    def takes(self, _key: str) -> bool:
+        """Whether a character is text here."""
         return False
 
     def prompt(self) -> str:

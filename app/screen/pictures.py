@@ -1,4 +1,4 @@
-"""Pictures of the Automatic page, made without a display: ``python -m app.screen.pictures OUT``.
+"""Pictures of the pages, made without a display: ``python -m app.screen.pictures OUT``.
 
 A sample program runs on the simulated lathe, on a clock that this script moves, so that every call makes the
 same pictures.
@@ -11,15 +11,29 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.screen.window import MainWindow
+    from core.store.store import Store
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 PROGRAM = "bushing"
+PAGES = {
+    "automatic": "",
+    "menu": "F1",
+    "seccmp": "F9 1 Enter - . 0 0 2 + . 0 0 0 5",
+    "history": "F9 F5",
+    "tools": "F8",
+}
 AT_LINE = 26  # where the run is caught: finishing the outside
+CORRECTIONS = (
+    (1, -0.0005, 0.0, "X -.001"),
+    (3, 0.001, -0.002, "X .002 Z -.002"),
+    (1, -0.00125, 0.0, "X -.0015"),
+)
 AT_Z = -0.3 * 25.4
 TICK = 0.01
 LOADING = 60.0  # seconds after which loading has failed
@@ -31,13 +45,36 @@ class Stage:
     def __init__(self) -> None:
         from app.cli.offset_file import read_offsets
         from app.compose.screen import desk_and_executor, samples, step_clock
+        from app.desk.offsets.book import OffsetBook
 
         self.clock = step_clock()
         self.desk, self._executor = desk_and_executor(
             None, lambda: read_offsets(samples() / "offsets.toml"), self.clock
         )
+        self.store = self._kept()
+        self.desk.book = OffsetBook(self.store)
         self.desk.hands.clock = self.clock.now
         self.desk.time_of_day = lambda: "09:41:07"
+
+    def _kept(self) -> Store:
+        """A store with the offsets of the samples and some corrections; its folder goes with this stage."""
+        from app.cli.offset_file import read_offsets
+        from app.compose.screen import samples
+        from core.store.store import Store
+
+        self._folder = TemporaryDirectory()
+        store = Store.open(Path(self._folder.name))
+        for number, tool in read_offsets(samples() / "offsets.toml")[0].items():
+            store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
+        for number, x, z, why in CORRECTIONS:
+            store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()
+        return store
+
+    def close(self) -> None:
+        """End the threads, forget the folder."""
+        self.desk.close()
+        self.store.close()
+        self._folder.cleanup()
 
     def tick(self, until: Callable[[], bool], most: float = 120.0) -> None:
         """Let the machine go on until something is so."""
@@ -79,7 +116,7 @@ def main(argv: list[str] | None = None) -> int:
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
     for path in taken(stage.desk, out):
         sys.stdout.write(f"{path}\n")
-    stage.desk.close()
+    stage.close()
     return 0
 
 
@@ -102,13 +139,25 @@ def taken(desk: Desk, out: Path) -> list[Path]:
     for name, palette in PALETTES.items():
         dress(palette)
         for width, height in SIZES:
-            window = MainWindow(Look(palette))
-            window.resize(width, height)
-            window.open_desk(desk)
-            path = out / f"automatic-{name}-{width}x{height}.png"
-            _grab(window, path, app.processEvents)
-            paths.append(path)
+            for page, keys in PAGES.items():
+                window = MainWindow(Look(palette))
+                window.resize(width, height)
+                window.open_desk(desk)
+                path = out / f"{page}-{name}-{width}x{height}.png"
+                _press(window, keys)
+                _grab(window, path, app.processEvents)
+                paths.append(path)
     return paths
+
+
+def _press(window: MainWindow, keys: str) -> None:
+    """The keys that lead to a page, with a space between them; the last may be figures for its entry."""
+    for key in keys.split():
+        window.refresh()
+        if key.startswith("F"):
+            window.press(key)
+        elif window.frame is not None:
+            window.frame.page.typed(key)
 
 
 def _grab(window: MainWindow, path: Path, process: Callable[[], None]) -> None:

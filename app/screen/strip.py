@@ -20,11 +20,12 @@ class Strip(Panel):
         super().__init__(look, parent)
         self._press = press
         self._lamps: tuple[Lamp, ...] = ()
+        self.mute: frozenset[str] = frozenset()  # keys that are text now: the finger's alone
 
-    def show_lamps(self, lamps: Sequence[Lamp]) -> None:
-        """The words from left to right."""
-        if tuple(lamps) != self._lamps:
-            self._lamps = tuple(lamps)
+    def show_lamps(self, lamps: Sequence[Lamp], mute: frozenset[str] = frozenset()) -> None:
+        """The words from left to right; the keys that are ``mute`` are not shown."""
+        if (tuple(lamps), mute) != (self._lamps, self.mute):
+            self._lamps, self.mute = tuple(lamps), mute
             self.update()
 
     def draw(self, painter: QPainter) -> None:
@@ -48,7 +49,7 @@ class Strip(Panel):
         ink = look.colour(("on_state" if lamp.warn else "on_lit") if lamp.lit else "soft")
         painter.setBrush(Qt.BrushStyle.NoBrush)
         room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
-        if lamp.key:
+        if lamp.key and lamp.key not in self.mute:
             cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
             painter.setPen(ink)
             painter.setFont(look.font(2.2, bold=True))

@@ -9,10 +9,12 @@ import pytest
 
 from app.cli.errors import CommandError
 from app.compose.journal import Journal
-from app.compose.offsets import chosen_offsets
+from app.compose.offsets import book_of, chosen_offsets, stored_offsets
 from app.compose.screen import build_desk
 from core.executor.snapshot import Event
+from core.interpreter.setup import SecondaryOffset
 from core.language.source import Source
+from core.store.rows import Kind
 from core.store.store import Store
 
 
@@ -66,6 +68,35 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
     journal.close()
     assert str(file) in journal.trouble
     assert file.read_bytes() == b"not a database" * 100
+
+
+def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(home: Path) -> None:
+    journal = Journal(home)
+    book = book_of(stored_offsets, journal)
+    assert book.change(Kind.SECONDARY, 4, (0.1, -0.2, 0.4), "X .2") == ""
+    journal.close()  # writes what is queued
+    assert stored_offsets()[1] == {4: SecondaryOffset(0.1, -0.2, 0.4)}
+
+
+def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
+    journal = Journal(home)
+    book = book_of(chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml")), journal)
+    assert sorted(book.values[Kind.TOOL]) == [1, 2, 3]
+    assert "READ ONLY" in book.change(Kind.TOOL, 1, (1.0, 2.0, 0.0), "try")
+    assert "READ ONLY" in book.clear_secondary()
+    assert "READ ONLY" in book.undo(Kind.TOOL)
+    assert book.history(Kind.TOOL) == ()
+    journal.close()
+    assert stored_offsets() == ({}, {})
+
+
+def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> None:
+    Store.open(home).close()
+    (file,) = home.glob("*.db")
+    file.write_bytes(b"not a database" * 100)
+    journal = Journal(home)
+    assert str(file) in journal.book().change(Kind.TOOL, 1, (1.0, 2.0, 0.0), "try")
+    journal.close()
 
 
 def test_a_machine_that_is_not_simulated_is_refused(tmp_path: Path) -> None:

@@ -84,6 +84,7 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     assert not hands.machine.now.cycle_repeat
     assert (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot) == before
     assert page_of(hands).asked.text == "1+1-/.,"
+    hands.sees(lambda: hands.frame.strip.mute == {"C", "/"})
 
 
 def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:

@@ -21,7 +21,7 @@ from tests.screen.hands import Key
 def stage(qapp: object) -> Iterator[Stage]:
     stage = Stage()
     yield stage
-    stage.desk.close()
+    stage.close()
 
 
 @pytest.fixture

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
 from app.desk.offsets.desk import OffsetDesk, seccmp, tool_offsets
+from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.offsets.asked import AskedPanel
@@ -53,6 +54,10 @@ class OffsetPage(Page):
             self.history.look_at(self.history.top + (1 if key == "Page down" else -1) * self.history.rows)
             return True
         return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """Figures, signs, and C on F9."""
+        return key in CHARACTERS or (key == "C" and self.NAME == pages.SECCMP)
 
     def _touched(self, key: str) -> None:
         if key == "Esc":
