@@ -13,6 +13,7 @@ from core.interpreter.cycle_blocks import Move
 
 _SAME = 1e-6  # mm
 _NEARER = 0.002  # mm; what a way beside the contour may lack
+_TOUCHING = 0.02  # mm; where U is 0, the ways end on the contour
 
 
 class StartNearError(Exception):
@@ -121,18 +122,22 @@ class Rougher:
     def _check(self, here: Point, moves: list[Move]) -> None:
         for move in moves:
             there = move.x, move.z
-            if dist(here, there) > _SAME and any(
-                self._near(Line(here, there), e) for e in self._area.contour
-            ):
+            if dist(here, there) > _SAME and self._near(here, there):
                 raise StartNearError
             here = there
 
-    def _near(self, way: Line, element: Element) -> bool:
-        """Whether a way is nearer to an element than it may be; at its ends it may touch where U is 0."""
-        if self._area.left > _NEARER:
-            return clearance(way, element) < self._area.left - _NEARER
-        ends = way.start, way.end
-        return any(min(dist(point, end) for end in ends) > _NEARER for point in intersections(way, element))
+    def _near(self, here: Point, there: Point) -> bool:
+        """Whether a way along one axis is nearer to the contour than it may be; where U is 0, crosses it."""
+        left, way = self._area.left, Line(here, there)
+        if left > _NEARER:
+            return any(clearance(way, element) < left - _NEARER for element in self._area.contour)
+        depth, ways = max(here[0], there[0]) - _TOUCHING, (here[1], there[1])
+        if way.length <= 2 * _TOUCHING:
+            return False
+        if _covering(self._area.stretches(depth), max(min(ways), 0.0), max(ways)):
+            return False
+        inner = Line(way.point(_TOUCHING), way.point(way.length - _TOUCHING))
+        return any(intersections(inner, element) for element in self._area.contour)
 
 
 def _covering(stretches: list[Stretch], low: float, high: float) -> bool:
