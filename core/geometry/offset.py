@@ -29,7 +29,10 @@ WINDOW = 128
 
 
 class GougeError(Exception):
-    """The offset of a contour cuts into it. ``index`` is the element that cannot be followed, from 0."""
+    """The offset of a contour cuts into it. ``index`` is the element that cannot be followed, from 0.
+
+    ``why`` is a clause about it, in which the distance is "that".
+    """
 
     def __init__(self, index: int, why: str) -> None:
         super().__init__(why)
@@ -58,7 +61,7 @@ def offset_element(element: Element, distance_left: float) -> Element:
         return Line(start, end)
     grown = element.radius + (distance_left if element.clockwise else -distance_left)
     if grown < SAME_POINT:
-        raise GougeError(0, "the inside arc is not larger than the distance")
+        raise GougeError(0, "its inside radius is not larger than that")
     return Arc(start, end, element.centre, element.clockwise)
 
 
@@ -112,7 +115,7 @@ class Offset:
         corner = after.start
         angle = turn(before.end_direction, after.start_direction)
         if abs(angle) > pi - STRAIGHT_BACK and self._distance:
-            raise GougeError(index, "the contour turns straight back")
+            raise GougeError(index, "it runs straight back")
         if dist(ended.end, begun.start) <= JOINED:
             joint = _middle(ended.end, begun.start)
             joint = ended.end if dist(joint, ended.end) < SAME_POINT else joint
@@ -142,7 +145,7 @@ def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
     found = intersections(ended, begun)
     if not found:
         shorter = index - 1 if ended.length < begun.length else index
-        raise GougeError(shorter, "nothing of the element is left between its neighbours")
+        raise GougeError(shorter, "nothing of it is left between its neighbours")
     return min(found, key=lambda point: dist(point, corner))
 
 
@@ -150,7 +153,7 @@ def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
     """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
     whole = start == element.start and end == element.end
     if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:  # else an arc could close
-        raise GougeError(index, "nothing of the element is left between its neighbours")
+        raise GougeError(index, "nothing of it is left between its neighbours")
     return element.part(start, end)
 
 
@@ -165,13 +168,13 @@ class _Guard:
     def contour(self, index: int, element: Element) -> None:
         box = element.box
         if self._too_near(element, box, self._path):
-            raise GougeError(index, "the offset of another element cuts into this one")
+            raise GougeError(index, "the path beside another one would cut into it")
         self._contour.append((element, box))
 
     def path(self, piece: Piece) -> None:
         box = piece.element.box
         if self._too_near(piece.element, box, self._contour):
-            raise GougeError(piece.source, "its offset cuts into another element")
+            raise GougeError(piece.source, "the path beside it would cut into another one")
         self._path.append((piece.element, box))
 
     def _too_near(self, element: Element, box: Box, others: deque[tuple[Element, Box]]) -> bool:
