@@ -109,6 +109,9 @@ class _Reader:
             self._pieces.append(Piece(element, line.line, corner, size, metric))
 
     def _size(self, line: Statement, corner: Word) -> float:
+        if line.words.keys() >= _CORNERS:
+            text = "The line has both C and R."
+            raise ProgramError(refusal(line.line, corner.column, "corner-both", text, "Keep one of them."))
         size = on_step(self._own, line, corner.letter)
         if size is None or size <= 0:
             text = f"{corner.text}: a corner's size must be a number over 0."
