@@ -155,13 +155,11 @@ def test_a_program_does_what_its_table_says(name: str) -> None:
     found = [row(block, machine=["machine"] in header) for block in interpreter.blocks()]
     told = [[str(d.severity), str(d.line), str(d.column), d.code] for d in interpreter.diagnostics]
     if any(words[0] == "error" for words in findings):
-        assert [words for words in told if words[0] == "error"] == findings
         assert not blocks
-        first = min(int(words[1]) for words in findings)
-        assert interpreter.failed
-        assert not [
-            words for words in found if int(words[0]) == first and words[1] in {"feed", "rapid", "arc"}
-        ]
+        errors = [words for words in told if words[0] == "error"]
+        assert errors[: len(findings)] == findings  # what follows from the mistake may follow
+        _, line, column, _ = findings[0]
+        assert column == "0" or not [r for r in found if str(r[0]) == line and str(r[1]) in set(Kind)]
         return
     assert sorted(told) == sorted(findings)
     for have, want in zip(found, blocks, strict=False):
