@@ -38,10 +38,10 @@ def degrees(angle: float) -> float:
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> Json:
-    """One diagnostic with the keys of interfaces.md."""
+    """One diagnostic with the keys of interfaces.md; one about a whole line stands at its first column."""
     return {
         "line": diagnostic.line,
-        "column": diagnostic.column,
+        "column": max(diagnostic.column, 1) if diagnostic.line else 0,
         "severity": str(diagnostic.severity),
         "code": diagnostic.code,
         "message": diagnostic.message,

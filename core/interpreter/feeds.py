@@ -90,7 +90,8 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
         high = units.feed(most, per_rev=modal.per_rev, metric=modal.metric)
         shown = units.feed(feed, per_rev=modal.per_rev, metric=modal.metric)
         message = f"Feed {shown} is out of range: {low} to {high}."
-        hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else "Lower F."
+        otherwise = "Lower F." if feed > most else "Raise F."
+        hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else otherwise
         raise ProgramError(refusal(made.line, column, "feed-range", message, hint))
 
 

@@ -27,7 +27,7 @@ class Diagnostic:
 
     def shown(self, name: str) -> str:
         """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
-        place = f"{name}:{self.line}:{self.column}" if self.line else name
+        place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = f" — {self.hint}" if self.hint else ""
         return f"{place}: {self.severity}: {self.message} [{self.code}]{hint}"
 
