@@ -222,7 +222,7 @@ def test_an_edge_that_runs_back_is_told() -> None:
         (("G75I.1U.02F4", "X.2Z.1", "X.39", "Z-.5", "RF"), (4, 1, "cycle-start-near")),
         (("G75I.1F4", "X.2Z0", "LS2", "Z-.5", "LF", "X.4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "G81Z-.5", "RF"), (6, 1, "cycle-contour-line")),
-        (("G75I.1F4", "X.2Z0", "Z-.5R.1C.1", "X.4", "RF"), (6, 9, "corner-both")),
+        (("G75I.1F4", "X.2Z0", "Z-.5R.1C.1", "X.4", "RF"), (6, 8, "corner-both")),
         (("G75I.1F4", "X.2Z0", "R.1", "X.4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "CA90", "X.4", "RF"), (6, 1, "cycle-contour-line")),
         (("G75I.1F4", "X.2Z0", "(~PLXC)", "(END)", "RF"), (6, 1, "cycle-contour-line")),
