@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from core.geometry.mill import PlaneMove
-from core.geometry.side import Side
 from core.motion.errors import MotionError
 from core.motion.limits import CENTRIPETAL_SHARE, OVERRIDE_MAX, BoolArray, FloatArray, MotionLimits
 from core.motion.pieces import SAME_POINT, Pieces, joined
@@ -22,6 +21,7 @@ CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from th
 STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed
 _FIRST = 16  # chords to begin with
 _HALVINGS = 30  # no chord is cut more often
+_SHORTEST = 1e-5  # mm; no shorter chord is cut again: distances of a path are good to 1e-9
 _ROUNDING = 1e-9
 _SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with the true way
 
@@ -60,6 +60,7 @@ def chords(move: PlaneMove, rate: float, limits: MotionLimits) -> FloatArray:
         share = np.sort(np.append(share, nearest))
     for _ in range(_HALVINGS):
         wide = _leaves(move, share) | _jerks(move, share, OVERRIDE_MAX * rate, limits)
+        wide &= np.diff(share) * move.length > _SHORTEST
         if not wide.any():
             break
         share = np.sort(np.append(share, 0.5 * (share[:-1] + share[1:])[wide]))
@@ -67,24 +68,15 @@ def chords(move: PlaneMove, rate: float, limits: MotionLimits) -> FloatArray:
 
 
 def _leaves(move: PlaneMove, share: FloatArray) -> BoolArray:
-    """Chords (k,) that leave the way by more than CHORD_ERROR."""
+    """Chords (k,) that leave the way by more than CHORD_ERROR, as the part sees it."""
     ends = move.machine(share)
-    span = np.diff(share)
+    span, change = np.diff(share), np.diff(ends, axis=0)
     worst = np.zeros(len(span))
     for spot in _SPOTS:
         true = move.machine(share[:-1] + spot * span)
-        off = ends[:-1] + spot * np.diff(ends, axis=0) - true
-        arm = _arm(move, share[:-1] + spot * span)
-        worst = np.maximum(worst, np.hypot(np.hypot(off[:, 0], off[:, 1]), arm * np.radians(off[:, 2])))
+        off = move.frame.mill(ends[:-1] + spot * change) - move.frame.mill(true)
+        worst = np.maximum(worst, np.sqrt((off**2).sum(axis=1)))
     return worst > CHORD_ERROR
-
-
-def _arm(move: PlaneMove, share: FloatArray) -> FloatArray:
-    """Distance from the axis (n,) at which a turn of C shows, mm."""
-    if isinstance(move.frame, Side):
-        return np.full(len(share), 0.5 * move.frame.diameter)
-    points = move.points(share)
-    return np.hypot(points[:, 0], points[:, 1])
 
 
 def _jerks(move: PlaneMove, share: FloatArray, speed: float, limits: MotionLimits) -> BoolArray:

@@ -220,3 +220,19 @@ def test_stopping_on_the_way_stays_on_the_way() -> None:
     assert off_line(stopped, move, 0.0005) < 0.5 * FLAT
     on = plan(path, start_s=stopped.end_s)
     assert on.position(on.duration)[0].tolist() == pytest.approx(move.machine(ENDS)[1].tolist())
+
+
+@pytest.mark.parametrize("h", [0.5, -2.0])
+def test_to_the_nearest_that_the_tool_reaches_and_on(h: float) -> None:
+    """At rho = |H| X stands on the axis of the lathe and its speed for any feed would be endless."""
+    reached = (abs(h), 0.0)
+    to, on = face_line((9.0, 3.0), reached, h), face_line(reached, (5.0, -1.0), h)
+    turn_on = replace(on, frame=Face(to.machine(ENDS)[1, 2] - on.machine(ENDS)[0, 2], h))
+    path = build_path([milled(to, 1.7), milled(turn_on, 1.7, n=2)], LIMITS)
+    assert path.pieces.length.min() > 1e-6
+    profile = plan(path)
+    assert (axis_speeds(profile) <= LIMITS.speeds * (1.0 + 1e-6)).all()
+    assert profile.duration < 20.0
+    _, _, _, v, a = (column[-1] for column in profile.segments(0.0, profile.duration))
+    dt = profile.segments(0.0, profile.duration)[1][-1]
+    assert np.abs(v + a * dt).max() < 1e-6
