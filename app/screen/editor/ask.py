@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject, QRectF
+from PySide6.QtCore import QObject, QRectF, Qt
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
@@ -25,6 +25,7 @@ class AskLine(Panel):
         self.answer = ""
         for edit in (self.first, self.second):
             edit.setMaxLength(250)
+            edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
             edit.installEventFilter(keys)
         self.hide()
 

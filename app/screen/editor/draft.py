@@ -13,11 +13,14 @@ class Draft:
         self._field, self._editor = field, editor
         self._taken = 0  # number of the text of the editor that stands in the field
         self._stale = False  # the text has changed since it was given to the editor
+        self._taking = False  # a text is being put into the field from here
         self._text = ""
         field.textChanged.connect(self._changed)
 
     def _changed(self) -> None:
         self._stale = True
+        if not self._taking:
+            self._editor.clear()  # whoever goes on typing has read the answer, and no question stays open
 
     def now(self) -> str:
         """What stands in the field."""
@@ -28,7 +31,9 @@ class Draft:
         editor, field = self._editor, self._field
         if editor.text_number != self._taken:
             self._taken = editor.text_number
+            self._taking = True
             field.put_text(editor.text, afresh=not editor.restored)
+            self._taking = False
             field.setFocus()
             self._stale = True
         if self._stale:

@@ -36,6 +36,8 @@ class TextField(QPlainTextEdit):
         self._found: Mapping[int, Diagnostic] = {}
         self.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
         self.setTabChangesFocus(False)
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)  # a menu would hold up every other key
+        self.setAcceptDrops(False)
         self.setUndoRedoEnabled(True)
         self.margin = Margin(self)
         self.highlighter = Highlighter(look, self.document())

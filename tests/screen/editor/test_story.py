@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt
 from app.desk import pages
 from app.desk.editing import words
 from app.desk.session import Phase
-from core.executor.commands import CycleStart
+from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from core.language.diagnostics import Severity
 from tests.desk.editing.shop import GOOD, Memory
@@ -216,6 +216,35 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     writer.key(Key.Key_F10)
     writer.sees(lambda: writer.front == pages.AUTOMATIC)
     assert not list(tmp_path.iterdir())
+
+
+def test_typing_takes_the_question_back(writer: Writer) -> None:
+    writer.new("kept")
+    writer.write("X1")
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    writer.type("Z1")
+    writer.sees(lambda: writer.prompt() != words.ABANDON)
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    assert writer.text() == "X1Z1"
+
+
+def test_esc_holds_what_a_station_has_started(writer: Writer) -> None:
+    writer.edit("pin")
+    writer.machine.now = replace(writer.machine.now, state=State.RUN)
+    writer.sees(lambda: writer.prompt() == words.RUNS_OLD)
+    writer.key(Key.Key_Escape)
+    assert FeedHold() in writer.machine.posted
+
+
+def test_closing_the_window_saves_first(writer: Writer, tmp_path: Path) -> None:
+    writer.new("closing")
+    writer.write(GOOD)
+    writer.sees(writer.proved)
+    assert not writer.window.close()
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    assert (tmp_path / "closing.nc").read_text() == GOOD
 
 
 def test_an_empty_program_is_not_saved(writer: Writer) -> None:
