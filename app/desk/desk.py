@@ -275,8 +275,13 @@ class Desk:
         """Why the palms start nothing now; empty when they may."""
         if not self.starts_here:
             return prompts.NOT_HERE
-        stale = self._rebuild or self.book.busy or self.session.now.phase in {Phase.READING, Phase.UNREADABLE}
-        return prompts.STALE if stale and self.snapshot().state is State.IDLE else ""
+        loaded = self.session.now
+        if self.snapshot().state is not State.IDLE:
+            return ""
+        if loaded.phase is Phase.UNREADABLE:
+            return prompts.refusal(loaded)  # the executor still has what was there before
+        stale = self._rebuild or self.book.busy or loaded.phase is Phase.READING
+        return prompts.STALE if stale else ""
 
     def _starting(self) -> None:
         """A start is tried: the same refusal again is worth saying again."""

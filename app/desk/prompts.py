@@ -58,7 +58,7 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
     missing = missing_tools(loaded)
     if missing:
-        return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (TURNDESK OFFSETS SET)"
+        return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
     return f"TO START {start}"
 
 

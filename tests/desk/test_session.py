@@ -112,7 +112,7 @@ def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
     job = Job(Source("part.nc", "G90"), Setup(), "digest", frozenset({1}))
     loaded = Loaded(Phase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tools=(3, 1, 2)))
     text = prompt(Snapshot(state=State.IDLE, program="part.nc"), loaded, "PRESS", "")
-    assert text == "WILL NOT START: NO OFFSET WAS EVER SET FOR T2, T3 (TURNDESK OFFSETS SET)"
+    assert text == "WILL NOT START: NO OFFSET WAS EVER SET FOR T2, T3 (F8 SETS THEM)"
 
 
 @pytest.mark.parametrize(

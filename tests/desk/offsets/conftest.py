@@ -68,7 +68,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
     workshop = Workshop(
         read,
         lambda source, block_delete: Job(source, Setup(block_delete=block_delete), source.name),
-        lambda job, _watch: Proved(Proof(job.digest)),
+        lambda job, _watch: Proved(Proof(job.digest, ())),
         lambda _job, _watch: Sketch().picture(),
     )
     desk = Desk(
