@@ -118,8 +118,8 @@ class Editor:
 
     @property
     def name(self) -> str:
-        """What is edited."""
-        return self.document.name if self.document else ""
+        """What is edited, or offered as a new file."""
+        return self.document.name if self.document else self._offered
 
     def changed(self, text: str) -> None:
         """This is in the field now: have it proved."""
@@ -230,4 +230,5 @@ class Editor:
 
     def _shut(self) -> None:
         self.stage, self.document, self._leaving = Stage.CLOSED, None, False
+        self._offered = ""
         self._abandoning = self._replace = False

@@ -162,6 +162,8 @@ class EditorPage(Page):
         else:
             self.ask.hide()
         self.versions.setVisible(mode is Mode.HISTORY)
+        for part in (self.field, self.path, self.findings):
+            part.setVisible(mode is not Mode.OFFER)  # what was edited last is not the file that is offered
         self._lay_out()
         if mode is Mode.HISTORY:
             self.versions.raise_()

@@ -62,6 +62,21 @@ def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None:
+    writer.edit("pin")
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.key(Key.Key_F2)
+    writer.type("first")
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.prompt() == words.CREATE)
+    assert not writer.editor.field.isVisible()
+    assert writer.editor.head.heading.name == "first"
+    writer.key(Key.Key_F1)
+    writer.sees(writer.editor.field.hasFocus)
+    writer.sees(lambda: writer.text() == "")
+
+
 def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
     writer.key(Key.Key_F2)
     writer.type("bad?name")
