@@ -169,8 +169,10 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
         _braked_into(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
     braked = v * v - np.concatenate([[0.0], np.cumsum(run.gain)])
     k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
-    if k == 0:
+    if v == 0.0:
         return at_rest(path, at)
+    # However slow: near the axis of a plane C turns through degrees in a thousandth of a millimetre.
+    k = max(k, 1)
     _demand_passable(braked[:k], run.hard[:k], run.slack(v))
     length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)
     length[-1] = min(length[-1], speeds[-2] / (2.0 * run.a[k - 1]))

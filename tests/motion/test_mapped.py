@@ -236,3 +236,18 @@ def test_to_the_nearest_that_the_tool_reaches_and_on(h: float) -> None:
     _, _, _, v, a = (column[-1] for column in profile.segments(0.0, profile.duration))
     dt = profile.segments(0.0, profile.duration)[1][-1]
     assert np.abs(v + a * dt).max() < 1e-6
+
+
+def test_a_stop_beside_the_axis_brakes_c_too() -> None:
+    """The mill creeps there while C turns fast: no speed is too small to be braked."""
+    path = build_path([milled(face_line((3.0, 0.001), (-3.0, 0.001)), 8.0)], LIMITS)
+    running = plan(path)
+    near = running.time_at(path.s[:1] + 3.0)
+    s, v = running.at(near)
+    assert 0.0 < v[0] < 0.1
+    stopped = plan(path, start_s=float(s[0]), start_v=1e-3 * float(v[0]), stop=True)
+    assert stopped.duration > 0.0
+    _, dt, _, begin, a = stopped.segments(0.0, stopped.duration)
+    tangent = path.pieces.direction[path.piece_at(s)]
+    assert begin[0] == pytest.approx(tangent[0] * 1e-3 * v[0])
+    assert np.abs(begin[-1] + a[-1] * dt[-1]).max() < 1e-6
