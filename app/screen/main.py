@@ -47,7 +47,8 @@ def run_screen(
         window.show()
     start = _Start(window, build or (lambda: _composed(machine, offsets)), program)
     before, sys.excepthook = sys.excepthook, start.mistake
-    handlers = [(number, signal.signal(number, lambda *_: app.quit())) for number in ENDING]
+    # Not quit: a window may refuse to close while a program is under way, a computer going down cannot wait.
+    handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in ENDING]
     QTimer.singleShot(0, start.run)
     status = app.exec()
     sys.excepthook = before

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from dataclasses import replace
+
 import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
@@ -11,6 +15,7 @@ from app.desk.desk import Desk
 from app.screen.frame import Frame
 from app.screen.main import run_screen
 from app.screen.window import MainWindow
+from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 
@@ -39,6 +44,22 @@ def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
     assert run_screen(program=str(SAMPLES / "pin.nc"), build=lambda: desk) == 0
     assert desk.session.now.name == "pin.nc"
     assert closed == [True]
+
+
+def test_a_computer_going_down_ends_the_screen_in_the_middle_of_a_program(machine: FakeMachine) -> None:
+    desk, closed = desk_on(machine), []
+    desk.shut = lambda: closed.append(machine.now.state)
+
+    def strike() -> None:
+        if desk.session.now.picture is None:
+            QTimer.singleShot(5, strike)
+            return
+        machine.now = replace(machine.now, state=State.HOLD)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    QTimer.singleShot(0, strike)
+    assert run_screen(program=str(SAMPLES / "pin.nc"), build=lambda: desk) == 0
+    assert closed == [State.HOLD]
 
 
 def test_a_program_that_is_not_there_is_told(machine: FakeMachine) -> None:
