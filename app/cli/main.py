@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import os
 import sys
@@ -81,6 +82,7 @@ def _dispatch(args: argparse.Namespace) -> int:
         sys.stdout.write(f"turndesk {version('turndesk')}\n")
         return EXIT_OK
     if args.command:
+        gc.set_threshold(50_000)  # importing alone would collect a hundred times and find nothing
         status: int = importlib.import_module(f"app.cli.{args.command}").run(args)
         return status
     return _screen(args)
@@ -104,6 +106,8 @@ def _screen(args: argparse.Namespace) -> int:
 def console() -> int:
     """The installed ``turndesk``: the command line, and no traceback in front of an operator."""
     sys.excepthook = report_crash
+    # numpy starts a pool of threads for algebra that nobody here does: a fifth of a short command.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     return main()
 
 

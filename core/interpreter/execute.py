@@ -11,7 +11,6 @@ from core.interpreter.arrival import note_dwell
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import coarse_line
 from core.interpreter.corners import read_corner, refuse_radius
-from core.interpreter.cycles import cycle_blocks
 from core.interpreter.feeds import feed_words, warn_of_crash_feed
 from core.interpreter.log import refusal
 from core.interpreter.mcodes import after_motion, before_motion
@@ -21,7 +20,6 @@ from core.interpreter.positioning import c_move, lock, positions
 from core.interpreter.spindle import rpm_at, run_block, speed_word, spindle_modes
 from core.interpreter.state import State
 from core.interpreter.statement import Statement, Step
-from core.interpreter.threads import thread_blocks
 from core.interpreter.tools import ToolUse, frame, secondary, tool_change
 from core.language.diagnostics import ProgramError
 
@@ -93,8 +91,12 @@ def _motion(state: State, made: Statement, contour: Sequence[Statement] = ()) ->
     if made.one_shot in codes.ARCS:
         yield arc_move(state, made)
     elif made.one_shot in codes.CYCLES:
+        from core.interpreter.cycles import cycle_blocks  # most programs have none: 20 ms of their start
+
         yield from cycle_blocks(state, made, contour)
     elif made.one_shot in codes.THREADS:
+        from core.interpreter.threads import thread_blocks
+
         yield from thread_blocks(state, made)
     elif made.one_shot == 4:
         yield _dwell(state, made)

@@ -17,7 +17,6 @@ from core.interpreter.moves import fast_move, go, on_step, plain_move
 from core.interpreter.nose import nose_code, switch
 from core.interpreter.opening import check_opening
 from core.interpreter.plain import plain
-from core.interpreter.plane import plane_line
 from core.interpreter.program import Program
 from core.interpreter.reading import statement
 from core.interpreter.setup import Setup
@@ -129,6 +128,8 @@ class Interpreter:
             yield from self._call(made)
         elif made.flow == PLANE:
             self._shaper.check(made)
+            from core.interpreter.plane import plane_line  # as rare as it is large
+
             for block in plane_line(self._state, made):
                 yield from self._shaped(block)
         elif made.flow:
