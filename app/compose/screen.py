@@ -52,9 +52,8 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
         log.close()
 
     desk.shut = shut
+    desk.unkept = lambda: journal.trouble
     thread.start()
-    if journal.trouble:
-        desk.say(f"NOTHING WILL BE KEPT: {journal.trouble}")
     return desk
 
 

@@ -66,6 +66,7 @@ class Desk:
     machine: str = ""
     simulated: bool = True
     shut: Callable[[], None] = _nothing
+    unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
     editor: Editor | None = None
@@ -79,6 +80,7 @@ class Desk:
     _rebuild: bool = False
     _changes: int = 0  # of the book, as far as they were seen
     _refused: str = ""
+    _unkept: str = ""
     _noticed_in: State | None = None
     _pulse: Pulse = field(default_factory=Pulse)
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
@@ -95,6 +97,7 @@ class Desk:
         snapshot = self.snapshot()
         self.log.see(snapshot.alarms)
         self._answer(snapshot)
+        self._tell_unkept()
         self._build_anew(snapshot)
         view = view_of(snapshot, self.readout, self.with_c)
         if self._pulse.silent(snapshot.t, self.hands.clock()):
@@ -297,6 +300,14 @@ class Desk:
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""
         self._heard.append(event)
+
+    def _tell_unkept(self) -> None:
+        """A disk that fails in the middle of a run is told once, not found out the day after."""
+        trouble = self.unkept()
+        if trouble != self._unkept:
+            self._unkept = trouble
+            if trouble:
+                self.say(f"NOT KEPT: {trouble}")
 
     def _answer(self, snapshot: Snapshot) -> None:
         """Nothing is refused in silence: a refused start, and whatever else the executor would not do."""

@@ -277,3 +277,17 @@ def _no_workshop() -> Workshop:
         raise AssertionError("nothing is loaded here")
 
     return Workshop(refuse, refuse, refuse, refuse)  # type: ignore[arg-type]
+
+
+def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, machine: FakeMachine) -> None:
+    trouble = ""
+    desk.unkept = lambda: trouble
+    at(machine, State.HOLD)
+    desk.look()
+    assert "NOT KEPT" not in desk.notice
+    trouble = "turndesk.db: the disk is full"
+    desk.look()
+    assert desk.notice == "NOT KEPT: turndesk.db: the disk is full"
+    desk.clear()
+    desk.look()
+    assert desk.notice == ""
