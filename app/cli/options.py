@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
+from core.language.dialect import Dialect, dialect_of
 
 if TYPE_CHECKING:
     from core.interpreter.setup import Setup
@@ -17,16 +18,15 @@ if TYPE_CHECKING:
 
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
-DIALECTS = ("omniturn", "klartext", "sinumerik")
-_BY_ENDING = {".h": "klartext", ".mpf": "sinumerik", ".spf": "sinumerik"}
-
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
     """Machine, dialect, offsets, inputs and switches, as interfaces.md names them."""
     parser.add_argument(
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
     )
-    parser.add_argument("--dialect", choices=DIALECTS, help="default: by file ending, else omniturn")
+    parser.add_argument(
+        "--dialect", choices=[str(each) for each in Dialect], help="default: by file ending, else omniturn"
+    )
     parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
     parser.add_argument("--inputs", metavar="FILE", help="input states for M91 to M97")
     parser.add_argument("--optional-stop", action="store_true", help="M01 stops")
@@ -73,13 +73,14 @@ def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, boo
 
 def read_source(path: Path, args: argparse.Namespace) -> Source:
     """The program text; raises CommandError when the file cannot be read or its dialect is not built yet."""
+    from core.interpreter.dialects import KNOWN
     from core.language.source import SourceError, load_source
 
-    dialect = args.dialect or _BY_ENDING.get(path.suffix.lower(), "omniturn")
-    if dialect != "omniturn":
-        raise CommandError(f"{path}: {dialect} programs cannot be read yet; only omniturn programs can")
+    dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
+    if dialect not in KNOWN:
+        raise CommandError(f"{path}: {dialect} programs cannot be read yet; only {', '.join(sorted(KNOWN))}")
     try:
-        return load_source(path)
+        return load_source(path, dialect)
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
         raise CommandError(str(error).replace(path.name, str(path), 1)) from error

@@ -7,14 +7,13 @@ from collections.abc import Callable
 
 from core.executor.feed import Pass
 from core.executor.job import Job
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
+from core.interpreter.dialects import interpretation
 from core.interpreter.setup import Setup
 
 
 def interpret(job: Job, setup: Setup) -> Pass:
     """One pass; its blocks end at the first error, which ``problems`` then tells."""
-    interpreter = Interpreter(read_program(job.source, strict=setup.strict), setup)
+    interpreter = interpretation(job.source, setup)
     return Pass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
 
 

@@ -43,6 +43,6 @@ def make_job(source: Source, setup: Setup) -> Job:
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
     )
-    text = hashlib.sha256(source.text.encode("utf-8", "surrogatepass"))
+    text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     text.update(repr(circumstances).encode())
     return Job(source, setup, text.hexdigest(), frozenset(setup.tools))

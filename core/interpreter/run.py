@@ -48,6 +48,11 @@ class Interpreter:
         self._first, self._refused = check_opening(self._state, program)
 
     @property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        return self._program.blocks
+
+    @property
     def diagnostics(self) -> list[Diagnostic]:
         """All findings so far, those of reading the program first; grows while blocks are taken."""
         return self._log.found

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import Dialect, dialect_of
 
 # Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
 _LINE_END = re.compile(r"\r\n|\r|\n")
@@ -20,10 +21,16 @@ _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 @dataclass(frozen=True)
 class Source:
-    """Program text. ``name`` is what messages and the screen call it."""
+    """Program text. ``name`` is what messages and the screen call it; ``said`` its dialect, where told."""
 
     name: str
     text: str
+    said: Dialect | None = None
+
+    @property
+    def dialect(self) -> Dialect:
+        """The language it is written in."""
+        return self.said or dialect_of(self.name)
 
     @cached_property
     def lines(self) -> tuple[str, ...]:
@@ -42,7 +49,7 @@ class SourceError(Exception):
         self.diagnostic = diagnostic
 
 
-def load_source(path: Path) -> Source:
+def load_source(path: Path, said: Dialect | None = None) -> Source:
     """Read a program file: UTF-8, or else one of the 8-bit codes of DOS and Windows.
 
     Raises SourceError where the file cannot be read or is no text.
@@ -56,7 +63,7 @@ def load_source(path: Path) -> Source:
         raise _refused(
             "file-unreadable", f"{path.name} cannot be read: {reason}.", "Look at the name and the disk."
         ) from problem
-    return Source(path.name, _decoded(path.name, data))
+    return Source(path.name, _decoded(path.name, data), said)
 
 
 def _decoded(name: str, data: bytes) -> str:

@@ -81,7 +81,7 @@ class _Proof:
         return Report(
             name=source.name,
             metric=bool(last and last.modal.metric),
-            blocks=timeline.program.blocks,
+            blocks=interpreter.source_blocks,
             elementary=self.elementary,
             diagnostics=tuple(sorted(found, key=lambda d: (d.line, d.column))),
             times=Times(self._cutting, self._rapid, self._dwell, self._wait),

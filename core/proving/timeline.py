@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
-from core.interpreter.program import Program, read_program
-from core.interpreter.run import Interpreter
+from core.interpreter.dialects import Interpretation, interpretation
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
@@ -54,9 +53,8 @@ class Timeline:
     Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``.
     """
 
-    def __init__(self, program: Program, setup: Setup, machine: Machine) -> None:
-        self.program = program
-        self.interpreter = Interpreter(program, setup)
+    def __init__(self, interpreter: Interpretation, setup: Setup, machine: Machine) -> None:
+        self.interpreter = interpreter
         self.spindle = SpindleForecast(machine)
         self.t = 0.0
         self.start = setup.start
@@ -72,7 +70,7 @@ class Timeline:
     @classmethod
     def of(cls, source: Source, setup: Setup, machine: Machine) -> Timeline:
         """The timeline of a program's text."""
-        return cls(read_program(source, setup.strict), setup, machine)
+        return cls(interpretation(source, setup), setup, machine)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

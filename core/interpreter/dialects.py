@@ -1,0 +1,63 @@
+"""One door to the interpreters of all dialects: text and circumstances in, elementary blocks out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Protocol
+
+from core.interpreter.blocks import Block
+from core.interpreter.modal import Modal
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Diagnostic
+from core.language.dialect import Dialect
+from core.language.source import Source
+
+
+class Interpretation(Protocol):
+    """One pass through a program, in whatever language. It raises nothing: see ``diagnostics``."""
+
+    @property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        ...
+
+    @property
+    def diagnostics(self) -> Sequence[Diagnostic]:
+        """All findings so far, those of reading the text first; grows while blocks are taken."""
+        ...
+
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        ...
+
+    @property
+    def used_tools(self) -> Sequence[int]:
+        """Tool numbers asked for so far, in the order of first use."""
+        ...
+
+    @property
+    def missing_tools(self) -> Sequence[int]:
+        """Those of them whose offset has never been set."""
+        ...
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once."""
+        ...
+
+
+def _omniturn(source: Source, setup: Setup) -> Interpretation:
+    from core.interpreter.program import read_program
+    from core.interpreter.run import Interpreter
+
+    return Interpreter(read_program(source, setup.strict), setup)
+
+
+# A language is loaded when a program of it is: the others cost nothing.
+_INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {Dialect.OMNITURN: _omniturn}
+KNOWN = frozenset(_INTERPRETERS)
+
+
+def interpretation(source: Source, setup: Setup) -> Interpretation:
+    """One pass through this program. Raises KeyError for a dialect that is not in ``KNOWN``."""
+    return _INTERPRETERS[source.dialect](source, setup)
