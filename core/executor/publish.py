@@ -18,16 +18,13 @@ class Publisher:
     def __init__(self) -> None:
         self._before: AxisSample | None = None
         self._velocity = 0.0
-        self._modal = Modal()
 
     def snapshot(self, bench: Bench, conductor: Conductor) -> Snapshot:
         """The snapshot of this tick."""
         cycle, standing, counters = conductor.cycle, conductor.standing, conductor.counters
         block = cycle.current if cycle else None
         following = cycle.next_block if cycle else None
-        if cycle is not None:
-            self._modal = cycle.modal
-        job, modal = standing.job, self._modal
+        job, modal = standing.job, conductor.modal
         return Snapshot(
             t=bench.now,
             state=standing.state,
@@ -49,9 +46,11 @@ class Publisher:
             rapid=block.kind is Kind.RAPID if block else modal.rapid,
             rpm_command=bench.spindle.command,
             rpm_actual=bench.spindle.measured,
+            spindle_asked=bench.spindle.asked_rpm,
             feed_override=bench.feed_override,
             spindle_override=bench.spindle.override,
             spindle_auto=bench.spindle.auto,
+            spindle_limit=bench.spindle.limit or 0.0,
             single_block=bench.switches.single_block,
             optional_stop=bench.switches.optional_stop,
             block_delete=job.setup.block_delete if job else False,

@@ -62,9 +62,11 @@ class Snapshot:
     rapid: bool = False
     rpm_command: float = 0.0
     rpm_actual: float = 0.0
+    spindle_asked: float = 0.0  # signed rpm that program or MDI want, before pot, switch and limit of F10
     feed_override: float = 1.0
     spindle_override: float = 1.0
     spindle_auto: bool = True
+    spindle_limit: float = 0.0  # F10, until restart, rpm; 0: the machine's own maximum
     single_block: bool = False
     optional_stop: bool = False
     block_delete: bool = False
@@ -88,6 +90,6 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    kind: str  # state, alarm, start, end, part, stop, refused, override, switch
+    kind: str  # state, alarm, start, end, part, stop, refused, override, switch, force, load, offsets
     text: str
     line: int = 0
