@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
+
 from core.machine.schema import Field, Kind
 from core.machine.units import Unit
 
 BACKENDS = ("sim",)
-AXES = ("X", "Z", "C")
+KINDS = ("lathe", "mill")
+SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
+ROTARY = {"lathe": (), "mill": ("A", "B", "C")}  # those a machine may have; a lathe's C is its spindle
 
 _NUMBER, _WHOLE, _FLAG, _TEXT, _CHOICE = Kind.NUMBER, Kind.WHOLE, Kind.FLAG, Kind.TEXT, Kind.CHOICE
 
 MACHINE = (
     Field("name", _TEXT),
     Field("units", _CHOICE, choices=("inch", "mm")),
+    Field("kind", _CHOICE, choices=KINDS, default="lathe"),
     Field("backend", _CHOICE, choices=BACKENDS, default="sim"),
     Field("commit_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.2),
     Field("lookahead_ms", _NUMBER, Unit.MILLISECONDS, 0.1, 10.0),
@@ -40,6 +45,10 @@ HOME = (
     Field("order", _WHOLE, low=1, high=9),
     Field("speed", _NUMBER, Unit.FEED, 0.1, 200.0),
 )
+ROTARY_HOME = (
+    Field("order", _WHOLE, low=1, high=9),
+    Field("speed", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 200.0),
+)
 C_AXIS = (
     Field("enabled", _FLAG),
     Field("vmax", _NUMBER, Unit.TURNS_PER_MINUTE, 6.0, 6000.0),
@@ -48,6 +57,16 @@ C_AXIS = (
     Field("fe_window", _NUMBER, Unit.DEGREES, 0.05, 90.0),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
     Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0),
+    Field("absolute", _FLAG, default=False),
+)
+ROTARY_AXIS = (
+    Field("travel", Kind.PAIR, Unit.DEGREES, -36000.0, 36000.0, default=(-math.inf, math.inf)),
+    Field("vmax", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 36000.0),
+    Field("amax", _NUMBER, Unit.DEGREES_PER_SECOND_SQUARED, 1.0, 360000.0),
+    Field("count", _NUMBER, Unit.DEGREES, 1e-6, 1.0),
+    Field("fe_window", _NUMBER, Unit.DEGREES, 0.001, 90.0),
+    Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
+    Field("in_pos", _NUMBER, Unit.DEGREES, 1e-6, 5.0),
     Field("absolute", _FLAG, default=False),
 )
 C_OPTION = (Field("feedback", _FLAG, default=False),)
@@ -95,6 +114,14 @@ TABLES = (
     ("sim", SIM),
 )
 TOP = ("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim")
+# A mill has none of these; its model holds what stands here.
+TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
+    "c_axis": C_OPTION,
+    "collet": (
+        Field("open_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
+        Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
+    ),
+}
 MAY_BE_MISSING = ("c_axis", "interlocks", "m_codes", "sim")
 
 # M codes with a meaning of their own; the machine file cannot assign them.

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 
 import resources
-from core.machine import rules, signals
+from core.machine import fields, rules, signals
 from core.machine.errors import Finding, MachineFileError
 from core.machine.model import (
     Axis,
@@ -63,8 +64,8 @@ def _machine(reading: Reading, source: str) -> Machine:
     return Machine(
         name=values.text("machine.name"),
         backend=values.text("machine.backend"),
-        axes=(_axis(reading, "X"), _axis(reading, "Z"), _axis(reading, "C")),
-        c_enabled=values.flag("axis.C.enabled"),
+        axes=_axes(reading),
+        c_enabled=reading.kind == "lathe" and values.flag("axis.C.enabled"),
         c_feedback=values.flag("c_axis.feedback"),
         spindle=_spindle(reading),
         timing=_timing(reading),
@@ -83,15 +84,26 @@ def _machine(reading: Reading, source: str) -> Machine:
         source=source,
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),
+        kind=reading.kind,
     )
+
+
+def _axes(reading: Reading) -> tuple[Axis, ...]:
+    rotary = ("C",) if reading.kind == "lathe" else fields.ROTARY[reading.kind]
+    names = (
+        *fields.SLIDES[reading.kind],
+        *(name for name in rotary if reading.values.has(f"axis.{name}.vmax")),
+    )
+    return tuple(_axis(reading, name) for name in names)
 
 
 def _axis(reading: Reading, name: str) -> Axis:
     values, path = reading.values, f"axis.{name}"
     homed = values.has(f"{path}.home.order")
+    travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else (-math.inf, math.inf)
     return Axis(
         name=name,
-        travel=values.pair(f"{path}.travel") if name != "C" else None,
+        travel=travel if math.isfinite(travel[0]) else None,
         vmax=values.number(f"{path}.vmax"),
         amax=values.number(f"{path}.amax"),
         count=values.number(f"{path}.count"),
@@ -101,6 +113,7 @@ def _axis(reading: Reading, name: str) -> Axis:
         absolute=values.flag(f"{path}.absolute"),
         home_order=int(values.number(f"{path}.home.order")) if homed else 0,
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
+        rotary=name not in fields.SLIDES[reading.kind],
     )
 
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One axis. Lengths mm and mm/s; for C degrees and degrees/s."""
+    """One axis. Lengths mm and mm/s; for a rotary axis degrees and degrees/s."""
 
     name: str
-    travel: tuple[float, float] | None  # from home; None: endless (C)
+    travel: tuple[float, float] | None  # from home; None: endless
     vmax: float
     amax: float
     count: float  # encoder and command step
@@ -21,6 +21,7 @@ class Axis:
     absolute: bool  # knows its position at power-up: no homing needed
     home_order: int = 0
     home_speed: float = 0.0
+    rotary: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +81,11 @@ class Interlocks:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """The whole machine. ``axes`` in the order X, Z, C."""
+    """The whole machine. ``axes``: slides first, then rotary axes; on a lathe X, Z, C."""
 
     name: str
     backend: str
-    axes: tuple[Axis, Axis, Axis]
+    axes: tuple[Axis, ...]
     c_enabled: bool
     c_feedback: bool
     spindle: SpindleModel
@@ -100,3 +101,11 @@ class Machine:
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
+    kind: str = "lathe"  # or "mill"
+
+    def axis(self, name: str) -> Axis:
+        """The axis of this name. Raises KeyError where the machine has none."""
+        for axis in self.axes:
+            if axis.name == name:
+                return axis
+        raise KeyError(name)

@@ -15,6 +15,7 @@ class Reading:
     def __init__(self, data: Mapping[str, object]) -> None:
         self.data = data
         self.values = Values(_inch(data))
+        self.kind = _kind(data)
         self.outputs: list[str] = []
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
@@ -24,7 +25,10 @@ class Reading:
     def _read(self) -> None:
         self._table("machine", fields.MACHINE)
         for path, keys in fields.TABLES:
-            self._table(path, keys)
+            if path in fields.TABLES_OF_A_LATHE and self.kind != "lathe":
+                self._of_a_lathe(path)
+            else:
+                self._table(path, keys)
         self._axes()
         io = self._parent("io", ("in", "out"))
         self.outputs = self._named(io.get("out"), "io.out", fields.OUTPUT)
@@ -54,14 +58,27 @@ class Reading:
         return table
 
     def _axes(self) -> None:
-        axes = self._parent("axis", fields.AXES)
-        for name in ("X", "Z"):
-            path = f"axis.{name}"
-            table = axes.get(name)
-            self._keys(table, path, fields.SLIDE, ("home",))
-            if isinstance(table, dict) and "home" in table:
-                self._keys(table["home"], f"{path}.home", fields.HOME)
-        self._keys(axes.get("C"), "axis.C", fields.C_AXIS)
+        lathe, rotary = self.kind == "lathe", fields.ROTARY[self.kind]
+        axes = self._parent("axis", (*fields.SLIDES[self.kind], *(("C",) if lathe else rotary)))
+        for name in fields.SLIDES[self.kind]:
+            self._homed(axes.get(name), f"axis.{name}", fields.SLIDE, fields.HOME)
+        if lathe:
+            self._keys(axes.get("C"), "axis.C", fields.C_AXIS)
+        for name in rotary:
+            if name in axes:
+                self._homed(axes[name], f"axis.{name}", fields.ROTARY_AXIS, fields.ROTARY_HOME)
+
+    def _homed(self, table: object, path: str, keys: tuple[Field, ...], home: tuple[Field, ...]) -> None:
+        """The table of an axis, and in it how it is homed."""
+        self._keys(table, path, keys, ("home",))
+        if isinstance(table, dict) and "home" in table:
+            self._keys(table["home"], f"{path}.home", home)
+
+    def _of_a_lathe(self, path: str) -> None:
+        if path in self.data:
+            self.findings.append(Finding(f"[{path}]", "", "only a lathe has this; take it out"))
+        else:  # what the control asks of every machine stands still on this one
+            self._keys({}, path, fields.TABLES_OF_A_LATHE[path])
 
     def _named(self, table: object, path: str, keys: tuple[Field, ...]) -> list[str]:
         """Reads tables under names of the owner's choice; returns those names."""
@@ -78,6 +95,13 @@ def _inch(data: Mapping[str, object]) -> bool | None:
     machine = data.get("machine")
     units = machine.get("units") if isinstance(machine, dict) else None
     return units == "inch" if units in ("inch", "mm") else None
+
+
+def _kind(data: Mapping[str, object]) -> str:
+    """Lathe or mill; where the file says neither rightly, which is a finding elsewhere, a lathe."""
+    machine = data.get("machine")
+    kind = machine.get("kind") if isinstance(machine, dict) else None
+    return kind if isinstance(kind, str) and kind in fields.KINDS else "lathe"
 
 
 def _unknown_tables(data: Mapping[str, object]) -> list[Finding]:

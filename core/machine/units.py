@@ -23,10 +23,17 @@ class Unit(StrEnum):
     TURNS_PER_MINUTE = "rpm of C"
     TURNS_PER_MINUTE_SECOND = "rpm/s of C"
     HERTZ = "Hz"
+    DEGREES_PER_MINUTE = "deg/min"
+    DEGREES_PER_SECOND_SQUARED = "deg/s²"
 
 
 # A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
-_DIVISOR = {Unit.FEED: 60.0, Unit.MILLISECONDS: 1000.0, Unit.PERCENT: 100.0}
+_DIVISOR = {
+    Unit.FEED: 60.0,
+    Unit.DEGREES_PER_MINUTE: 60.0,
+    Unit.MILLISECONDS: 1000.0,
+    Unit.PERCENT: 100.0,
+}
 _MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0}
 LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
 
