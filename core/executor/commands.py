@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.executor.job import Job, Proof
+from core.interpreter.setup import SecondaryOffset, ToolOffset
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +87,30 @@ class Home:
     axis: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class UseOffsets:
+    """The tables of offsets have changed: position display and MDI go by them from now on.
+
+    Refused while a program is under way, which keeps the offsets that it was proved with.
+    """
+
+    tools: Mapping[int, ToolOffset]
+    secondary: Mapping[int, SecondaryOffset]
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleStop:
+    """Stop the spindle that MDI or an M02 has left turning; refused while a program is under way."""
+
+
+@dataclass(frozen=True, slots=True)
+class ForceOutput:
+    """Switch one output by hand, for the test page; only while nothing is under way."""
+
+    name: str
+    on: bool
+
+
 Command = (
     LoadJob
     | GiveProof
@@ -98,4 +124,7 @@ Command = (
     | JogStop
     | SpindleLimit
     | Home
+    | UseOffsets
+    | SpindleStop
+    | ForceOutput
 )

@@ -10,6 +10,7 @@ from core.executor.bench import Bench
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.homing import Homing
+from core.executor.inherited import as_it_is, at_power_up, given_up
 from core.executor.interpret import circumstances
 from core.executor.job import Job
 from core.executor.jog import Jogger
@@ -19,6 +20,7 @@ from core.executor.standing import Counters, Standing
 from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
 from core.interpreter.actions import ProgramEnd
+from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
 from core.motion.limits import MotionLimits
 
@@ -29,7 +31,7 @@ class Conductor:
     def __init__(self, bench: Bench, passes: Callable[[Job, Setup], Pass]) -> None:
         self._bench = bench
         self._passes = passes
-        self.standing = Standing()
+        self.standing = Standing(modal=at_power_up(bench))
         self.counters = Counters()
         self.cycle: Cycle | None = None
         self.supervisor = Supervisor(bench)
@@ -45,6 +47,11 @@ class Conductor:
     def state(self) -> State:
         """The present state."""
         return self.standing.state
+
+    @property
+    def modal(self) -> Modal:
+        """In force now: of the block being executed, or what stands between two programs."""
+        return self.cycle.modal if self.cycle is not None else self.standing.modal
 
     def enter(self, state: State) -> None:
         """Change the state; raises TransitionError for a change that the table does not hold."""
@@ -113,6 +120,8 @@ class Conductor:
 
     def go_on(self) -> None:
         """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
+        if self.cycle is None:
+            self.standing.modal = as_it_is(self.standing.modal, self._bench)
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
                 self._leave()
@@ -148,7 +157,9 @@ class Conductor:
         at, _ = self._bench.ports.axes.demand_at(self._bench.now)
         setup = circumstances(job.setup, (at[0], at[1], at[2]), self._bench.terminal)
         self._player.forget()
-        self.cycle = Cycle(self._bench, self._player, self._passes(job, setup), self.enter, self._ended)
+        source = self._passes(job, setup)
+        begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
+        self.cycle = Cycle(self._bench, self._player, source, begins, self.enter, self._ended)
 
     def _ended(self, end: ProgramEnd) -> None:
         """M30 and M02: one part more; M30 also ends what M functions have begun."""
@@ -165,7 +176,9 @@ class Conductor:
             self._open(job)
             return
         bench.say("end", "program end")
+        left = self.cycle.modal if self.cycle is not None else self.standing.modal
         self._forget_cycle()
+        self.standing.modal = left
         self.enter(State.IDLE)
 
     def _leave(self) -> None:
@@ -178,6 +191,9 @@ class Conductor:
         self._bench.say("end", "program given up by reset")
 
     def _forget_cycle(self) -> None:
+        """What it leaves in force is what M30 would have left."""
+        if self.cycle is not None:
+            self.standing.modal = given_up(self.cycle.modal)
         self.cycle = None
         self._bench.line = 0
         self._player.forget()

@@ -24,13 +24,17 @@ _GOING = frozenset({State.RUN, State.WAIT})
 
 
 class Cycle:
-    """``step`` is called every tick; ``enter`` is told of each change of state, ``ended`` of the end."""
+    """``step`` is called every tick; ``enter`` is told of each change of state, ``ended`` of the end.
+
+    ``begins`` is the modal state before its first block.
+    """
 
     def __init__(
         self,
         bench: Bench,
         player: Player,
         source: Pass,
+        begins: Modal,
         enter: Callable[[State], None],
         ended: Callable[[ProgramEnd], None],
     ) -> None:
@@ -49,7 +53,7 @@ class Cycle:
         self._reason = ""  # why the cycle was held, when not by the button
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
-        self.modal = Modal()
+        self.modal = begins
 
     @property
     def waiting_for(self) -> str:

@@ -137,8 +137,8 @@ class Executor:
     def _turn(self) -> None:
         cycle = self._conductor.cycle
         block = cycle.current if cycle else None
-        x = self._bench.sample.demand[0] - (block.offset_x if block else 0.0)
-        self._bench.spindle.update(self._bench.now, x)
+        offset = block.offset_x if block else self._conductor.modal.offset_x
+        self._bench.spindle.update(self._bench.now, self._bench.sample.demand[0] - offset)
 
     def _guarded(self, part: Callable[[], None]) -> None:
         """What a part of a tick has to tell becomes an alarm, and the other parts go on."""

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.executor.bench import Bench
+from core.executor.by_hand import ByHand
 from core.executor.commands import (
     Command,
     CycleStart,
     EnableDrives,
     FeedHold,
     FeedOverride,
+    ForceOutput,
     GiveProof,
     Home,
     Jog,
@@ -19,6 +21,8 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
     SpindleLimit,
+    SpindleStop,
+    UseOffsets,
 )
 from core.executor.conductor import Conductor
 from core.executor.snapshot import State
@@ -35,6 +39,7 @@ class Orders:
         self._bench = bench
         self._conductor = conductor
         self._station = station
+        self._by_hand = ByHand(bench, conductor)
         self._simple: dict[type[Command], Callable[[], None]] = {
             CycleStart: self._start,
             FeedHold: self._hold,
@@ -64,6 +69,8 @@ class Orders:
                 self._jog(command)
             case Home(axis=axis):
                 self._home(axis)
+            case UseOffsets() | SpindleStop() | ForceOutput():
+                self._by_hand.obey(command)
 
     def _start(self) -> None:
         """A start without the palms: where a real machine asks for two hands, this is not one."""

@@ -246,5 +246,5 @@ class Player:
 
 def _standing(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
     """Setpoints that stay where the plan stands: they cut off whatever was queued behind."""
-    still = np.zeros((1, 3))
+    still = np.zeros((1, len(profile.path.start)))
     return [np.array([t]), np.zeros(1), profile.path.point(np.array([profile.end_s])), still, still]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from core.executor.alarms import TroubleError
@@ -61,6 +62,14 @@ class SpindleControl:
         return self._ask is not None
 
     @property
+    def asked_rpm(self) -> float:
+        """Signed speed that is wanted of it; under G96 at the tool's present radius, with its clamps."""
+        ask = self._ask
+        if ask is None:
+            return 0.0
+        return math.copysign(self._rpm_of(ask, self._model.rpm_max), ask.rpm)
+
+    @property
     def stopped(self) -> bool:
         """Whether it stands still, measured."""
         return abs(self.measured) < self._model.stop_below
@@ -112,7 +121,8 @@ class SpindleControl:
         """
         self._now = now
         self.measured = self._port.speed()
-        self._send(self._wanted(radius), now)
+        self._radius = radius
+        self._send(self._wanted(), now)
         self._watch_band(now)
         fault = self._port.fault()
         if fault:
@@ -130,17 +140,20 @@ class SpindleControl:
             return False
         return now - self._in_band_since >= self._model.at_speed_time - 1e-9
 
-    def _wanted(self, radius: float) -> float:
+    def _wanted(self) -> float:
         ask = self._ask
         if ask is None or not self.auto:
             return 0.0
-        rpm = abs(ask.rpm)
-        if ask.surface is not None:
-            rpm = surface_rpm(ask.surface, radius, ask.lowest, min(ask.highest or self.highest, self.highest))
-        rpm = min(rpm, self.highest) * self.override
+        rpm = min(self._rpm_of(ask, self.highest), self.highest) * self.override
         if 0.0 < rpm < self._model.rpm_min:
             rpm = self._model.rpm_min
         return rpm if ask.rpm >= 0.0 else -rpm
+
+    def _rpm_of(self, ask: Ask, highest: float) -> float:
+        """Unsigned; ``highest`` as G77 knows it."""
+        if ask.surface is None:
+            return abs(ask.rpm)
+        return surface_rpm(ask.surface, self._radius, ask.lowest, min(ask.highest or highest, highest))
 
     def _send(self, rpm: float, now: float) -> None:
         if abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0):
@@ -165,3 +178,4 @@ class SpindleControl:
         return max(abs(self.command), ramp) * (1.0 + _OVER) + _OVER_RPM
 
     _now = 0.0
+    _radius = 0.0

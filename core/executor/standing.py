@@ -1,11 +1,12 @@
-"""What the executor knows of job, alarms and counts."""
+"""What the executor knows of job, modal state, alarms and counts."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, State
+from core.interpreter.modal import Modal
 
 
 @dataclass(slots=True)
@@ -28,3 +29,4 @@ class Standing:
     alarms: tuple[Alarm, ...] = ()
     power_off: bool = False  # an alarm has switched the drives off
     start_refused: str = ""
+    modal: Modal = field(default_factory=Modal)  # in force while no program is under way

@@ -15,8 +15,8 @@ from core.interpreter.actions import (
 )
 from core.interpreter.arrival import warn_of_short_dwell
 from core.interpreter.blocks import Block
+from core.interpreter.ending import after_end
 from core.interpreter.log import refusal
-from core.interpreter.modal import Modal
 from core.interpreter.spindle import rpm_at, stop_block
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
@@ -102,25 +102,6 @@ def _output(state: State, made: Statement, name: str, on: bool) -> Block:
 
 
 def _end(state: State, made: Statement, *, reset: bool) -> Block:
-    """The state of power-up, but for units, the tool's frame and, after M02, the M functions."""
     warn_of_short_dwell(state)
-    old = state.modal
-    state.stay(
-        Modal(
-            metric=old.metric,
-            rapid_rate=old.rapid_rate,
-            tool=old.tool,
-            tool_x=old.tool_x,
-            tool_z=old.tool_z,
-            preset_x=old.preset_x,
-            preset_z=old.preset_z,
-            collet_closed=old.collet_closed,
-            spindle=0 if reset else old.spindle,
-            rpm=abs(rpm_at(state, state.x)) if old.spindle and not reset else old.rpm,
-            coolant=old.coolant and not reset,
-            outputs=frozenset() if reset else old.outputs,
-            comment=old.comment,
-            offset_c=old.offset_c,
-        )
-    )
+    state.stay(after_end(state.modal, abs(rpm_at(state, state.x)), reset=reset))
     return _done(state, made, ProgramEnd(reset=reset))

@@ -1,0 +1,152 @@
+"""What is in force between two programs, and what a hand may change then."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import FeedHold, ForceOutput, Reset, SpindleLimit, SpindleStop, UseOffsets
+from core.executor.snapshot import State
+from core.interpreter.setup import SecondaryOffset, ToolOffset
+from tests.executor.rig import INCH, Rig
+
+TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}
+
+
+def test_the_state_of_power_up() -> None:
+    rig = Rig()
+    modal = rig.shot.modal
+    assert (modal.metric, modal.diameter, modal.per_rev, modal.tool, modal.spindle) == (False,) * 3 + (0, 0)
+    assert modal.absolute is None
+    assert modal.rapid_rate == pytest.approx(100 * INCH / 60)
+    assert modal.collet_closed  # its output is on from the start
+
+
+def test_m30_leaves_units_and_the_frame_of_the_tool_and_m02_the_m_functions_too() -> None:
+    rig = Rig()
+    rig.start("G90G94F300G71G72\nT1\nX10Z10M08\nM03S900\nG95F.1\nM02\n", TOOLS)
+    rig.until(State.IDLE)
+    left = rig.shot.modal
+    assert (left.metric, left.diameter, left.per_rev, left.absolute) == (True, False, False, None)
+    assert (left.tool, left.tool_x, left.tool_z) == (1, -12.7, -50.8)
+    assert (left.spindle, left.rpm, left.coolant) == (1, 900.0, True)
+    assert rig.shot.offset == (-12.7, -50.8)
+    assert rig.shot.spindle_asked == 900.0
+    rig.start("G90G94F300\nX-.3\nM30\n")
+    rig.until(State.IDLE)
+    assert (rig.shot.modal.tool, rig.shot.modal.spindle, rig.shot.modal.coolant) == (0, 0, False)
+    assert rig.shot.rpm_command == 0.0
+
+
+def test_a_reset_leaves_what_m30_would_have_left() -> None:
+    rig = Rig()
+    rig.start("G90G94F300G72\nT2\nG10X.2\nT1\nX1Z.5M08\nM03S500\nG01G94F10Z-2\nM30\n", TOOLS)
+    rig.until_true(lambda shot: shot.line == 7)
+    assert rig.shot.modal.shift_x == pytest.approx(0.1 * INCH)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.tick()
+    left = rig.shot.modal
+    assert (left.tool, left.shift_x, left.diameter, left.spindle, left.coolant) == (1, 0.0, False, 0, False)
+    assert rig.shot.offset == (-12.7, -50.8)
+
+
+def test_an_estop_takes_spindle_and_coolant_from_what_stands() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM08\nM03S900\nM02\n")
+    rig.until(State.IDLE)
+    assert (rig.shot.modal.spindle, rig.shot.modal.coolant) == (1, True)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.tick()
+    assert (rig.shot.modal.spindle, rig.shot.modal.coolant, rig.shot.spindle_asked) == (0, False, 0.0)
+
+
+def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nT1D3\nX1Z.5\nM02\n", TOOLS)
+    rig.until(State.IDLE)
+    assert rig.shot.offset == (-12.7, -50.8)
+    rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {}))
+    assert rig.shot.offset == (-12.0, -50.0)
+    assert rig.shot.modal.tool == 1
+
+
+def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nT1\nX1Z.5\nM00\nX.5\nM30\n", TOOLS)
+    rig.until(State.PROGRAM_STOP)
+    rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {1: SecondaryOffset(1.0)}))
+    assert rig.shot.offset == (-12.7, -50.8)
+    assert rig.said("refused")[-1].startswith("a program is under way: it keeps the offsets")
+
+
+def test_the_speed_asked_for_is_told_before_pot_and_limit() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM04S2000\nM02\n")
+    rig.until(State.IDLE)
+    rig.post(SpindleLimit(1500.0))
+    rig.sim.machine.set_spindle_pot(0.5)
+    rig.run(1.0)
+    assert rig.shot.spindle_asked == -2000.0
+    assert rig.shot.rpm_command == pytest.approx(-750.0)
+
+
+def test_the_spindle_is_stopped_by_hand_between_programs_only() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S900\nM00\nM02\n")
+    rig.until(State.PROGRAM_STOP)
+    rig.post(SpindleStop())
+    assert rig.shot.spindle_asked == 900.0
+    assert "feed hold and reset" in rig.said("refused")[-1]
+    rig.run(0.3)
+    rig.sim.machine.press_left()
+    rig.sim.machine.press_right()
+    rig.until(State.IDLE)
+    rig.post(SpindleStop())
+    rig.tick()
+    assert (rig.shot.spindle_asked, rig.shot.rpm_command, rig.shot.modal.spindle) == (0.0, 0.0, 0)
+
+
+def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
+    rig = Rig()
+    rig.post(ForceOutput("catcher", True))  # the drives are off
+    rig.ready()
+    rig.post(ForceOutput("coolant", True))
+    rig.tick()
+    assert {"catcher", "coolant"} <= rig.shot.outputs
+    assert rig.shot.modal.coolant
+    assert rig.shot.modal.outputs == frozenset({"catcher"})
+    assert rig.said("force") == ["catcher on by hand", "coolant on by hand"]
+
+
+@pytest.mark.parametrize(
+    ("name", "on", "why"),
+    [
+        ("laser", True, "this machine has no output laser"),
+        ("coolant", True, "only at rest, not in state RUNNING"),
+    ],
+)
+def test_no_output_is_forced_while_a_program_runs_nor_one_that_is_not_there(
+    name: str, on: bool, why: str
+) -> None:
+    rig = Rig()
+    rig.start("G90G94F1\nX1\nM30\n")
+    rig.post(ForceOutput(name, on))
+    assert why in rig.said("refused")[-1]
+    assert name not in rig.shot.outputs
+
+
+def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S900\nM02\n")
+    rig.until(State.IDLE)
+    rig.run(1.0)
+    rig.post(SpindleStop())
+    rig.post(ForceOutput("collet", False))  # it still runs down
+    assert rig.said("refused")[-1] == "the collet is not opened by hand while the spindle turns"
+    rig.run(3.0)
+    rig.post(ForceOutput("collet", False))
+    rig.tick()
+    assert not rig.shot.modal.collet_closed
