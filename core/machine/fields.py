@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+from core.machine.hardware.fields import SPINDLE_DRIVERS
+from core.machine.hardware.fields import TOP as HARDWARE
 from core.machine.schema import Field, Kind
 from core.machine.units import Unit
 
-BACKENDS = ("sim",)
+BACKENDS = ("sim", "canopen", "grblhal")
 KINDS = ("lathe", "mill")
 SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
 ROTARY = {"lathe": (), "mill": ("A", "B", "C")}  # those a machine may have; a lathe's C is its spindle
@@ -19,6 +21,8 @@ MACHINE = (
     Field("units", _CHOICE, choices=("inch", "mm")),
     Field("kind", _CHOICE, choices=KINDS, default="lathe"),
     Field("backend", _CHOICE, choices=BACKENDS, default="sim"),
+    Field("feeder", _FLAG, default=False),
+    Field("x_is", _CHOICE, choices=("radius", "diameter"), default="diameter"),
     Field("commit_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.2),
     Field("lookahead_ms", _NUMBER, Unit.MILLISECONDS, 0.1, 10.0),
     Field("low_water_ms", _NUMBER, Unit.MILLISECONDS, 0.005, 2.0),
@@ -41,13 +45,20 @@ SLIDE = (
     Field("in_pos", _NUMBER, Unit.LENGTH, 1e-5, 0.5),
     Field("absolute", _FLAG, default=False),
 )
+_METHOD = Field("method", _WHOLE, low=-128, high=37, default=0.0)  # of CiA 402; the simulation needs none
 HOME = (
     Field("order", _WHOLE, low=1, high=9),
     Field("speed", _NUMBER, Unit.FEED, 0.1, 200.0),
+    _METHOD,
+    Field("latch", _NUMBER, Unit.FEED, 0.01, 100.0, default=0.0),
+    Field("offset", _NUMBER, Unit.LENGTH, -1000.0, 1000.0, default=0.0),
 )
 ROTARY_HOME = (
     Field("order", _WHOLE, low=1, high=9),
     Field("speed", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 200.0),
+    _METHOD,
+    Field("latch", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 200.0, default=0.0),
+    Field("offset", _NUMBER, Unit.DEGREES, -360.0, 360.0, default=0.0),
 )
 C_AXIS = (
     Field("enabled", _FLAG),
@@ -79,6 +90,7 @@ SPINDLE = (
     Field("timeout_s", _NUMBER, Unit.SECONDS, 0.5, 60.0),
     Field("stop_below", _NUMBER, Unit.RPM, 0.5, 50.0),
     Field("encoder_ppr", _WHOLE, low=0, high=100000),
+    Field("driver", _CHOICE, choices=SPINDLE_DRIVERS, default="sim"),
 )
 COLLET = (
     Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0),
@@ -92,6 +104,7 @@ INTERLOCKS = (
 OUTPUT = (
     Field("at", _TEXT),
     Field("safe", _CHOICE, choices=(True, False, "keep")),
+    Field("refresh_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 10.0, default=0.0),
 )
 INPUT = (
     Field("at", _TEXT),
@@ -102,7 +115,10 @@ M_CODE = (
     Field("on", _FLAG),
     Field("enabled", _FLAG, default=True),
 )
-SIM = (Field("seed", _WHOLE, low=0, high=2**31, default=1),)
+SIM = (
+    Field("seed", _WHOLE, low=0, high=2**31, default=1),
+    Field("realtime", _FLAG, default=True),
+)
 
 # Plain tables: path and keys. axis, io and m_codes hold tables, some under names of the owner's choice.
 TABLES = (
@@ -113,7 +129,11 @@ TABLES = (
     ("interlocks", INTERLOCKS),
     ("sim", SIM),
 )
-TOP = ("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim")
+TOP = (
+    *("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim"),
+    *HARDWARE,
+)
+CHILDREN = {"spindle": ("vfd",), "sim": ("faults",)}  # read with what the machine is wired to
 # A mill has none of these; its model holds what stands here.
 TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
     "c_axis": C_OPTION,

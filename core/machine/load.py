@@ -9,6 +9,9 @@ from pathlib import Path
 import resources
 from core.machine import fields, rules, signals
 from core.machine.errors import Finding, MachineFileError
+from core.machine.hardware import rules as hardware_rules
+from core.machine.hardware.build import hardware_of
+from core.machine.hardware.reading import HardwareReading
 from core.machine.model import (
     Axis,
     InputModel,
@@ -53,13 +56,20 @@ def parse_machine(text: str, source: str) -> Machine:
     except tomllib.TOMLDecodeError as error:
         raise MachineFileError([Finding("TOML", "", str(error))], source) from error
     reading = Reading(data)
-    findings = [*reading.findings, *rules.broken(reading.values), *signals.broken(reading)]
+    hardware = HardwareReading(data, reading.values)
+    findings = [
+        *reading.findings,
+        *hardware.findings,
+        *rules.broken(reading.values),
+        *signals.broken(reading),
+        *hardware_rules.broken(hardware, _axis_names(reading), signals.by_terminal(reading)),
+    ]
     if findings:
         raise MachineFileError(findings, source)
-    return _machine(reading, source)
+    return _machine(reading, hardware, source)
 
 
-def _machine(reading: Reading, source: str) -> Machine:
+def _machine(reading: Reading, hardware: HardwareReading, source: str) -> Machine:
     values = reading.values
     return Machine(
         name=values.text("machine.name"),
@@ -85,16 +95,20 @@ def _machine(reading: Reading, source: str) -> Machine:
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),
         kind=reading.kind,
+        hardware=hardware_of(hardware, _axis_names(reading), reading.outputs),
+    )
+
+
+def _axis_names(reading: Reading) -> tuple[str, ...]:
+    rotary = ("C",) if reading.kind == "lathe" else fields.ROTARY[reading.kind]
+    return (
+        *fields.SLIDES[reading.kind],
+        *(name for name in rotary if reading.values.has(f"axis.{name}.vmax")),
     )
 
 
 def _axes(reading: Reading) -> tuple[Axis, ...]:
-    rotary = ("C",) if reading.kind == "lathe" else fields.ROTARY[reading.kind]
-    names = (
-        *fields.SLIDES[reading.kind],
-        *(name for name in rotary if reading.values.has(f"axis.{name}.vmax")),
-    )
-    return tuple(_axis(reading, name) for name in names)
+    return tuple(_axis(reading, name) for name in _axis_names(reading))
 
 
 def _axis(reading: Reading, name: str) -> Axis:

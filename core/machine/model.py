@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from core.machine.hardware.model import Hardware
+
 
 @dataclass(frozen=True, slots=True)
 class Axis:
@@ -102,6 +104,7 @@ class Machine:
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
     kind: str = "lathe"  # or "mill"
+    hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
 
     def axis(self, name: str) -> Axis:
         """The axis of this name. Raises KeyError where the machine has none."""

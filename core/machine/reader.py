@@ -30,13 +30,14 @@ class Reading:
             else:
                 self._table(path, keys)
         self._axes()
-        io = self._parent("io", ("in", "out"))
+        io = self._parent("io", ("in", "out", "analog"))
         self.outputs = self._named(io.get("out"), "io.out", fields.OUTPUT)
         self.inputs = self._named(io.get("in"), "io.in", fields.INPUT)
         self.m_codes = self._named(self.data.get("m_codes", {}), "m_codes", fields.M_CODE)
 
     def _table(self, path: str, keys: tuple[Field, ...]) -> None:
-        self._keys(self.data.get(path, {} if path in fields.MAY_BE_MISSING else None), path, keys)
+        table = self.data.get(path, {} if path in fields.MAY_BE_MISSING else None)
+        self._keys(table, path, keys, fields.CHILDREN.get(path, ()))
 
     def _keys(
         self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ from core.machine.schema import Values
 from core.machine.units import Unit, shown
 
 # Command or encoder counts per second that a backend takes.
-COUNT_RATE = {"sim": 1e6}
+COUNT_RATE = {"sim": 1e6, "canopen": 2.0**23, "grblhal": 3e5}
 
 
 class Rule(NamedTuple):

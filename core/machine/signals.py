@@ -23,6 +23,17 @@ def broken(reading: Reading) -> Iterator[Finding]:
     yield from _never_off(reading)
 
 
+def by_terminal(reading: Reading) -> dict[str, str]:
+    """The path of the signal on each terminal; the first where two share one."""
+    paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
+    values = reading.values
+    found: dict[str, str] = {}
+    for path in paths:
+        if values.has(f"{path}.at"):
+            found.setdefault(values.text(f"{path}.at"), path)
+    return found
+
+
 def _shared_terminals(reading: Reading) -> Iterator[Finding]:
     taken: dict[str, str] = {}
     names = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]

@@ -48,10 +48,10 @@ def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
 
 def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "bad.toml"
-    path.write_text(resources.machine_file("gt75.toml") + "\n[dnc]\nbaud = 9600\n")
+    path.write_text(resources.machine_file("gt75.toml") + "\n[profibus]\nbaud = 9600\n")
     assert main(["machine", "check", str(path), "--json"]) == 2
     report = json.loads(capsys.readouterr().out)
-    assert [error["path"] for error in report["errors"]] == ["[dnc]"]
+    assert [error["path"] for error in report["errors"]] == ["[profibus]"]
     assert report["ports"] == []
 
 

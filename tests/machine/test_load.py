@@ -97,8 +97,8 @@ def test_unknown_key_names_the_nearest() -> None:
 
 
 def test_unknown_table_says_which_are_known() -> None:
-    found = only(SHIPPED + "\n[canopen]\nbitrate = 1000000\n")
-    assert found.path == "[canopen]"
+    found = only(SHIPPED + "\n[profibus]\nbaud = 1000000\n")
+    assert found.path == "[profibus]"
     assert "[machine], [limits], [axis]" in found.expected
 
 
@@ -106,7 +106,7 @@ def test_unknown_table_says_which_are_known() -> None:
     ("old", "new", "path", "expected"),
     [
         ('units = "inch"', 'units = "furlong"', "machine.units", '"inch", "mm"'),
-        ('backend = "sim"', 'backend = "canopen"', "machine.backend", '"sim"'),
+        ('backend = "sim"', 'backend = "canbus"', "machine.backend", '"sim", "canopen", "grblhal"'),
         ('name = "GT-75"', 'name = ""', "machine.name", "a text"),
         ("commit_ms = 30", 'commit_ms = "30"', "machine.commit_ms", "1…200 ms"),
         ("commit_ms = 30", "commit_ms = true", "machine.commit_ms", "1…200 ms"),

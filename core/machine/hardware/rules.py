@@ -1,0 +1,169 @@
+"""What must hold between buses, drives, terminals and the rest of a machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.machine.errors import Finding
+from core.machine.hardware.fields import AXIS_FAULTS
+from core.machine.hardware.reading import HardwareReading
+from core.machine.hardware.terminals import on_the_bus
+from core.machine.schema import Values, written
+
+RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
+_RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
+_WATCH = 0x1016
+_SPINDLE, _DRIVE, _MODULE = "spindle", 402, 401
+
+
+def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, str]) -> Iterator[Finding]:
+    """Every finding. ``axes`` are the machine's, ``signals`` its inputs and outputs by terminal."""
+    yield from _backend(reading)
+    yield from _spindle(reading)
+    yield from _pots(reading, signals)
+    yield from _faults(reading, axes)
+    if "canopen" in reading.tables:
+        yield from _bus_times(reading.values)
+        yield from _nodes(reading, axes)
+        yield from _heartbeat(reading)
+    if _is(reading.values, "machine.backend", "canopen") and "canopen" in reading.tables:
+        yield from _drives(reading, axes)
+        yield from on_the_bus(reading, signals)
+    if reading.settings.get(13, 0) != 0:
+        expected = "expected 0: reports in mm; in inches they have too few decimals"
+        yield Finding("grblhal.settings.13", written(reading.settings[13]), expected)
+
+
+def _is(values: Values, path: str, text: str) -> bool:
+    return values.has(path) and values.text(path) == text
+
+
+def _backend(reading: HardwareReading) -> Iterator[Finding]:
+    for backend in ("canopen", "grblhal"):
+        if _is(reading.values, "machine.backend", backend) and backend not in reading.tables:
+            yield Finding(f"[{backend}]", "", f'missing; machine.backend = "{backend}" needs it')
+
+
+def _spindle(reading: HardwareReading) -> Iterator[Finding]:
+    values, path = reading.values, "spindle.driver"
+    if not values.has(path, "machine.backend"):
+        return
+    driver, backend = values.text(path), values.text("machine.backend")
+    allowed = {"sim": ("sim", "vfd"), "canopen": ("cia402", "vfd"), "grblhal": ("grblhal", "vfd")}[backend]
+    if driver not in allowed:
+        expected = f"expected {' or '.join(allowed)} with machine.backend = {written(backend)}"
+        yield Finding(path, written(driver), expected)
+    elif driver == "vfd" and "spindle.vfd" not in reading.tables:
+        yield Finding("spindle.vfd", "", 'missing; spindle.driver = "vfd" needs it')
+
+
+def _pots(reading: HardwareReading, signals: dict[str, str]) -> Iterator[Finding]:
+    inputs = {path.removeprefix("io.in.") for path in signals.values() if path.startswith("io.in.")}
+    taken = dict(signals)
+    for name in reading.analog:
+        path = f"io.analog.{name}"
+        if not reading.values.has(f"{path}.at", f"{path}.switch", f"{path}.range"):
+            continue
+        switch, terminal = reading.values.text(f"{path}.switch"), reading.values.text(f"{path}.at")
+        if switch and switch not in inputs:
+            yield Finding(f"{path}.switch", written(switch), "expected an input of [io.in]")
+        first = taken.setdefault(terminal, path)
+        if first != path:
+            yield Finding(f"{path}.at", written(terminal), f"expected a terminal of its own; {first} is here")
+        top = {"feed_pot": 1.5, "spindle_pot": 1.0}.get(name)
+        low, high = reading.values.pair(f"{path}.range")
+        if top is not None and not 0.0 <= low < high <= top:
+            yield Finding(f"{path}.range", f"[{low:g}, {high:g}]", f"expected fractions within 0…{top:g}")
+
+
+def _faults(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
+    for path in reading.faults:
+        if not reading.values.has(f"{path}.what", f"{path}.axis"):
+            continue
+        what, axis = reading.values.text(f"{path}.what"), reading.values.text(f"{path}.axis")
+        if what in AXIS_FAULTS and axis not in axes:
+            yield Finding(
+                f"{path}.axis", written(axis), f"{what} happens to an axis: one of {', '.join(axes)}"
+            )
+        if what not in AXIS_FAULTS and axis:
+            yield Finding(f"{path}.axis", written(axis), f"{what} happens to no axis; take it out")
+
+
+def _bus_times(values: Values) -> Iterator[Finding]:
+    if values.has("canopen.heartbeat_ms", "canopen.sync_ms"):
+        beat, sync = values.number("canopen.heartbeat_ms"), values.number("canopen.sync_ms")
+        if beat < 2 * sync:
+            yield Finding("canopen.heartbeat_ms", f"{1000 * beat:g}", "expected two times sync_ms or more")
+    if _is(values, "canopen.mode", "csp") and not values.flag("canopen.experimental"):
+        why = (
+            "cyclic setpoints from this computer are not proven on any drive; experimental = true allows them"
+        )
+        yield Finding("canopen.mode", '"csp"', why)
+    if _is(values, "canopen.mode", "pvt") and values.has("canopen.record_ms", "machine.commit_ms"):
+        yield from _fifo(values.number("canopen.record_ms"), values.number("machine.commit_ms"), values)
+
+
+def _fifo(record: float, commit: float, values: Values) -> Iterator[Finding]:
+    if abs(1000 * record - round(1000 * record)) > 1e-6:
+        yield Finding(
+            "canopen.record_ms", f"{1000 * record:g}", "expected whole milliseconds: PVT counts in them"
+        )
+    least = _RECORDS * record + RESTART
+    if _is(values, "machine.backend", "canopen") and commit < least - 1e-9:
+        expected = f"expected {1000 * least:g} or more: {_RECORDS} records in the drives and a restart"
+        yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
+
+
+def _nodes(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
+    values = reading.values
+    taken: dict[int, str] = {}
+    if values.has("canopen.host_id"):
+        taken[int(values.number("canopen.host_id"))] = "canopen.host_id"
+    for name in reading.nodes:
+        path = f"canopen.nodes.{name}"
+        if not values.has(f"{path}.id", f"{path}.profile"):
+            continue
+        number, profile = int(values.number(f"{path}.id")), int(values.number(f"{path}.profile"))
+        first = taken.setdefault(number, path)
+        if first != path:
+            yield Finding(f"{path}.id", str(number), f"expected a number of its own; {first} has it")
+        if profile == _DRIVE and name not in (*axes, _SPINDLE):
+            known = ", ".join((*axes, _SPINDLE))
+            yield Finding(path, "", f"a drive is named after what it moves: {known}; I/O has profile = 401")
+        if profile == _MODULE and name in (*axes, _SPINDLE):
+            yield Finding(f"{path}.profile", str(profile), "expected 402, a drive")
+
+
+def _drives(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
+    values = reading.values
+    for axis in axes:
+        if axis == "C" and values.has("axis.C.enabled") and not values.flag("axis.C.enabled"):
+            continue
+        path = f"axis.{axis}"
+        if axis not in reading.nodes:
+            yield Finding(f"canopen.nodes.{axis}", "", f"missing; axis {axis} needs a drive")
+        if values.has(f"{path}.home.method") and values.number(f"{path}.home.method") == 0:
+            yield Finding(
+                f"{path}.home.method", "", "missing; expected the drive's method, 1 or 2 for a limit switch"
+            )
+    if _is(values, "spindle.driver", "cia402") and _SPINDLE not in reading.nodes:
+        yield Finding("canopen.nodes.spindle", "", 'missing; spindle.driver = "cia402" needs a drive')
+
+
+def _heartbeat(reading: HardwareReading) -> Iterator[Finding]:
+    """0x1016 must watch this computer, and not less patiently than it speaks."""
+    values = reading.values
+    if not values.has("canopen.host_id", "canopen.heartbeat_ms"):
+        return
+    host, beat = int(values.number("canopen.host_id")), values.number("canopen.heartbeat_ms")
+    for node, entries in reading.sdo.items():
+        for entry in entries:
+            if entry.index != _WATCH or entry.sub == 0:
+                continue
+            watched, patience = entry.value >> 16 & 0x7F, (entry.value & 0xFFFF) / 1000.0
+            if watched != host or patience < 2 * beat:
+                best = host << 16 | round(3000 * beat)
+                expected = (
+                    f"watches node {watched} for {1000 * patience:g} ms; expected {best}: the host, 3 beats"
+                )
+                yield Finding(f'canopen.sdo.{node}."{entry.address}"', str(entry.value), expected)

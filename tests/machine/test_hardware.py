@@ -1,0 +1,166 @@
+"""What a machine is wired to: the tables of buses, lines and pots, and everything that is refused in them."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import resources
+from core.machine.errors import Finding
+from core.machine.hardware.addresses import CanTerminal, can_terminal
+from core.machine.hardware.model import SdoValue, SimFault
+from core.machine.load import MachineFileError, load_machine, parse_machine
+
+CAN = resources.machine_file("gt75-canopen.toml")
+SHIPPED = resources.machine_file("gt75.toml")
+
+
+def changed(old: str, new: str, text: str = CAN) -> str:
+    """A shipped file with one text replaced, which must be there."""
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+def findings(text: str) -> tuple[Finding, ...]:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "test.toml")
+    return caught.value.errors
+
+
+def test_shipped_bus_in_model_units() -> None:
+    machine = parse_machine(CAN, "can")
+    bus = machine.hardware.canopen
+    assert bus is not None
+    assert (bus.interface, bus.channel, bus.bitrate) == ("socketcan", "can0", 1_000_000)
+    assert (bus.sync, bus.heartbeat, bus.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
+    assert [(node.name, node.id, node.profile) for node in bus.nodes] == [
+        ("X", 1, 402),
+        ("Z", 2, 402),
+        ("spindle", 3, 402),
+        ("io", 10, 401),
+    ]
+    assert SdoValue(0x6007, 0, 3) in bus.nodes[0].sdo
+    assert bus.nodes[3].sdo == ()  # "all" means the drives
+    assert machine.hardware.spindle_driver == "cia402"
+    assert machine.hardware.homes["X"].method == 1
+    assert machine.hardware.homes["X"].latch == pytest.approx(6 * 25.4 / 60)
+    assert machine.hardware.analog["feed_pot"].high == 1.5
+
+
+@pytest.mark.parametrize("name", ["gt75.toml", "gt75-canopen.toml", "gt75-grblhal.toml", "gt75-vfd.toml"])
+def test_every_shipped_file_is_good(name: str) -> None:
+    assert parse_machine(resources.machine_file(name), name).source == name
+
+
+def test_other_lines() -> None:
+    machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "vfd")
+    vfd, dnc = machine.hardware.vfd, machine.hardware.dnc
+    assert vfd is not None
+    assert (vfd.family, vfd.baud, vfd.parity, vfd.comm_loss) == ("delta-vfdb", 9600, "N", 1.5)
+    assert dnc is not None
+    assert (dnc.bits, dnc.parity, dnc.flow, dnc.eol) == (7, "E", "xonxoff", "\r\n")
+    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.grblhal
+    assert grbl is not None
+    assert (grbl.x_mode, grbl.settings) == ("G8", {13: 0, 32: 2})
+
+
+def test_faults_of_the_simulation() -> None:
+    faults = 'faults = [{ at = 12.0, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]'
+    machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = false\n{faults}\n", SHIPPED), "t")
+    assert machine.hardware.sim.faults == (SimFault(12.0, "jam", "Z"), SimFault(1.0, "estop"))
+    assert not machine.hardware.sim.realtime
+    assert load_machine(None).hardware.sim.realtime
+
+
+def test_addresses_of_terminals() -> None:
+    assert can_terminal("401.6200.1.3") == CanTerminal("401", 0x6200, 1, 3)
+    assert can_terminal("X.60FD.0.16") == CanTerminal("X", 0x60FD, 0, 16)
+    assert can_terminal("401.6401.2") == CanTerminal("401", 0x6401, 2, -1)
+    for wrong in ("OUT-1", "401.62.1.0", "401.6200.1.0.0", "401.62000.1", ""):
+        assert can_terminal(wrong) is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ('channel = "can0"\n', "", "canopen.channel", "missing"),
+        ("bitrate = 1000000\nsync", "bitrate = 20\nsync", "canopen.bitrate", "10000…1e+06"),
+        ("Z = { id = 2 }", "Z = { id = 1 }", "canopen.nodes.Z.id", "canopen.nodes.X has it"),
+        ("Z = { id = 2 }", "Z = { id = 127 }", "canopen.nodes.Z.id", "canopen.host_id has it"),
+        ("Z = { id = 2 }", "Z = { id = 128 }", "canopen.nodes.Z.id", "1…127"),
+        (
+            "Z = { id = 2 }",
+            "W = { id = 2 }",
+            "canopen.nodes.W",
+            "named after what it moves: X, Z, C, spindle",
+        ),
+        ("Z = { id = 2 }", "", "canopen.nodes.Z", "axis Z needs a drive"),
+        ("Z = { id = 2 }", "Z = { id = 2, profile = 401 }", "canopen.nodes.Z.profile", "402, a drive"),
+        ("spindle = { id = 3 }", "", "canopen.nodes.spindle", 'spindle.driver = "cia402"'),
+        ("io = { id = 10, profile = 401 }", "", "io.in.estop.at", "none is there"),
+        ('driver = "cia402"', 'driver = "sim"', "spindle.driver", "expected cia402 or vfd"),
+        ('driver = "cia402"', 'driver = "vfd"', "spindle.vfd", "missing"),
+        ('mode = "pvt"', 'mode = "csp"', "canopen.mode", "experimental = true"),
+        ('mode = "pvt"', 'mode = "ip"', "canopen.mode", '"pvt", "pp", "csp"'),
+        ("record_ms = 20", "record_ms = 12.5", "canopen.record_ms", "whole milliseconds"),
+        ("commit_ms = 140", "commit_ms = 90", "machine.commit_ms", "100 or more"),  # 3 · 20 + 40
+        ("heartbeat_ms = 100", "heartbeat_ms = 20\nx = 1", "canopen.x", "unknown key"),
+        ("sync_ms = 10", "sync_ms = 60", "canopen.heartbeat_ms", "two times sync_ms"),
+        ('"6007:0" = 3', '"6065:0" = 4294967295', 'canopen.sdo.all."6065:0"', "monitoring off"),
+        ('"6007:0" = 3', '"6065:0" = -1', 'canopen.sdo.all."6065:0"', "monitoring off"),
+        ('"6007:0" = 3', '"6007" = 3', 'canopen.sdo.all."6007"', '"6007:0"'),
+        ('"6007:0" = 3', '"6007:0" = 3.5', 'canopen.sdo.all."6007:0"', "whole number"),
+        ('"6007:0" = 3', '"6007:0" = true', 'canopen.sdo.all."6007:0"', "whole number"),
+        ("all = {", "everything = {", "canopen.sdo.everything", "unknown key"),
+        # 127 << 16 | 300 is 8323372; 126 << 16 | 300 is 8257836
+        ('"6007:0" = 3', '"1016:1" = 8257836', 'canopen.sdo.all."1016:1"', "8323372"),
+        ('"6007:0" = 3', '"1016:1" = 8323172', 'canopen.sdo.all."1016:1"', "for 100 ms"),
+        ('at = "401.6200.1.0"', 'at = "OUT-1"', "io.out.coolant.at", '"401.6200.1.0"'),
+        ('at = "401.6200.1.0"', 'at = "401.6000.9.0"', "io.out.coolant.at", "6200"),
+        ('at = "401.6200.1.0"', 'at = "401.6200.1.8"', "io.out.coolant.at", "0…7"),
+        ('at = "401.6200.1.0"', 'at = "io2.6200.1.0"', "io.out.coolant.at", "[canopen.nodes]: io"),
+        ('at = "401.6200.1.0"', 'at = "X.60FD.0.1"', "io.out.coolant.at", "inputs only"),
+        ('at = "401.6401.1"', 'at = "401.6401.1.3"', "io.analog.feed_pot.at", '"401.6401.1"'),
+        ('at = "401.6401.1"', 'at = "401.6401.2"', "io.analog.spindle_pot.at", "feed_pot is here"),
+        ('switch = "spindle_auto"', 'switch = "auto"', "io.analog.spindle_pot.switch", "[io.in]"),
+        ("range = [0, 1.5]", "range = [0, 3]", "io.analog.feed_pot.range", "0…1.5"),
+        ("spindle_pot = {", "pot = {", "io.analog.pot", "unknown key"),
+        ("method = 1,", "", "axis.X.home.method", "limit switch"),
+        ("method = 1,", "method = 99,", "axis.X.home.method", "-128…37"),
+    ],
+)
+def test_refused(old: str, new: str, path: str, expected: str) -> None:
+    found = [finding for finding in findings(changed(old, new)) if finding.path == path]
+    assert found, findings(changed(old, new))
+    assert expected in str(found[0])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ('backend = "sim"', 'backend = "canopen"', "[canopen]", "needs it"),
+        ('backend = "sim"', 'backend = "grblhal"', "[grblhal]", "needs it"),
+        ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "jam" }]\n', "sim.faults.1.axis", "one of X, Z, C"),
+        (
+            "[sim]\n",
+            '[sim]\nfaults = [{ at = 1, what = "estop", axis = "X" }]\n',
+            "sim.faults.1.axis",
+            "take it out",
+        ),
+        ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "rust" }]\n', "sim.faults.1.what", "encoder_stuck"),
+        ("[sim]\n", "[sim]\nfaults = 3\n", "sim.faults", "a list of tables"),
+        ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { 13 = 1 }\n[sim]\n', "grblhal.settings.13", "mm"),
+        ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { a = 1 }\n[sim]\n', "grblhal.settings.a", "$13"),
+        ("[sim]\n", '[dnc]\nport = "p"\nbits = 6\n[sim]\n', "dnc.bits", "7…8"),
+    ],
+)
+def test_refused_on_the_simulated_lathe(old: str, new: str, path: str, expected: str) -> None:
+    found = [finding for finding in findings(changed(old, new, SHIPPED)) if finding.path == path]
+    assert found, findings(changed(old, new, SHIPPED))
+    assert expected in str(found[0])
+
+
+def test_a_bus_without_io_names_every_signal() -> None:
+    found = findings(changed("io = { id = 10, profile = 401 }", ""))
+    assert len(found) == len(re.findall(r'at = "401', CAN))
