@@ -112,7 +112,8 @@ def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
 
     if outcome is None:
         return {"x": 0.0, "z": 0.0, "c": 0.0}
-    x, z, c = outcome.snapshot.demand
+    demand = outcome.snapshot.demand
+    x, z, c = demand[0], demand[1], demand[-1]
     shift_x = report.machine_final[0] - report.final[0]
     shift_z = report.machine_final[1] - report.final[1]
     return {"x": inches(x - shift_x), "z": inches(z - shift_z), "c": degrees(c)}

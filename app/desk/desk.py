@@ -6,6 +6,7 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 
 from __future__ import annotations
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable
@@ -124,9 +125,7 @@ class Desk:
         picture = loaded.picture
         if picture is None or loaded.proof is None:
             return float("inf")
-        x, z, _c = snapshot.actual
-        end = snapshot.block_end
-        to_go = ((end[0] - x) ** 2 + (end[1] - z) ** 2) ** 0.5
+        to_go = math.dist(snapshot.block_end[:2], snapshot.actual[:2])
         left = picture.time_left(snapshot.block, to_go)
         return left / snapshot.feed_override if snapshot.feed_override > 0 else float("inf")
 

@@ -36,6 +36,8 @@ class Tone(StrEnum):
     ALARM = "alarm"
 
 
+ROTARY = frozenset("ABC")  # axes that are read in degrees
+
 TONES = {
     State.ESTOP: Tone.ALARM,
     State.DISABLED: Tone.OFF,
@@ -154,25 +156,26 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool) -> View:
     )
 
 
-def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, float, float]:
-    """(x, z, c) of a readout, mm with X a radius, and degrees."""
-    x, z, c = snapshot.actual
+def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
+    """The figures of a readout in the order of ``snapshot.axes``: mm with X a radius, and degrees."""
+    actual = snapshot.actual
     if readout is Readout.HOME:
-        return x, z, c
+        return actual
     if readout is Readout.TO_GO:
-        end = snapshot.block_end if snapshot.block else snapshot.actual
-        return end[0] - x, end[1] - z, end[2] - c
-    return x - snapshot.offset[0], z - snapshot.offset[1], c
+        end = snapshot.block_end if snapshot.block else actual
+        return tuple(there - here for there, here in zip(end, actual, strict=True))
+    x, z, *rest = actual
+    return (x - snapshot.offset[0], z - snapshot.offset[1], *rest)
 
 
 def _position(snapshot: Snapshot, readout: Readout, with_c: bool) -> PositionView:
     metric, diameter = snapshot.modal.metric, snapshot.modal.diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
-    marks = ("Ø" if diameter else "R", "", "")
+    mark = "Ø" if diameter else "R"
     rows = [
-        AxisView(name, mark, a, b, homed)
-        for name, mark, a, b, homed in zip("XZC", marks, large, small, snapshot.homed, strict=True)
+        AxisView(name, mark if name == "X" else "", a, b, homed)
+        for name, a, b, homed in zip(snapshot.axes, large, small, snapshot.homed, strict=True)
     ]
     return PositionView(
         readout=readout,
@@ -183,13 +186,15 @@ def _position(snapshot: Snapshot, readout: Readout, with_c: bool) -> PositionVie
     )
 
 
-def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> tuple[str, str, str]:
-    x, z, c = coordinates(snapshot, readout)
-    return (
-        formats.length(2 * x if diameter else x, metric),
-        formats.length(z, metric),
-        formats.angle(c),
-    )
+def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> list[str]:
+    return [
+        formats.angle(value) if name in ROTARY else formats.length(_doubled(name, value, diameter), metric)
+        for name, value in zip(snapshot.axes, coordinates(snapshot, readout), strict=True)
+    ]
+
+
+def _doubled(name: str, value: float, diameter: bool) -> float:
+    return 2 * value if name == "X" and diameter else value
 
 
 def _feed(snapshot: Snapshot) -> FeedView:

@@ -155,7 +155,7 @@ class Conductor:
     def _open(self, job: Job) -> None:
         """A pass from the first line, from where the slides stand now; nothing is kept of an earlier one."""
         at, _ = self._bench.ports.axes.demand_at(self._bench.now)
-        setup = circumstances(job.setup, (at[0], at[1], at[2]), self._bench.terminal)
+        setup = circumstances(job.setup, tuple(at), self._bench.terminal)
         self._player.forget()
         source = self._passes(job, setup)
         begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)

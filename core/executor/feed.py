@@ -132,7 +132,9 @@ def _pulls_out(block: Block) -> bool:
 
 def nominal(block: Block) -> float:
     """Seconds the block takes at its programmed speed: never more than it will take."""
-    if block.kind is Kind.ARC:
+    if block.travel is not None:
+        way = block.travel.length
+    elif block.kind is Kind.ARC:
         ends = (block.x0, block.z0), (block.x, block.z)
         way = arc_length(*ends, (block.cx, block.cz), clockwise=block.clockwise)
     elif block.plane is not None:

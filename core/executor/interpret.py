@@ -17,6 +17,6 @@ def interpret(job: Job, setup: Setup) -> Pass:
     return Pass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
 
 
-def circumstances(setup: Setup, start: tuple[float, float, float], inputs: Callable[[str], bool]) -> Setup:
+def circumstances(setup: Setup, start: tuple[float, ...], inputs: Callable[[str], bool]) -> Setup:
     """The job's setup at this machine now: from where the slides stand, with its inputs live."""
     return dataclasses.replace(setup, start=start, inputs=inputs)

@@ -15,16 +15,16 @@ def check_block(block: Block, machine: Machine) -> None:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
-    low_x, high_x, low_z, high_z = block.reach()
-    _check(block, machine.axes[0], low_x + block.offset_x, high_x + block.offset_x)
-    _check(block, machine.axes[1], low_z + block.offset_z, high_z + block.offset_z)
+    for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
+        _check(block, axis, low, high)
 
 
 def _check(block: Block, axis: Axis, low: float, high: float) -> None:
     if axis.travel is None:
         return
     if low < axis.travel[0] - _ROUNDING or high > axis.travel[1] + _ROUNDING:
+        unit = "degrees" if axis.rotary else "mm"
         far = low if low < axis.travel[0] else high
         raise TroubleError(
-            "travel", f"line {block.line} moves {axis.name} to {far:.3f} mm from home", block.line
+            "travel", f"line {block.line} moves {axis.name} to {far:.3f} {unit} from home", block.line
         )

@@ -34,14 +34,15 @@ class Publisher:
             block=block.n if block else 0,
             block_text=block.text if block else "",
             next_text=following.text if following else "",
-            demand=_three(bench.sample.demand),
-            actual=_three(bench.sample.actual),
-            following_error=_three(bench.sample.following_error),
-            homed=(bench.sample.homed[0], bench.sample.homed[1], bench.sample.homed[2]),
-            block_end=(block.mx, block.mz, block.mc) if block else _three(bench.sample.demand),
+            axes=tuple(axis.name for axis in bench.machine.axes),
+            demand=bench.sample.demand,
+            actual=bench.sample.actual,
+            following_error=bench.sample.following_error,
+            homed=bench.sample.homed,
+            block_end=block.machine_end if block else bench.sample.demand,
             offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
             modal=modal,
-            velocity=self._measured(bench.sample),
+            velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
             feed=_feed(block, modal),
             rapid=block.kind is Kind.RAPID if block else modal.rapid,
             rpm_command=bench.spindle.command,
@@ -69,20 +70,15 @@ class Publisher:
             start_refused=standing.start_refused,
         )
 
-    def _measured(self, sample: AxisSample) -> float:
-        """Velocity of both slides together, mm/s, from the encoders."""
+    def _measured(self, sample: AxisSample, slides: int) -> float:
+        """Velocity of all slides together, mm/s, from the encoders."""
         before, self._before = self._before, sample
         if before is None:
             return 0.0
         dt = sample.t - before.t
         if dt > 0.0:
-            x, z = (sample.actual[i] - before.actual[i] for i in (0, 1))
-            self._velocity = math.hypot(x, z) / dt
+            self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
         return self._velocity
-
-
-def _three(values: tuple[float, ...]) -> tuple[float, float, float]:
-    return values[0], values[1], values[2]
 
 
 def _feed(block: Block | None, modal: Modal) -> float:

@@ -50,11 +50,12 @@ class Snapshot:
     block: int = 0  # elementary block being executed, 0 none
     block_text: str = ""
     next_text: str = ""
-    demand: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    actual: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    following_error: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    homed: tuple[bool, bool, bool] = (False, False, False)
-    block_end: tuple[float, float, float] = (0.0, 0.0, 0.0)  # for distance to go
+    axes: tuple[str, ...] = ("X", "Z", "C")  # the order of what follows: slides, then rotary axes
+    demand: tuple[float, ...] = (0.0, 0.0, 0.0)
+    actual: tuple[float, ...] = (0.0, 0.0, 0.0)
+    following_error: tuple[float, ...] = (0.0, 0.0, 0.0)
+    homed: tuple[bool, ...] = (False, False, False)
+    block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # for distance to go
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
     modal: Modal = field(default_factory=Modal)
     velocity: float = 0.0  # along the path, mm/s, actual
@@ -83,6 +84,11 @@ class Snapshot:
     max_following_error: float = 0.0
     proof_wanted: bool = False  # a job is loaded that no proof covers
     start_refused: str = ""  # why the last Cycle Start did nothing
+
+    @property
+    def tip(self) -> tuple[float, float]:
+        """Actual machine X and Z: where the pictures of a lathe show the tool."""
+        return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 
 
 @dataclass(frozen=True, slots=True)

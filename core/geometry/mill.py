@@ -76,6 +76,10 @@ class PlaneMove:
             return self.frame.machine(points)
         return self.frame.machine(points, self.thetas(points, share))
 
+    def part(self, points: FloatArray) -> FloatArray:
+        """Mill points (n, 3) of lathe X, Z, C (n, 3)."""
+        return self.frame.mill(points)
+
     def thetas(self, points: FloatArray, share: FloatArray) -> FloatArray:
         """Polar angles (n,) of ``points`` of this path, counted on from ``theta``; radians."""
         if self.centre is None:

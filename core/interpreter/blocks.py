@@ -7,6 +7,7 @@ from enum import StrEnum
 
 from core.geometry.extent import arc_extent
 from core.geometry.mill import PlaneMove
+from core.geometry.travel import Travel
 from core.interpreter.actions import Action
 from core.interpreter.modal import Modal
 
@@ -65,6 +66,7 @@ class Block:
     clockwise: bool = False  # seen from above: X+ down, Z+ right
     action: Action | None = None
     plane: PlaneMove | None = None  # the same way in the frame of the virtual mill
+    travel: Travel | None = None  # all axes, on machines that have more than X, Z and C
 
     @property
     def mx(self) -> float:
@@ -81,6 +83,11 @@ class Block:
         """Machine C of the end, degrees."""
         return self.c + self.modal.offset_c
 
+    @property
+    def machine_end(self) -> tuple[float, ...]:
+        """Machine positions of all axes at the end, in the machine's order."""
+        return (self.mx, self.mz, self.mc) if self.travel is None else self.travel.end
+
     def reach(self) -> tuple[float, float, float, float]:
         """(least x, greatest x, least z, greatest z) of what the block goes to, its start left out.
 
@@ -93,6 +100,15 @@ class Block:
         if self.kind is Kind.ARC:
             return arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
         return self.x, self.x, self.z, self.z
+
+    def machine_reach(self) -> tuple[tuple[float, float], ...]:
+        """Least and greatest machine position of each axis, in the machine's order; the start left out."""
+        if self.travel is not None:
+            low, high = (side.tolist() for side in self.travel.reach())
+            return tuple(zip(low, high, strict=True))
+        low_x, high_x, low_z, high_z = self.reach()
+        x, z, c = self.offset_x, self.offset_z, self.mc
+        return (low_x + x, high_x + x), (low_z + z, high_z + z), (c, c)
 
     @property
     def moves(self) -> bool:

@@ -7,10 +7,13 @@ from typing import Protocol
 
 from core.interpreter.blocks import Block
 from core.interpreter.modal import Modal
+from core.interpreter.refused import Refused
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.dialect import Dialect
 from core.language.source import Source
+
+_LATHE_AXES = 3
 
 
 class Interpretation(Protocol):
@@ -47,6 +50,9 @@ class Interpretation(Protocol):
 
 
 def _omniturn(source: Source, setup: Setup) -> Interpretation:
+    if len(setup.start) != _LATHE_AXES:
+        why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
+        return Refused(why, "Choose the machine file of a lathe.")
     from core.interpreter.program import read_program
     from core.interpreter.run import Interpreter
 

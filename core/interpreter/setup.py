@@ -50,8 +50,8 @@ def _no_inputs(_terminal: str) -> bool:
 class Setup:
     """One set of circumstances for one pass through a program.
 
-    ``start`` is the machine position (x, z, c) before the first block; ``metric`` and ``last_rapid`` what
-    the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a PLC input ``"10"``.
+    ``start`` is the machine position of all axes (on a lathe x, z, c) before the first block; ``metric`` and
+    ``last_rapid`` what the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a PLC input ``"10"``.
     """
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
@@ -59,7 +59,7 @@ class Setup:
     limits: ControlLimits = field(default_factory=ControlLimits)
     block_delete: bool = False
     strict: bool = False
-    start: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    start: tuple[float, ...] = (0.0, 0.0, 0.0)
     metric: bool = False
     last_rapid: float = 100 * 25.4 / 60  # mm/s
     inputs: Callable[[str], bool] = _no_inputs

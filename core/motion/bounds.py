@@ -69,7 +69,7 @@ def _least_ratio(limit: FloatArray, direction: FloatArray) -> FloatArray:
 
 
 def corner_turns(pieces: Pieces) -> FloatArray:
-    """|change of direction| per axis (n-1, 3) at the joints between pieces; below 1e-9 it is none."""
+    """|change of direction| per axis (n-1, axes) at the joints between pieces; below 1e-9 it is none."""
     leaving = pieces.tangent(pieces.length)[:-1]
     entering = pieces.tangent(np.zeros(len(pieces)))[1:]
     turns: FloatArray = np.abs(entering - leaving)
@@ -138,7 +138,7 @@ def spare_for_chords(
     before = bend * np.minimum(speeds[1:] ** 2, single)[:, None]
     after = bend * np.minimum(speeds[:-1] ** 2, single)[:, None]
     before[asked.joint] = after[asked.joint] = asked.acceleration
-    taken = np.zeros((len(pieces), 3))
+    taken = np.zeros(pieces.direction.shape)
     taken[1:] = before
     np.maximum(taken[:-1], after, out=taken[:-1])
     if more:

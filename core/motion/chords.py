@@ -19,7 +19,7 @@ _HALVINGS = 6  # slower speeds at which the same joint is looked at too
 
 
 class Asked(NamedTuple):
-    """Of k joints: squared speed limit (k,), mm²/s², and acceleration (k, 3) that it takes, mm/s²."""
+    """Of k joints: squared speed limit (k,), mm²/s², and acceleration (k, axes) that it takes, mm/s²."""
 
     joint: IntArray
     squared: FloatArray
@@ -38,7 +38,7 @@ def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limi
     at = s[alone.joint + 1]
     mean = 0.5 * (pieces.length[alone.joint] + pieces.length[alone.joint + 1])
     speeds = fastest / 2.0 ** np.arange(_HALVINGS)[:, None]
-    asked = np.zeros((_HALVINGS, len(at), 3))
+    asked = np.zeros((_HALVINGS, len(at), len(share)))
     for i, speed in enumerate(speeds):
         asked[i] = _second_difference(pieces, s, at, speed * limits.interval) / limits.interval**2
     asked[speeds * limits.interval < mean] = 0.0  # one joint an interval: its own limit sees to it
@@ -55,7 +55,7 @@ def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limi
 
 
 def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
-    """|P(s+r) - 2·P(s) + P(s-r)| per axis (k, 3)."""
+    """|P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
     before, here, after = (_points(pieces, s, where) for where in (at - reach, at, at + reach))
     difference: FloatArray = np.abs(after - 2.0 * here + before)
     return difference

@@ -16,7 +16,6 @@ FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
-AXES = ("X", "Z", "C")
 OVERRIDE_MAX = (
     1.5  # largest feed_scale and rapid_scale; the speed for which an arc keeps acceleration in hand
 )
@@ -34,7 +33,7 @@ class AxisLike(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MotionLimits:
-    """Limits of the axes in the order X, Z, C: mm/s and mm/s², for C degrees/s and degrees/s².
+    """Limits of the axes, slides first, on a lathe X, Z, C: mm/s and mm/s², degrees/s and degrees/s².
 
     ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
     ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
@@ -43,41 +42,44 @@ class MotionLimits:
     Raises MotionError where a figure is not positive and finite.
     """
 
-    vmax: tuple[float, float, float] = (127.0, 127.0, 1200.0)
-    amax: tuple[float, float, float] = (3048.0, 3048.0, 12000.0)
+    vmax: tuple[float, ...] = (127.0, 127.0, 1200.0)
+    amax: tuple[float, ...] = (3048.0, 3048.0, 12000.0)
     interval: float = 0.001
     jerk: None = None
 
     def __post_init__(self) -> None:
         for name in (f.name for f in fields(self) if f.name in {"vmax", "amax"}):
-            for axis, value in zip(AXES, getattr(self, name), strict=True):
-                _demand_positive(f"{name} of {axis}", value)
+            for number, value in enumerate(getattr(self, name), start=1):
+                _demand_positive(f"{name} of axis {number}", value)
         _demand_positive("interval", self.interval)
 
     @classmethod
     def of(cls, axes: Sequence[AxisLike], interval: float) -> MotionLimits:
-        """The limits of a machine's axes X, Z and C."""
-        x, z, c = axes
-        return cls(vmax=(x.vmax, z.vmax, c.vmax), amax=(x.amax, z.amax, c.amax), interval=interval)
+        """The limits of a machine's axes."""
+        return cls(
+            vmax=tuple(axis.vmax for axis in axes),
+            amax=tuple(axis.amax for axis in axes),
+            interval=interval,
+        )
 
     @property
     def speeds(self) -> FloatArray:
-        """``vmax`` as an array (3,)."""
+        """``vmax`` as an array (axes,)."""
         return np.array(self.vmax)
 
     @property
     def accelerations(self) -> FloatArray:
-        """``amax`` as an array (3,)."""
+        """``amax`` as an array (axes,)."""
         return np.array(self.amax)
 
     @property
     def plane_speed(self) -> float:
-        """The smaller vmax of both slides, mm/s: what an arc, which turns through all directions, may use."""
+        """The smaller vmax of a lathe's slides, mm/s: what an arc, turning through all directions, has."""
         return min(self.vmax[:2])
 
     @property
     def plane_acceleration(self) -> float:
-        """The smaller amax of both slides, mm/s²; see ``plane_speed``."""
+        """The smaller amax of a lathe's slides, mm/s²; see ``plane_speed``."""
         return min(self.amax[:2])
 
 

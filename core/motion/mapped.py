@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.geometry.mill import PlaneMove
+from core.geometry.travel import CurvedWay
 from core.motion.errors import MotionError
 from core.motion.limits import CENTRIPETAL_SHARE, OVERRIDE_MAX, BoolArray, FloatArray, MotionLimits
 from core.motion.pieces import SAME_POINT, Pieces, joined
@@ -28,8 +28,8 @@ _SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with th
 
 def with_parts(words: Words) -> BoolArray:
     """Blocks (m,) that this module cuts into pieces."""
-    plane = np.array([move is not None for move in words.plane], dtype=bool)
-    return plane | _fed_by_c(words)
+    curved = np.array([way is not None for way in words.way], dtype=bool)
+    return curved | _fed_by_c(words)
 
 
 def parts_of(whole: Pieces, words: Words, limits: MotionLimits, index: int) -> Pieces:
@@ -37,7 +37,7 @@ def parts_of(whole: Pieces, words: Words, limits: MotionLimits, index: int) -> P
 
     Raises MotionError where C turns too little for the slide's way.
     """
-    piece, move = whole[index : index + 1], words.plane[index]
+    piece, move = whole[index : index + 1], words.way[index]
     if move is None:
         return _slide_by_c(piece, words, index)
     if move.length <= SAME_POINT:
@@ -49,8 +49,8 @@ def parts_of(whole: Pieces, words: Words, limits: MotionLimits, index: int) -> P
     return _chain(piece, points, np.diff(share) * move.length)
 
 
-def chords(move: PlaneMove, rate: float, limits: MotionLimits) -> FloatArray:
-    """Fractions of the way (k+1,) between which X, Z and C may run in proportion.
+def chords(move: CurvedWay, rate: float, limits: MotionLimits) -> FloatArray:
+    """Fractions of the way (k+1,) between which the axes may run in proportion.
 
     Chords leave the way by CHORD_ERROR at most, measured on the part, and neighbours differ so little that
     their joint does not hold the feed ``rate`` (mm/s) up, unless the way itself has a corner there.
@@ -67,19 +67,19 @@ def chords(move: PlaneMove, rate: float, limits: MotionLimits) -> FloatArray:
     return share
 
 
-def _leaves(move: PlaneMove, share: FloatArray) -> BoolArray:
+def _leaves(move: CurvedWay, share: FloatArray) -> BoolArray:
     """Chords (k,) that leave the way by more than CHORD_ERROR, as the part sees it."""
     ends = move.machine(share)
     span, change = np.diff(share), np.diff(ends, axis=0)
     worst = np.zeros(len(span))
     for spot in _SPOTS:
         true = move.machine(share[:-1] + spot * span)
-        off = move.frame.mill(ends[:-1] + spot * change) - move.frame.mill(true)
+        off = move.part(ends[:-1] + spot * change) - move.part(true)
         worst = np.maximum(worst, np.sqrt((off**2).sum(axis=1)))
     return worst > CHORD_ERROR
 
 
-def _jerks(move: PlaneMove, share: FloatArray, speed: float, limits: MotionLimits) -> BoolArray:
+def _jerks(move: CurvedWay, share: FloatArray, speed: float, limits: MotionLimits) -> BoolArray:
     """Chords (k,) at whose ends an axis would have to change its velocity too much at once."""
     length = np.diff(share) * move.length
     direction = np.diff(move.machine(share), axis=0) / length[:, None]
@@ -104,7 +104,7 @@ def _least(limit: FloatArray, share: FloatArray) -> FloatArray:
 
 
 def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
-    """Straight pieces through ``points`` (k+1, 3) whose ``length`` (k,) is measured otherwise."""
+    """Straight pieces through ``points`` (k+1, axes) whose ``length`` (k,) is measured otherwise."""
     parts = piece[np.zeros(len(length), dtype=np.int64)]
     zero = np.zeros(len(length))
     return replace(
@@ -122,8 +122,9 @@ def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
 def _fed_by_c(words: Words) -> BoolArray:
     """Straight moves (m,) at a feed per revolution in which C turns: its turns are meant."""
     delta = words.end - words.start
+    lathe = np.isnan(words.length)
     slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
-    fed: BoolArray = words.per_rev & ~words.arc & slides & (np.abs(delta[:, 2]) > SAME_POINT)
+    fed: BoolArray = lathe & words.per_rev & ~words.arc & slides & (np.abs(delta[:, 2]) > SAME_POINT)
     return fed
 
 

@@ -25,8 +25,8 @@ class Path:
     ``s`` (n+1,) is the distance of the joints along the path, mm; it goes on counting where a builder has
     dropped what lies behind. ``cap`` (n,) mm/s and ``a`` (n,) mm/s² are the limits along the pieces,
     ``corner`` (n+1,) the squared speed limits of the joints, endless at both ends. Block i, whose number is
-    ``blocks[i]``, owns the pieces ``first[i]:first[i+1]``, none when it has no length. ``start`` (3,) is the
-    point where the path begins.
+    ``blocks[i]``, owns the pieces ``first[i]:first[i+1]``, none when it has no length. ``start`` (axes,) is
+    the point where the path begins.
     """
 
     pieces: Pieces
@@ -65,7 +65,7 @@ class Path:
         return np.clip(found, 0, max(len(self) - 1, 0))
 
     def point(self, s: FloatArray, piece: IntArray | None = None) -> FloatArray:
-        """Machine position (k, 3) at the distances ``s`` (k,), exact on lines and arcs."""
+        """Machine position (k, axes) at the distances ``s`` (k,), exact on lines and arcs."""
         if not len(self):
             return np.tile(self.start, (len(s), 1))
         index = self.piece_at(s) if piece is None else piece

@@ -19,11 +19,11 @@ RADII_DIFFER = 0.02  # mm by which start and end of an arc may differ in their d
 class Pieces:
     """n lines and arcs in machine coordinates; mm, degrees for C, radians for angles, mm/s.
 
-    Lines: ``start`` (n, 3) and ``direction`` (n, 3), the change of X, Z, C per unit of path. The path is
-    measured in X and Z, and in degrees where only C turns. Arcs: ``curvature`` ±1/radius, positive
-    clockwise, 0 for lines; ``angle`` at the start, with x = centre x + radius·sin, z = centre z +
-    radius·cos; ``direction`` then holds only what C does. ``block`` is the owner's n. ``rate`` is the
-    programmed speed.
+    Lines: ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path. A lathe's
+    path is measured in X and Z, and in degrees where only C turns; blocks of other machines say what counts.
+    Arcs: ``curvature`` ±1/radius, positive clockwise, 0 for lines; ``angle`` at the start, with
+    x = centre x + radius·sin, z = centre z + radius·cos; ``direction`` then holds only what C does. ``block``
+    is the owner's n. ``rate`` is the programmed speed.
     """
 
     block: IntArray
@@ -44,7 +44,7 @@ class Pieces:
         return Pieces(*(getattr(self, f.name)[part] for f in fields(self)))
 
     def tangent(self, at: FloatArray) -> FloatArray:
-        """Direction (n, 3) at the distances ``at`` (n,) from the start of each piece."""
+        """Direction (n, axes) at the distances ``at`` (n,) from the start of each piece."""
         angle = self.angle + self.curvature * at
         turning = np.sign(self.curvature)
         tangent = self.direction.copy()
@@ -53,7 +53,7 @@ class Pieces:
         return tangent
 
     def point(self, at: FloatArray) -> FloatArray:
-        """Position (n, 3) at the distances ``at`` (n,) from the start of each piece."""
+        """Position (n, axes) at the distances ``at`` (n,) from the start of each piece."""
         point = self.start + self.direction * at[:, None]
         arc = self.curvature != 0.0
         if arc.any():
@@ -79,6 +79,7 @@ def make_pieces(words: Words, rate: FloatArray) -> Pieces:
     length = np.hypot(delta[:, 0], delta[:, 1])
     turn = np.abs(delta[:, 2])
     length = np.where(length > SAME_POINT, length, np.where(turn > SAME_POINT, turn, 0.0))
+    length = np.where(np.isnan(words.length), length, words.length)
     centre, radius, angle, curvature, sweep = _circles(words)
     length = np.where(curvature != 0.0, radius * sweep, length)
     direction = delta / np.where(length > 0.0, length, 1.0)[:, None]

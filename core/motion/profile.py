@@ -53,7 +53,7 @@ class Profile:
         return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
 
     def position(self, t: FloatArray | float) -> FloatArray:
-        """Machine position (m, 3) at the times ``t`` (m,), exact on lines and arcs."""
+        """Machine position (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
         times = np.atleast_1d(np.asarray(t, dtype=np.float64))
         s, _ = self.at(times)
         if not len(self):

@@ -101,7 +101,7 @@ def _part_counts(path: Path, phases: Phases) -> IntArray:
 
 
 def _states(path: Path, phases: Phases, tau: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Axis position, velocity and tangential acceleration (k, 3), ``tau`` (k,) after the start of phases."""
+    """Axis position, velocity, tangential acceleration (k, axes), ``tau`` (k,) after the start of phases."""
     pieces = path.pieces[phases.piece]
     speed = np.maximum(phases.v + phases.a * tau, 0.0)
     local = phases.s - path.s[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau

@@ -109,7 +109,7 @@ class ChunkPlanner:
 def sample_positions(
     profile: Profile, dt: float, t_offset: float = 0.0
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Times (m,), machine positions (m, 3) and block numbers (m,) every ``dt`` from ``t_offset`` on.
+    """Times (m,), machine positions (m, axes) and block numbers (m,) every ``dt`` from ``t_offset`` on.
 
     The end itself is left out, since it is the start of what follows. Raises MotionError for a ``dt`` that
     is not above zero.

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from core.geometry.mill import PlaneMove
+from core.geometry.travel import CurvedWay, Travel
 from core.motion.errors import MotionError
 from core.motion.limits import BoolArray, FloatArray
 
@@ -68,6 +69,8 @@ class MotionBlock(Protocol):
     def modal(self) -> ModalLike: ...
     @property
     def plane(self) -> PlaneMove | None: ...
+    @property
+    def travel(self) -> Travel | None: ...
 
 
 KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
@@ -77,11 +80,12 @@ _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c")
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """The words of m blocks: ``start`` and ``end`` (m, 3) and ``centre`` (m, 2) in machine coordinates.
+    """The words of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
 
     ``axis`` (m,) is the machine X of the spindle axis, from which radii count. ``surface lo hi`` (m,)
-    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm. ``plane`` has m ways of
-    the virtual mill, None for blocks of the lathe.
+    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm. ``way`` has m ways on which
+    the axes do not run in proportion, such as those of the virtual mill, None elsewhere. ``length`` (m,) is
+    given by blocks that tell of all axes, NaN by those of the lathe, whose X, Z and C say enough.
     """
 
     n: FloatArray
@@ -99,7 +103,8 @@ class Words:
     surface: FloatArray
     lo: FloatArray
     hi: FloatArray
-    plane: tuple[PlaneMove | None, ...]
+    way: tuple[CurvedWay | None, ...]
+    length: FloatArray
 
 
 def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
@@ -117,6 +122,9 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
     end[:, :2] += shift
     start[:, 2] += table[:, 15]
     end[:, 2] += table[:, 15]
+    length = np.full(len(blocks), np.nan)
+    if blocks[0].travel is not None:
+        start, end, length = _travels(blocks)
     surface, lo, hi = _surface(blocks, rpm_max)
     return Words(
         n=table[:, 0],
@@ -134,8 +142,22 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         surface=surface,
         lo=lo,
         hi=hi,
-        plane=tuple(block.plane for block in blocks),
+        way=tuple(_way(block) for block in blocks),
+        length=length,
     )
+
+
+def _way(block: MotionBlock) -> CurvedWay | None:
+    return block.plane if block.travel is None else block.travel.way
+
+
+def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Start and end (m, axes) and length (m,) of blocks that tell of all axes."""
+    travels = [block.travel for block in blocks if block.travel is not None]
+    if len(travels) != len(blocks):
+        raise MotionError(f"Block {blocks[0].n} tells of all axes, another behind it does not.")
+    start, end = (np.array([getattr(t, name) for t in travels]) for name in ("start", "end"))
+    return start, end, np.array([t.length for t in travels])
 
 
 def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:

@@ -90,6 +90,11 @@ class _Proof:
             tools=tuple(sorted(interpreter.used_tools)),
             missing_tools=tuple(sorted(interpreter.missing_tools)),
             reach=tally.reach,
-            final=(end.x, end.z, end.c) if end else timeline.start,
-            machine_final=(end.mx, end.mz, end.mc) if end else timeline.start,
+            final=(end.x, end.z, end.c) if end else _lathe(timeline.start),
+            machine_final=end.machine_end if end else timeline.start,
         )
+
+
+def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:
+    """X, Z and C of a start in the machine's order."""
+    return start[0], start[1], start[-1]

@@ -51,7 +51,7 @@ class Report:
     missing_tools: tuple[int, ...]
     reach: Reach
     final: tuple[float, float, float]  # program frame
-    machine_final: tuple[float, float, float]
+    machine_final: tuple[float, ...]
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:

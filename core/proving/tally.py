@@ -52,7 +52,9 @@ class Tally:
         rapid = np.array([b.kind is Kind.RAPID for b in blocks])
         length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
         for index, block in enumerate(blocks):
-            if block.kind is Kind.ARC:
+            if block.travel is not None:
+                length[index] = block.travel.length if block.travel.slides else 0.0
+            elif block.kind is Kind.ARC:
                 length[index] = self._arc(block)
             elif block.plane is not None:
                 length[index] = self._plane(block, block.plane)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
-from core.interpreter.blocks import Block
+from core.interpreter.blocks import Block, Kind
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Axis, Machine
 
@@ -15,18 +16,28 @@ TOLERANCE = 1e-6
 
 
 def travel_findings(blocks: Sequence[Block], machine: Machine) -> list[Diagnostic]:
-    """An error for each block whose machine positions leave the travel; arcs are looked at all along."""
-    x_axis, z_axis = machine.axes[0], machine.axes[1]
-    (x_low, x_high), (z_low, z_high) = _reachable(x_axis), _reachable(z_axis)
-    findings = []
+    """An error for each block whose machine positions leave the travel; curved ways all along."""
+    limits = [(axis, *_reachable(axis)) for axis in machine.axes]
+    return [
+        _beyond(machine, block, axis, low, high)
+        for block in _outside(blocks, limits)
+        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True)
+        if low < least or high > most
+    ]
+
+
+def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
+    """Blocks that may leave the travel: straight moves of a lathe, which are most, are seen by their ends."""
+    (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
+    endless = all(least == -math.inf for _, least, _ in limits[2:])
     for block in blocks:
-        low_x, high_x, low_z, high_z = block.reach()
-        x, z = block.offset_x, block.offset_z
-        if low_x + x < x_low or high_x + x > x_high:
-            findings.append(_beyond(block, x_axis, low_x + x, high_x + x))
-        if low_z + z < z_low or high_z + z > z_high:
-            findings.append(_beyond(block, z_axis, low_z + z, high_z + z))
-    return findings
+        straight = block.kind is Kind.FEED or block.kind is Kind.RAPID
+        if not (straight and endless and block.travel is None):
+            yield block
+            continue
+        x, z = block.x + block.offset_x, block.z + block.offset_z
+        if not (x_least <= x <= x_most and z_least <= z <= z_most):
+            yield block
 
 
 def _reachable(axis: Axis) -> tuple[float, float]:
@@ -35,12 +46,14 @@ def _reachable(axis: Axis) -> tuple[float, float]:
     return axis.travel[0] - TOLERANCE, axis.travel[1] + TOLERANCE
 
 
-def _beyond(block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
+def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
     least, greatest = _reachable(axis)
     at = low if low < least else high
     limit = least if low < least else greatest
-    metric = block.modal.metric
-    scale, unit, places = (1.0, "mm", 3) if metric else (1 / MM_PER_INCH, "in", 4)
+    scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
+    if axis.rotary:
+        scale, unit, places = 1.0, "degrees", 3
+    radius = " (X as a radius)" if machine.kind == "lathe" else ""
     over = abs(at - limit) * scale
     return Diagnostic(
         line=block.line,
@@ -48,8 +61,14 @@ def _beyond(block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
         severity=Severity.ERROR,
         code="soft-limit",
         message=(
-            f"{axis.name} would go to {at * scale:.{places}f} {unit} from home (X as a radius), "
+            f"{axis.name} would go to {at * scale:.{places}f} {unit} from home{radius}, "
             f"{over:.{places}f} {unit} beyond the travel limit of {limit * scale:.{places}f}"
         ),
-        hint=f"check the {axis.name} word, the offset of T{block.modal.tool} and any G10 or G92",
+        hint=_hint(machine, block, axis),
     )
+
+
+def _hint(machine: Machine, block: Block, axis: Axis) -> str:
+    if machine.kind != "lathe" or axis.rotary:
+        return f"check the {axis.name} word and the shifts in force"
+    return f"check the {axis.name} word, the offset of T{block.modal.tool} and any G10 or G92"

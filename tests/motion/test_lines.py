@@ -106,9 +106,9 @@ def test_a_kind_without_a_law_is_refused() -> None:
 @pytest.mark.parametrize(
     ("figures", "named"),
     [
-        ({"vmax": (0.0, 1.0, 1.0)}, "vmax of X"),
-        ({"amax": (1.0, -1.0, 1.0)}, "amax of Z"),
-        ({"amax": (1.0, 1.0, math.nan)}, "amax of C"),
+        ({"vmax": (0.0, 1.0, 1.0)}, "vmax of axis 1"),
+        ({"amax": (1.0, -1.0, 1.0)}, "amax of axis 2"),
+        ({"amax": (1.0, 1.0, math.nan)}, "amax of axis 3"),
         ({"interval": 0.0}, "interval"),
     ],
 )
