@@ -10,60 +10,40 @@ import math
 from array import array
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from app.desk.drawing.chords import arc_pieces
+from app.desk.drawing.trail import SAME, Pencil, Stroke, Trail, bounds_of
+from app.desk.drawing.turned import TurnedSketch, way_of
 from core.geometry.extent import arc_sweep
+from core.geometry.face import Face
 from core.interpreter.blocks import Kind
 
 if TYPE_CHECKING:
+    from core.geometry.mill import PlaneMove, Spot
     from core.interpreter.blocks import Block
 
-CHORD_ERROR = 0.004  # mm: half a pixel at 125 pixels to the millimetre
-SAME = 1e-7  # mm
 WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 
 Timed = tuple["Block", float, float]
 
 
-class Stroke(IntEnum):
-    """What the stretch that ends in a point is; ``TURN`` strokes cut both sides of X0."""
-
-    JUMP = 0  # another tool's tip: nothing is drawn
-    RAPID = 1
-    TURN = 2
-    MILL = 3  # fed with the spindle standing
-
-
 @dataclass(frozen=True, slots=True, eq=False)
-class Picture:
-    """Points ``z x`` (p,) with the stroke that ends in each; block n ends with point ``first[n] - 1``.
+class Picture(Trail):
+    """The path seen from above, X+ downwards; ``face`` and ``side`` are what is cut there with C locked.
 
-    ``first`` (blocks + 1,), ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord``
-    (blocks,) mm from start to end of a block. ``bounds`` (least z, greatest z, least x, greatest x) of what
-    is cut, or of everything when nothing is. ``line`` (blocks,) is the source line that each block is of.
+    ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord`` (blocks,) mm from start to end
+    of a block. ``line`` (blocks,) is the source line that each block is of.
     """
 
-    z: npt.NDArray[np.float64]
-    x: npt.NDArray[np.float64]
-    stroke: npt.NDArray[np.uint8]
-    first: npt.NDArray[np.int64]
     ends: npt.NDArray[np.float64]
     chord: npt.NDArray[np.float64]
-    bounds: tuple[float, float, float, float]
     line: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-
-    @property
-    def blocks(self) -> int:
-        """How many elementary blocks it was made of."""
-        return len(self.chord)
-
-    def points_done(self, blocks: int) -> int:
-        """How many points are behind when so many blocks are."""
-        return int(self.first[max(0, min(blocks, self.blocks))])
+    face: Trail | None = None
+    side: Trail | None = None
 
     def block_of_line(self, line: int) -> int:
         """The block that ends the first pass through a source line, or through the nearest one before that
@@ -74,6 +54,10 @@ class Picture:
         there = np.flatnonzero(self.line == before.max())
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
+
+    def line_of_block(self, block: int) -> int:
+        """The source line of a block, both from 1; 0 for no block."""
+        return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
 
     def time_left(self, block: int, to_go: float) -> float:
         """Program seconds left when block number ``block`` has ``to_go`` mm before it, at full override."""
@@ -90,68 +74,85 @@ class Sketch:
     """Collects blocks into a picture."""
 
     def __init__(self) -> None:
-        self._z, self._x, self._stroke = array("d"), array("d"), array("B")
-        self._first, self._ends, self._chord = array("q", [0]), array("d", [0.0]), array("d")
-        self._line = array("q")
+        self._pencil = Pencil()
+        self._turned: TurnedSketch | None = None
+        self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add(self, block: Block, end: float) -> None:
         """Append one block that ends ``end`` seconds into the program."""
-        if block.moves and block.kind is not Kind.ROTATE:
-            self._move(block)
-        self._first.append(len(self._z))
+        if block.moves:
+            if block.modal.c_locked:
+                self._locked(block)
+            elif block.kind is not Kind.ROTATE:
+                self._move(block, _stroke(block))
+        self._pencil.end_block()
+        if self._turned is not None:
+            self._turned.end_block()
         self._ends.append(end)
         self._line.append(block.line)
         self._chord.append(math.hypot(block.x - block.x0, block.z - block.z0) if block.moves else 0.0)
 
     def picture(self) -> Picture:
         """The picture of what was added."""
-        z, x = np.array(self._z), np.array(self._x)
-        stroke = np.array(self._stroke, dtype=np.uint8)
+        z, x, stroke, first = self._pencil.arrays()
+        face, side = self._turned.trails() if self._turned is not None else (None, None)
         return Picture(
             z=z,
             x=x,
             stroke=stroke,
-            first=np.array(self._first, dtype=np.int64),
+            first=first,
             ends=np.array(self._ends),
             chord=np.array(self._chord),
-            bounds=_bounds(z, x, stroke),
+            bounds=bounds_of(z, x, stroke),
+            centres=np.array(self._pencil.centres).reshape(-1, 2),
             line=np.array(self._line, dtype=np.int64),
+            face=face,
+            side=side,
         )
 
-    def _move(self, block: Block) -> None:
+    def _locked(self, block: Block) -> None:
+        if self._turned is None:
+            self._turned = TurnedSketch(len(self._line))
+        stroke, way = _stroke(block), way_of(block)
+        self._turned.add(block, stroke, way)
+        if block.plane is not None:
+            self._mill(block, block.plane, way, stroke)
+        elif block.kind is not Kind.ROTATE:
+            self._move(block, stroke)
+
+    def _move(self, block: Block, stroke: Stroke) -> None:
         dx = block.offset_x - block.modal.tool_x
         dz = block.offset_z - block.modal.tool_z
-        self._start(block.z0 + dz, block.x0 + dx)
-        stroke = _stroke(block)
+        self._pencil.start(block.z0 + dz, block.x0 + dx)
         if block.kind is Kind.ARC:
             self._arc(block, dx, dz, stroke)
-        self._point(block.z + dz, block.x + dx, stroke)
-
-    def _start(self, z: float, x: float) -> None:
-        if self._z and abs(self._z[-1] - z) < SAME and abs(self._x[-1] - x) < SAME:
-            return
-        self._point(z, x, Stroke.JUMP)
-
-    def _point(self, z: float, x: float, stroke: Stroke) -> None:
-        self._z.append(z)
-        self._x.append(x)
-        self._stroke.append(stroke)
+        self._pencil.to(block.z + dz, block.x + dx, stroke)
 
     def _arc(self, block: Block, dx: float, dz: float, stroke: Stroke) -> None:
         start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
         pieces = arc_pieces(radius, sweep)
+        cz, cx = block.cz + dz, block.cx + dx
+        self._pencil.centres.extend((cz, cx))
         for k in range(1, pieces):
             at = start + sweep * k / pieces
-            self._point(block.cz + dz + radius * math.cos(at), block.cx + dx + radius * math.sin(at), stroke)
+            self._pencil.to(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
 
-
-def arc_pieces(radius: float, sweep: float) -> int:
-    """Into how many chords an arc falls so that none leaves it by more than CHORD_ERROR."""
-    if radius <= CHORD_ERROR:
-        return 4
-    step = 2 * math.acos(1 - CHORD_ERROR / radius)
-    return max(1, math.ceil(abs(sweep) / step))
+    def _mill(self, block: Block, plane: PlaneMove, way: list[Spot], stroke: Stroke) -> None:
+        """What the slides do while the mill goes its way in a plane."""
+        modal = block.modal
+        dx = block.offset_x - modal.tool_x + modal.secondary_x
+        dz = block.offset_z - modal.tool_z + modal.secondary_z
+        for number, (x, y, z) in enumerate((plane.start, *way)):
+            if isinstance(plane.frame, Face):
+                h = plane.frame.h
+                at = (z + dz, dx - math.sqrt(max(x * x + y * y - h * h, 0.0)))
+            else:
+                at = (plane.frame.z0 - x + dz, dx - z)
+            if number:
+                self._pencil.to(*at, stroke)
+            else:
+                self._pencil.start(*at)
 
 
 def sketched(blocks: Iterable[Timed], watch: Callable[[int], None]) -> Picture:
@@ -168,16 +169,3 @@ def _stroke(block: Block) -> Stroke:
     if block.kind is Kind.RAPID:
         return Stroke.RAPID
     return Stroke.TURN if block.modal.spindle else Stroke.MILL
-
-
-def _bounds(
-    z: npt.NDArray[np.float64], x: npt.NDArray[np.float64], stroke: npt.NDArray[np.uint8]
-) -> tuple[float, float, float, float]:
-    if not len(z):
-        return 0.0, 0.0, 0.0, 0.0
-    cut = np.flatnonzero(stroke >= Stroke.TURN)
-    if len(cut):
-        # A stroke's start is the point before it.
-        index = np.concatenate((cut, np.maximum(cut - 1, 0)))
-        z, x = z[index], x[index]
-    return float(z.min()), float(z.max()), float(x.min()), float(x.max())

@@ -16,7 +16,8 @@ from app.screen.fileprompt import FilePrompt
 from app.screen.layout import Rect, work_parts
 from app.screen.listing import Listing
 from app.screen.pages import Doings, Host, Page
-from app.screen.pathview import PathView, Tip
+from app.screen.path.aspects import tip_of
+from app.screen.pathview import PathView
 from core.executor.snapshot import Snapshot, State
 
 _NO_LINES: tuple[str, ...] = ()
@@ -92,9 +93,7 @@ class AutomaticPage(Page):
         self.path.show_picture(loaded.picture)
 
     def _show_path(self, snapshot: Snapshot) -> None:
-        modal = snapshot.modal
-        x, z, _c = snapshot.actual
-        self.path.show_tip(Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, modal.metric))
+        self.path.show_tip(tip_of(snapshot))
         self.path.advance()
 
     def doings(self) -> Doings:

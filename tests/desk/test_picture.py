@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from app.desk.picture import CHORD_ERROR, Sketch, Stroke, arc_pieces, sketched
+from app.desk.drawing.chords import CHORD_ERROR, arc_pieces
+from app.desk.drawing.trail import Stroke
+from app.desk.picture import Sketch, sketched
 from core.interpreter.actions import SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QColor, QImage
 
-from app.desk.picture import Picture, Stroke
-from app.screen.layers import SMOOTH_TO, Layers
+from app.desk.drawing.trail import Stroke
+from app.desk.picture import Picture
 from app.screen.look import Look
-from app.screen.plot import Frame, fitted, polygon, runs, scale_length, travelled
-from app.screen.raster import Ends, clipped, stepped
+from app.screen.path.layers import SMOOTH_TO, Layers
+from app.screen.path.plot import Frame, fitted, polygon, runs, scale_length, travelled
+from app.screen.path.raster import Ends, clipped, stepped
 from app.screen.theme import DARK
 
 FRAME = Frame(z=0.0, x=0.0, scale=10.0, width=400, height=200)

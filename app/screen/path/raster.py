@@ -14,7 +14,7 @@ import numpy.typing as npt
 from PySide6.QtGui import QColor, QImage
 
 if TYPE_CHECKING:
-    from app.screen.plot import Frame
+    from app.screen.path.plot import Frame
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]

@@ -1,4 +1,4 @@
-"""From a picture's points to pixels: projection, thinning out, strokes without a Python loop a point."""
+"""From a trail's points to pixels: projection, thinning out, strokes without a Python loop a point."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy.typing as npt
 import shiboken6
 from PySide6.QtGui import QPainter, QPolygonF
 
-from app.screen.raster import Shape
+from app.screen.path.raster import Shape
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.desk.drawing.trail import Trail
 
 Floats = npt.NDArray[np.float64]
 
@@ -62,6 +62,14 @@ def fitted(bounds: tuple[float, float, float, float], width: int, height: int, m
     return Frame((z0 + z1) / 2, 0.0, scale, width, height)
 
 
+def boxed(bounds: tuple[float, float, float, float], width: int, height: int, margin: float) -> Frame:
+    """Just what is within the bounds, ``margin`` pixels around it."""
+    z0, z1, x0, x1 = bounds
+    across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
+    scale = min(across / max(z1 - z0, 1.0), down / max(x1 - x0, 1.0))
+    return Frame((z0 + z1) / 2, (x0 + x1) / 2, scale, width, height)
+
+
 @dataclass(frozen=True, slots=True)
 class Run:
     """Neighbouring points under one stroke, in pixels."""
@@ -71,21 +79,21 @@ class Run:
     rows: Floats
 
 
-def points(picture: Picture, frame: Frame, start: int, end: int) -> Shape:
+def points(trail: Trail, frame: Frame, start: int, end: int) -> Shape:
     """Points ``start`` … ``end - 1`` and the one before, thinned out to the pixel."""
     low = max(0, start - 1)
-    columns = np.asarray(frame.across(picture.z[low:end]), dtype=np.float64)
-    rows = np.asarray(frame.down(picture.x[low:end]), dtype=np.float64)
-    stroke = picture.stroke[low:end].copy()
+    columns = np.asarray(frame.across(trail.z[low:end]), dtype=np.float64)
+    rows = np.asarray(frame.down(trail.x[low:end]), dtype=np.float64)
+    stroke = trail.stroke[low:end].copy()
     if start > 0 and len(stroke):
         stroke[0] = 0
     keep = _telling(columns, rows, stroke)
     return Shape(columns[keep], rows[keep], stroke[keep])
 
 
-def runs(picture: Picture, frame: Frame, start: int, end: int) -> Iterator[Run]:
+def runs(trail: Trail, frame: Frame, start: int, end: int) -> Iterator[Run]:
     """The strokes that end in points ``start`` … ``end - 1``, thinned out to the pixel, cut to the frame."""
-    columns, rows, stroke = points(picture, frame, start, end)
+    columns, rows, stroke = points(trail, frame, start, end)
     stroke[1:][_outside(columns, rows, frame)] = 0
     edges = np.flatnonzero(np.diff(stroke)) + 1
     for a, b in zip(np.append(0, edges), np.append(edges, len(stroke)), strict=True):
@@ -126,20 +134,20 @@ def stroke_run(painter: QPainter, run: Run) -> None:
     painter.drawPolyline(polygon(run.columns, run.rows))
 
 
-def travelled(picture: Picture, frame: Frame, block: int, z: float, x: float) -> Run | None:
+def travelled(trail: Trail, frame: Frame, block: int, z: float, x: float) -> Run | None:
     """What of a block lies behind the tip at (z, x): its points up to the nearest chord, then the tip."""
-    if not 1 <= block <= picture.blocks:
+    if not 1 <= block <= trail.blocks:
         return None
-    start, end = int(picture.first[block - 1]), int(picture.first[block])
-    if start < end and picture.stroke[start] == 0:
+    start, end = int(trail.first[block - 1]), int(trail.first[block])
+    if start < end and trail.stroke[start] == 0:
         start += 1  # a jump to another tool's tip
     if start >= end or start == 0:
         return None
-    zs, xs = picture.z[start - 1 : end], picture.x[start - 1 : end]
+    zs, xs = trail.z[start - 1 : end], trail.x[start - 1 : end]
     last = _nearest_chord(zs, xs, z, x) + 1
     columns = np.append(np.asarray(frame.across(zs[:last])), frame.across(z))
     rows = np.append(np.asarray(frame.down(xs[:last])), frame.down(x))
-    return Run(int(picture.stroke[start]), columns, rows)
+    return Run(int(trail.stroke[start]), columns, rows)
 
 
 def _nearest_chord(zs: Floats, xs: Floats, z: float, x: float) -> int:

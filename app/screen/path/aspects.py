@@ -1,0 +1,59 @@
+"""From where a program is looked at."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from app.desk.drawing.trail import Trail
+    from app.desk.picture import Picture
+    from core.executor.snapshot import Snapshot
+
+
+class Aspect(Enum):
+    """From above (X+ down, Z+ right), onto the end of the part, onto its side unrolled (Z+ right, C+ up)."""
+
+    PATH = "PATH"
+    FACE = "FACE"
+    SIDE = "SIDE"
+
+
+class Tip(NamedTuple):
+    """Where the program is: block under way (0: none), and the tool tip in the part's frame, mm.
+
+    ``c`` is the program's C while it is locked, degrees, else None; ``h`` the height of a mill's centre line.
+    """
+
+    block: int = 0
+    z: float = 0.0
+    x: float = 0.0
+    metric: bool = False
+    c: float | None = None
+    h: float = 0.0
+
+
+View = tuple[Aspect, ...]
+
+
+def tip_of(snapshot: Snapshot) -> Tip:
+    """The tip as the machine stands now."""
+    modal = snapshot.modal
+    x, z, *rotary = snapshot.actual
+    turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
+    h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
+    return Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, modal.metric, turned, h)
+
+
+def trail_of(picture: Picture | None, aspect: Aspect) -> Trail | None:
+    """What is to be seen from there."""
+    if picture is None or aspect is Aspect.PATH:
+        return picture
+    return picture.face if aspect is Aspect.FACE else picture.side
+
+
+def views_of(picture: Picture) -> list[View]:
+    """What the view key goes through: the path with what is cut at C beside it, then each alone."""
+    more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if trail_of(picture, aspect) is not None]
+    both = [(Aspect.PATH, aspect) for aspect in more]
+    return [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]

@@ -1,0 +1,182 @@
+"""One look at one trail: what part of it is seen, its cached images, where the tool stands in it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPolygonF
+
+from app.desk.drawing.trail import Trail
+from app.desk.drawing.turned import face_point
+from app.screen.look import Look
+from app.screen.path.aspects import Aspect, Tip
+from app.screen.path.inks import Ink
+from app.screen.path.layers import Layers
+from app.screen.path.plot import Frame, boxed, fitted, polygon, runs, stroke_run, travelled
+from app.screen.path.scenery import draw_scenery
+
+ZOOM_STEP = 1.25
+PAN_STEP = 0.1  # of the width
+MARGIN = 2.8  # units round what is fitted
+MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
+
+Place = tuple[float, float]
+
+
+class Pane:
+    """A part of the path view; places are the widget's pixels, everything drawn is the pane's own."""
+
+    def __init__(self, look: Look, aspect: Aspect, trail: Trail, before: Trail | None = None) -> None:
+        self.look, self.aspect = look, aspect
+        self.trail, self.before = trail, before
+        self.room = QRectF()
+        self.by_hand = False  # somebody has zoomed or panned
+        self.frame: Frame | None = None
+        self._layers: Layers | None = None
+        self._block, self._place = 0, (0.0, 0.0)
+        self._marked: list[tuple[int, int]] = []  # ranges of points
+
+    # --- what is seen --------------------------------------------------------------------------------
+
+    def lay(self, room: QRectF) -> None:
+        """Fill this room; another size shows the whole part again."""
+        if room != self.room:
+            self.room = room
+            self.fit()
+
+    def take(self, trail: Trail, before: Trail | None) -> None:
+        """Another path in the same place; what is looked at stays if it was chosen by hand."""
+        self.trail, self.before, self._block, self._marked = trail, before, 0, []
+        if self.by_hand and self.frame is not None:
+            self._look_at(self.frame)
+        else:
+            self.fit()
+
+    def fit(self) -> None:
+        """Everything."""
+        self.by_hand = False
+        fit = boxed if self.aspect is Aspect.SIDE else fitted
+        bounds, before = self.trail.bounds, self.before
+        if before is not None:
+            low, high = map(min, bounds, before.bounds), map(max, bounds, before.bounds)
+            (z0, _, x0, _), (_, z1, _, x1) = tuple(low), tuple(high)
+            bounds = (z0, z1, x0, x1)
+        margin = MARGIN * self.look.u
+        self._look_at(fit(bounds, int(self.room.width()), int(self.room.height()), margin))
+
+    def zoom(self, steps: int, at: QPointF | None = None) -> None:
+        """Nearer (positive) or farther, about a point of the widget or about the middle."""
+        self.magnify(ZOOM_STEP**steps, at if at is not None else self.room.center())
+
+    def magnify(self, factor: float, at: QPointF) -> None:
+        """Nearer by a factor; what is at the point stays there."""
+        if self.frame is not None:
+            self.by_hand = True
+            at = at - self.room.topLeft()
+            self._look_at(self.frame.zoomed(factor, at.x(), at.y()))
+
+    def pan(self, across: int, down: int) -> None:
+        """Look further right and down by so many steps."""
+        step = PAN_STEP * self.room.width()
+        self.drag(QPointF(-across * step, -down * step))
+
+    def drag(self, by: QPointF) -> None:
+        """The picture goes along with the finger."""
+        if self.frame is not None:
+            self.by_hand = True
+            self._look_at(self.frame.moved(by.x(), by.y()))
+
+    def restart(self) -> None:
+        """The same again, in other colours."""
+        if self.frame is not None:
+            self._look_at(self.frame)
+
+    def _look_at(self, frame: Frame) -> None:
+        self.frame = frame
+        self._layers = Layers(self.look, self.trail, frame, self.before)
+        self._layers.want(self._block - 1)
+        self._layers.advance()
+
+    # --- what moves ----------------------------------------------------------------------------------
+
+    def stand(self, block: int, place: Place) -> None:
+        """The tip, in the trail's own z and x."""
+        if self._layers is not None and block != self._block:
+            self._layers.want(block - 1)
+        self._block, self._place = block, place
+
+    def end_of(self, block: int) -> Place:
+        """Where a block ends, or the last one before it that draws anything here."""
+        at = max(0, self.trail.points_done(block) - 1)
+        return (float(self.trail.z[at]), float(self.trail.x[at])) if len(self.trail.z) else self._place
+
+    def place_of(self, tip: Tip) -> Place:
+        """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
+        if self.aspect is Aspect.PATH:
+            return tip.z, tip.x
+        if tip.c is None:
+            return self._place
+        if self.aspect is Aspect.FACE:
+            return face_point(tip.x, tip.c, tip.h)
+        return tip.z, -tip.c * self.trail.round
+
+    def mark(self, blocks: list[tuple[int, int]]) -> None:
+        """Draw these blocks thick: ranges of numbers from 1, the last one in them."""
+        first = self.trail.first
+        ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
+        self._marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
+
+    def advance(self) -> bool:
+        """Draw on for a few milliseconds at most; whether there is anything new."""
+        return self._layers is not None and self._layers.advance()
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything is drawn."""
+        return self._layers is not None and self._layers.complete
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def spot(self, z: float, x: float) -> QPointF:
+        """Where a point of the trail is in the pane; pixels from its corner."""
+        assert self.frame is not None
+        return QPointF(float(self.frame.across(z)), float(self.frame.down(x)))
+
+    def draw(self, painter: QPainter) -> None:
+        """Image, scenery, the marked line, what is under way, the tip. The painter's origin is the corner."""
+        frame, layers = self.frame, self._layers
+        if frame is None or layers is None:
+            return
+        painter.drawImage(QPointF(0, 0), layers.image)
+        draw_scenery(painter, self.look, self.aspect, frame, self.trail)
+        self._draw_marked(painter, frame)
+        if self.before is None:
+            self._under_way(painter, frame)
+            self._tool_tip(painter)
+
+    def _draw_marked(self, painter: QPainter, frame: Frame) -> None:
+        pens = Ink.MARKED.pens(self.look)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for start, end in self._marked:
+            for run in runs(self.trail, frame, start, end):
+                painter.setPen(pens[run.stroke])
+                stroke_run(painter, run)
+
+    def _under_way(self, painter: QPainter, frame: Frame) -> None:
+        """The part of the present block that lies behind the tip."""
+        found = travelled(self.trail, frame, self._block, *self._place) if self._block else None
+        if found is not None:
+            painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawPolyline(polygon(found.columns, found.rows))
+
+    def _tool_tip(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        at = self.spot(*self._place)
+        painter.setPen(look.pen("panel", 0.2))
+        painter.setBrush(look.colour("tip"))
+        if self.aspect is not Aspect.PATH:  # a mill is looked at along its axis
+            painter.drawEllipse(at, 0.7 * u, 0.7 * u)
+            return
+        side = 1.0 if self._place[1] >= 0 else -1.0
+        body = [at, at + QPointF(1.5 * u, 1.3 * side * u), at + QPointF(0.2 * u, 3.2 * side * u)]
+        painter.drawPolygon(QPolygonF([*body, at + QPointF(-1.1 * u, 1.6 * side * u)]))
