@@ -51,7 +51,8 @@ class Setup:
     """One set of circumstances for one pass through a program.
 
     ``start`` is the machine position of all axes (on a lathe x, z, c) before the first block; ``metric`` and
-    ``last_rapid`` what the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a PLC input ``"10"``.
+    ``last_rapid`` what the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a
+    PLC input ``"10"``.
     """
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
