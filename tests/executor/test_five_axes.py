@@ -1,0 +1,141 @@
+"""The executor built for the lathe moves five axes as well: slides and a swivelling table together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from core.executor.commands import FeedHold
+from core.executor.snapshot import Snapshot, State
+from core.geometry.travel import FloatArray, Travel
+from core.interpreter.actions import ProgramEnd
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.machine.load import parse_machine
+from tests.executor.rig import Rig
+from tests.machine.mill import MILL
+
+HOME = (0.0,) * 5
+
+
+def block(n: int, kind: Kind, feed: float, travel: Travel | None, end: bool = False) -> Block:
+    """A block of a machine with five axes; mm/s, or degrees/s where only rotary axes turn."""
+    zeros = dict.fromkeys(("x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z"), 0.0)
+    action = ProgramEnd(reset=True) if end else None
+    return Block(
+        n=n,
+        line=n,
+        kind=kind,
+        text="",
+        modal=Modal(metric=True),
+        feed=feed,
+        travel=travel,
+        action=action,
+        **zeros,
+    )
+
+
+def line(n: int, start: tuple[float, ...], end: tuple[float, ...], feed: float) -> Block:
+    """All axes in proportion; the feed counts the slides' way, or else the degrees of the rotary axes."""
+    way = math.dist(start[:3], end[:3])
+    length = way or math.dist(start[3:], end[3:])
+    return block(n, Kind.FEED, feed, Travel(start, end, length, slides=way > 0.0))
+
+
+def rig_with(*moves: Block) -> Rig:
+    rig = Rig(
+        machine=parse_machine(MILL, "mill"),
+        made=[*moves, block(len(moves) + 1, Kind.ACTION, 0.0, None, end=True)],
+    )
+    rig.start("anything")
+    return rig
+
+
+def seen(rig: Rig) -> list[Snapshot]:
+    shots: list[Snapshot] = []
+    rig.watch.append(shots.append)
+    return shots
+
+
+def test_all_five_axes_arrive_together() -> None:
+    there = (30.0, -40.0, 20.0, 45.0, -90.0)
+    rig = rig_with(line(1, HOME, there, 25.0))
+    shots = seen(rig)
+    rig.until(State.IDLE)
+    assert rig.shot.axes == ("X", "Y", "Z", "A", "C")
+    assert rig.shot.actual == pytest.approx(there, abs=2e-3)
+    middle = np.array([shot.demand for shot in shots if 0.0 < shot.demand[0] < 30.0])
+    assert len(middle) > 50
+    share = middle / np.array(there)
+    assert np.abs(share - share[:, :1]).max() < 1e-9  # every setpoint on the one line
+
+
+def test_a_slow_rotary_axis_slows_the_block_down() -> None:
+    """10 mm and 90 degrees at 100 mm/s: C can do 60 degrees/s, so it takes 1.5 s and the ramps."""
+    rig = rig_with(line(1, HOME, (10.0, 0.0, 0.0, 0.0, 90.0), 100.0))
+    took = rig.until(State.IDLE)
+    assert 1.5 < took < 1.5 + 60.0 / 720.0 + 0.3
+
+
+def test_rotary_axes_alone_take_the_feed_in_degrees() -> None:
+    """A 30 and C 40 together are 50 degrees of way; at 25 degrees/s that is 2 s."""
+    rig = rig_with(line(1, HOME, (0.0, 0.0, 0.0, 30.0, 40.0), 25.0))
+    took = rig.until(State.IDLE)
+    assert 2.0 < took < 2.0 + 0.4
+
+
+def test_a_hold_stays_on_the_line() -> None:
+    there = (100.0, 50.0, 0.0, 30.0, 0.0)
+    rig = rig_with(line(1, HOME, there, 40.0))
+    rig.run(0.8)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    at = np.array(rig.shot.demand)
+    assert 1.0 < at[0] < 99.0
+    assert at[[1, 3]] == pytest.approx(at[0] * np.array([0.5, 0.3]), abs=1e-9)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A quarter circle of X and Z about a point 50 mm off while A turns with it."""
+
+    length: float = 90.0
+    straight: bool = False
+
+    def machine(self, share: FloatArray) -> FloatArray:
+        angle = np.radians(90.0 * share)
+        table = np.zeros((len(share), 5))
+        table[:, 0], table[:, 2], table[:, 3] = (
+            50.0 * np.sin(angle),
+            50.0 - 50.0 * np.cos(angle),
+            90.0 * share,
+        )
+        return table
+
+    def part(self, points: FloatArray) -> FloatArray:
+        return points[:, :3]
+
+    def nearest(self) -> float:
+        return 0.5
+
+
+def test_a_way_out_of_proportion_is_followed_all_along() -> None:
+    swing = Swing()
+    travel = Travel(HOME, tuple(swing.machine(np.array([1.0]))[0].tolist()), swing.length, swing)
+    rig = rig_with(block(1, Kind.FEED, 30.0, travel))
+    shots = seen(rig)
+    took = rig.until(State.IDLE)
+    assert 3.0 < took < 3.5  # 90 degrees at 30 degrees/s
+    x, _, z, a, _ = np.array([shot.demand for shot in shots]).T
+    off = np.hypot(x - 50.0 * np.sin(np.radians(a)), z - 50.0 + 50.0 * np.cos(np.radians(a)))
+    assert off.max() < 2e-4
+
+
+def test_a_move_beyond_the_swivel_range_is_refused_before_it_begins() -> None:
+    rig = rig_with(line(1, HOME, (0.0, 0.0, 0.0, 121.0, 0.0), 25.0))
+    rig.until(State.FAULT)
+    assert "A to 121.000 degrees" in rig.shot.alarms[0].cause
+    assert rig.shot.actual == HOME
