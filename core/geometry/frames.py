@@ -1,0 +1,125 @@
+"""Frames of tilted working planes: rotations, and the plane through three points.
+
+A frame is a rotation matrix by rows; its columns are the axes X' Y' Z' of the working plane, written in the
+system that the frame stands in. Angles in degrees.
+"""
+
+from __future__ import annotations
+
+import math
+
+Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]
+
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+X_AXIS: Vector = (1.0, 0.0, 0.0)
+Y_AXIS: Vector = (0.0, 1.0, 0.0)
+Z_AXIS: Vector = (0.0, 0.0, 1.0)
+
+SHORTEST = 1e-6  # mm; nearer points give no direction
+SMALLEST_SINE = 1e-6  # of the angle at the first point; a flatter triangle gives no plane
+
+_QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+
+
+class NoFrameError(ValueError):
+    """Points that define no plane; ``str()`` says why."""
+
+
+def cos_sin(degrees: float) -> tuple[float, float]:
+    """Cosine and sine, exact at whole quarter turns: a table at 90 degrees must not lean by 6e-17."""
+    quarter, rest = divmod(degrees, 90.0)
+    if rest == 0.0:
+        return _QUARTERS[int(quarter) % 4]
+    angle = math.radians(math.fmod(degrees, 360.0))
+    return math.cos(angle), math.sin(angle)
+
+
+def plus(a: Vector, b: Vector) -> Vector:
+    """a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    """a - b."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def scaled(a: Vector, factor: float) -> Vector:
+    """a times a number."""
+    return a[0] * factor, a[1] * factor, a[2] * factor
+
+
+def dot(a: Vector, b: Vector) -> float:
+    """The scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """The vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def applied(m: Matrix, v: Vector) -> Vector:
+    """m v."""
+    return dot(m[0], v), dot(m[1], v), dot(m[2], v)
+
+
+def transposed(m: Matrix) -> Matrix:
+    """Rows for columns; of a rotation, its inverse."""
+    (a, b, c), (d, e, f), (g, h, i) = m
+    return (a, d, g), (b, e, h), (c, f, i)
+
+
+def product(*factors: Matrix) -> Matrix:
+    """Matrix product, from left to right; the identity of none."""
+    made = IDENTITY
+    for factor in factors:
+        columns = transposed(factor)
+        first, second, third = (
+            (dot(row, columns[0]), dot(row, columns[1]), dot(row, columns[2])) for row in made
+        )
+        made = first, second, third
+    return made
+
+
+def turned(axis: Vector, degrees: float) -> Matrix:
+    """Rotation about a unit vector by the right hand (Rodrigues)."""
+    x, y, z = axis
+    c, s = cos_sin(degrees)
+    d = 1.0 - c
+    return (
+        (c + x * x * d, x * y * d - z * s, x * z * d + y * s),
+        (y * x * d + z * s, c + y * y * d, y * z * d - x * s),
+        (z * x * d - y * s, z * y * d + x * s, c + z * z * d),
+    )
+
+
+def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
+    """X' from the first point to the second, the third on the side of +Y', Z' by the right hand.
+
+    Only directions count. Raises NoFrameError where two points are one, or all three on one line.
+    """
+    u, v = minus(p2, p1), minus(p3, p1)
+    along, aside = math.hypot(*u), math.hypot(*v)
+    if along < SHORTEST:
+        raise NoFrameError("the first and the second point are the same")
+    if aside < SHORTEST:
+        raise NoFrameError("the first and the third point are the same")
+    x = scaled(u, 1.0 / along)
+    normal = cross(x, scaled(v, 1.0 / aside))
+    sine = math.hypot(*normal)
+    if sine < SMALLEST_SINE:
+        raise NoFrameError("the three points lie on one line")
+    z = scaled(normal, 1.0 / sine)
+    return transposed((x, cross(z, x), z))
+
+
+def from_spatial(a: float, b: float, c: float) -> Matrix:
+    """Turned by ``a`` about X, then ``b`` about Y, then ``c`` about Z, all of them the fixed axes."""
+    return product(turned(Z_AXIS, c), turned(Y_AXIS, b), turned(X_AXIS, a))
+
+
+def about_z(frame: Matrix) -> float:
+    """The angle of a frame that is turned about Z alone, in degrees, -180 to 180."""
+    return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

@@ -1,0 +1,137 @@
+"""A place on a line, and the words that can be taken from there. Case-blind; columns count from 1."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from core.language.diagnostics import ProgramError
+from core.language.klartext import faults
+from core.language.klartext.nodes import Value
+
+_NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
+_VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|Q\s*([0-9]+))(?![0-9A-Z.,])")
+_PLAIN = re.compile(rf"([+-]?)\s*({_NUMBER})(?![0-9.,])")
+_WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
+_QUOTED = re.compile(r'"([^"]*)"')
+_WORD = re.compile(r"[^\s]+")
+_HIGHEST_Q = 1999
+
+
+@lru_cache(maxsize=256)
+def _keyword(words: str) -> re.Pattern[str]:
+    """``TRANS DATUM`` with any blanks between, and no letter behind."""
+    return re.compile(r"\s+".join(map(re.escape, words.split())) + r"(?![A-Z])")
+
+
+class Cursor:
+    """Reads one line from left to right; ``upper`` is the line in capitals, of the same length."""
+
+    def __init__(self, line: int, text: str, at: int = 0) -> None:
+        self.line = line
+        self.text = text
+        self.upper = "".join(sign.upper() if sign.isascii() else sign for sign in text)
+        self.at = at
+        self.blanks()
+
+    @property
+    def column(self) -> int:
+        """Column of what comes next."""
+        return self.at + 1
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing is left."""
+        return self.at >= len(self.upper)
+
+    @property
+    def next_word(self) -> str:
+        """What comes next up to a blank, as written."""
+        match = _WORD.match(self.text, self.at)
+        return match.group() if match else ""
+
+    def blanks(self) -> None:
+        """Go to the next sign that is no blank."""
+        while self.at < len(self.upper) and self.upper[self.at].isspace():
+            self.at += 1
+
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+        """What the pattern matches here, and go behind it."""
+        match = pattern.match(self.upper, self.at)
+        if match is not None:
+            self.at = match.end()
+            self.blanks()
+        return match
+
+    def keyword(self, *choices: str) -> str | None:
+        """The first of the keywords that stands here; go behind it."""
+        for words in choices:
+            if self.take(_keyword(words)):
+                return words
+        return None
+
+    def rest(self) -> str:
+        """All that is left, as written."""
+        text = self.text[self.at :].strip()
+        self.at = len(self.upper)
+        return text
+
+    def value(self, what: str) -> Value:
+        """A signed number or Q parameter. Raises ProgramError naming ``what`` lacks one."""
+        column, match = self.column, self.take(_VALUE)
+        if match is None:
+            raise self.expected(f"{what} has no value", "Write a number such as +10, or a Q parameter.")
+        sign, number, q = match.groups()
+        if q is not None:
+            return Value(0.0, self._q(int(q) if len(q) <= 4 else _HIGHEST_Q + 1, column), sign == "-", column)
+        return Value(_number(sign, number), column=column)
+
+    def number(self, what: str) -> Value:
+        """A number; no Q parameter here."""
+        column, match = self.column, self.take(_PLAIN)
+        if match is None:
+            raise self.expected(f"{what} has no number", "Write a number.")
+        return Value(_number(*match.groups()), column=column)
+
+    def whole(self, what: str, most: int) -> int:
+        """A whole number without a sign, up to ``most``."""
+        column, match = self.column, self.take(_WHOLE)
+        if match is None:
+            raise self.expected(f"{what} needs a whole number")
+        digits = match.group()
+        if len(digits) > 9 or int(digits) > most:
+            text = f"{what} goes up to {most}."
+            raise faults.fault(self.line, column, faults.INPUT_VALUE, text, "Correct the number.")
+        return int(digits)
+
+    def name(self, what: str, most: int) -> int | str:
+        """A number, or a name in quotes."""
+        start = self.at
+        match = self.take(_QUOTED)
+        if match is None:
+            return self.whole(what, most)
+        name = self.text[start + 1 : start + len(match.group(1)) + 1]
+        if not name.strip():
+            raise faults.syntax(self.line, start + 1, f"{what} has an empty name.", "Write the name.")
+        return name
+
+    def expected(self, message: str, hint: str = "") -> ProgramError:
+        """A syntax error here, saying what stands in the place."""
+        here = f"; '{self.next_word}' stands here" if not self.done else "; the line ends here"
+        return faults.syntax(self.line, self.column, f"{message}{here}.", hint)
+
+    def parameter(self) -> int:
+        """The number of a Q parameter."""
+        column = self.column
+        return self._q(self.whole("Q", 9999), column)
+
+    def _q(self, number: int, column: int) -> int:
+        if number > _HIGHEST_Q:
+            text = f"Q parameters go up to Q{_HIGHEST_Q}."
+            raise faults.fault(self.line, column, faults.INPUT_VALUE, text, "Take another parameter.")
+        return number
+
+
+def _number(sign: str, digits: str) -> float:
+    number = float(digits.replace(",", "."))
+    return -number if sign == "-" and number else number

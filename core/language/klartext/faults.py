@@ -1,0 +1,40 @@
+"""Errors of Klartext. ``code`` is the name of the control's message where one is known."""
+
+from __future__ import annotations
+
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+
+SYNTAX = "Syntax error"
+NOT_SUPPORTED = "Not supported"
+TOOL_AXIS_MISSING = "Tool axis is missing"  # 1001
+FEED_MISSING = "Feed rate is missing"  # 1010
+INPUT_VALUE = "Input value incorrect"  # 1011
+ANGLE = "Entered angle not permitted"  # 1013
+CONTRADICTION = "Contradictory entry"  # 1016
+PLANE_WRONG = "Plane wrongly defined"  # 1018
+WRONG_AXIS = "Wrong axis programmed"  # 1019
+WRONG_RPM = "Wrong rpm"  # 1020
+PROGRAM_START = "Program start undefined"  # 1024
+NESTING = "Excessive nesting"  # 1025
+M128_ON = "PLANE not permitted with M128"
+NOT_WITH_M128 = "Not permitted with M128"
+LABEL = "Label not found"
+LABEL_TWICE = "Label defined twice"
+Q_UNDEFINED = "Q parameter not defined"
+
+
+def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
+    """The error to raise; the message begins with the code, which is what the control would show."""
+    text = message if message.startswith(code) else f"{code}: {message}"
+    return ProgramError(Diagnostic(line, column, Severity.ERROR, code, text, hint))
+
+
+def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError:
+    """What cannot be read, or is missing, by line and column."""
+    return fault(line, column, SYNTAX, message, hint)
+
+
+def unsupported(line: int, column: int, what: str) -> ProgramError:
+    """What the control may know and this one does not, by name."""
+    hint = "Program it with L moves and PLANE, or run the program on a control that has it."
+    return fault(line, column, NOT_SUPPORTED, f"{what} is not supported here.", hint)

@@ -1,0 +1,134 @@
+"""PLANE blocks: how the plane is told, and how the rotary axes are brought to it."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+
+from core.language.klartext import faults
+from core.language.klartext.cursor import Cursor
+from core.language.klartext.feeds import axis_words, doubled, feed, retract
+from core.language.klartext.nodes import AxisWord, Plane, Positioning
+
+POINT_WORDS = tuple(f"P{point}{axis}" for point in "123" for axis in "XYZ")
+SPATIAL_WORDS = ("SPA", "SPB", "SPC")
+_OUTSIDE = ("EULER", "PROJECTED", "VECTOR")
+_WAYS = ("MOVE", "TURN", "STAY")
+_POINT = re.compile(r"(P[123][XYZ])(?=[\s+\-0-9.,Q]|$)")
+_SPATIAL = re.compile(r"(SP[ABC])(?=[\s+\-0-9.,Q]|$)")
+_SIDE = re.compile(r"(SYM|SEQ)\s*([+-])")
+_ROTATION = re.compile(r"(COORD|TABLE)\s+ROT(?![A-Z])")
+
+
+def plane(cursor: Cursor, column: int) -> Plane:
+    """Behind ``PLANE``. Raises ProgramError for what is missing, unknown, doubled or out of the subset."""
+    form = cursor.keyword("AXIAL", "POINTS", "SPATIAL", "RELATIV", "RESET")
+    if form is None:
+        for name in _OUTSIDE:
+            if cursor.keyword(name):
+                raise faults.unsupported(cursor.line, column, f"PLANE {name}")
+        raise cursor.expected("PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET")
+    words = _WORDS[form](cursor) if form in _WORDS else ()
+    return Plane(form, words, _positioning(cursor, form), column)
+
+
+def _axial(cursor: Cursor) -> tuple[AxisWord, ...]:
+    words = axis_words(cursor, "ABC")
+    if not words:
+        raise cursor.expected("PLANE AXIAL needs an axis angle", "Write A, B or C with its angle.")
+    return words
+
+
+def _points(cursor: Cursor) -> tuple[AxisWord, ...]:
+    return _all_of(cursor, POINT_WORDS, _named(cursor, _POINT))
+
+
+def _spatial(cursor: Cursor) -> tuple[AxisWord, ...]:
+    return _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL))
+
+
+def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
+    words = _named(cursor, _SPATIAL)
+    if len(words) != 1:
+        column = words[1].column if words else cursor.column
+        text = "PLANE RELATIV takes one of SPA, SPB and SPC."
+        raise faults.syntax(cursor.line, column, text, "Write one angle.")
+    return words
+
+
+_WORDS = {"AXIAL": _axial, "POINTS": _points, "SPATIAL": _spatial, "RELATIV": _relative}
+
+
+def _named(cursor: Cursor, pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:
+    found: dict[str, AxisWord] = {}
+    while True:
+        column, match = cursor.column, cursor.take(pattern)
+        if match is None:
+            return tuple(found.values())
+        name = match.group(1)
+        if name in found:
+            raise doubled(cursor, column, name)
+        found[name] = AxisWord(name, cursor.value(name), column=column)
+
+
+def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
+    """The words in the order of the manual; every one must be there."""
+    found = {word.axis: word for word in words}
+    missing = [name for name in names if name not in found]
+    if missing:
+        verb = "are" if len(missing) > 1 else "is"
+        raise cursor.expected(f"{', '.join(missing)} {verb} missing", "All of them are needed, zeros too.")
+    return tuple(found[name] for name in names)
+
+
+def _positioning(cursor: Cursor, form: str) -> Positioning:
+    way = cursor.keyword(*_WAYS)
+    if way is None:
+        if form == "RESET" and cursor.done:
+            return Positioning()
+        raise cursor.expected("MOVE, TURN or STAY is missing", "Say how the rotary axes are positioned.")
+    made = Positioning(way)
+    while not cursor.done:
+        column = cursor.column
+        name, change = _word(cursor, form)
+        ((key, value),) = change.items()
+        if getattr(made, key):
+            raise doubled(cursor, column, _KINDS[key])
+        _demand_fits(cursor, way, key, name, column)
+        made = dataclasses.replace(made, **{key: value})
+    return made
+
+
+_KINDS = {
+    "distance": "DIST",
+    "retract": "MB",
+    "feed": "F",
+    "side": "SYM or SEQ",
+    "rotation": "COORD ROT or TABLE ROT",
+}
+
+
+def _word(cursor: Cursor, form: str) -> tuple[str, dict[str, object]]:
+    """The next word behind the way of positioning, by the field that it fills."""
+    if form != "RESET":
+        if side := cursor.take(_SIDE):
+            return side.group(1), {"side": "".join(side.groups())}
+        if rotation := cursor.take(_ROTATION):
+            return rotation.group(1), {"rotation": f"{rotation.group(1)} ROT"}
+    if cursor.keyword("DIST"):
+        return "DIST", {"distance": cursor.number("DIST")}
+    if way := retract(cursor):
+        return "MB", {"retract": way}
+    if speed := feed(cursor):
+        return "F", {"feed": speed}
+    if way := cursor.keyword(*_WAYS):
+        raise cursor.expected(f"{way} stands behind another way of positioning", "Take one out.")
+    raise cursor.expected("No word of a PLANE block")
+
+
+def _demand_fits(cursor: Cursor, way: str, key: str, name: str, column: int) -> None:
+    """STAY moves nothing, and only MOVE has a pivot."""
+    if key == "distance" and way != "MOVE":
+        raise faults.syntax(cursor.line, column, f"{name} belongs to MOVE, not to {way}.", "Take it out.")
+    if key in {"retract", "feed"} and way == "STAY":
+        raise faults.syntax(cursor.line, column, f"STAY moves nothing: no {name} here.", "Take it out.")
