@@ -50,14 +50,18 @@ class Modal(NamedTuple):
     c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
     c_rpm: float | None = None  # S beside M19 or a C word, unsigned
     offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
+    settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
+    zero_x: float = 0.0  # SINUMERIK: settable and programmed offsets together, mm; those of C are in offset_c
+    zero_z: float = 0.0
+    wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
     @property
     def offset_x(self) -> float:
         """Machine X minus program X, mm."""
-        return self.tool_x + self.shift_x + self.preset_x
+        return self.tool_x + self.shift_x + self.preset_x + self.zero_x
 
     @property
     def offset_z(self) -> float:
         """Machine Z minus program Z, mm."""
-        return self.tool_z + self.shift_z + self.preset_z
+        return self.tool_z + self.shift_z + self.preset_z + self.zero_z

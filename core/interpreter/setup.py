@@ -25,6 +25,15 @@ class SecondaryOffset:
 
 
 @dataclass(frozen=True, slots=True)
+class ZeroOffset:
+    """A settable offset, G54 to G59: machine position of the program's zero; mm, X a radius, degrees."""
+
+    x: float = 0.0
+    z: float = 0.0
+    c: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class ControlLimits:
     """What words may ask for; from the machine file."""
 
@@ -40,6 +49,10 @@ class ControlLimits:
     c_max_rpm: float = 200.0
     c_accel: float = 3600.0  # degrees/s²
     c_step: float = 0.02  # degrees
+    c_modulo: bool = True  # SINUMERIK counts C 0..<360, else -360..+360
+    c_own_drive: bool = False  # C is no second use of the spindle, which may turn meanwhile
+    spindle_controlled: bool = True  # S is obeyed, and the control knows the speed
+    speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)  # of X, Z and C at most: mm/s, degrees/s
 
 
 def _no_inputs(_terminal: str) -> bool:
@@ -57,6 +70,7 @@ class Setup:
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
+    zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; one that is missing is all 0
     limits: ControlLimits = field(default_factory=ControlLimits)
     block_delete: bool = False
     strict: bool = False

@@ -21,11 +21,15 @@ _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 @dataclass(frozen=True)
 class Source:
-    """Program text. ``name`` is what messages and the screen call it; ``said`` its dialect, where told."""
+    """Program text. ``name`` is what messages and the screen call it; ``said`` its dialect, where told.
+
+    ``subprograms`` are the files that it calls, read at the same time as it was: what was proved is what runs.
+    """
 
     name: str
     text: str
     said: Dialect | None = None
+    subprograms: tuple[Source, ...] = ()
 
     @property
     def dialect(self) -> Dialect:
