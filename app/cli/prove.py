@@ -60,7 +60,8 @@ def _sheet(path: Path, report: Report) -> str:
     findings = "".join(f"{d.shown(str(path))}\n" for d in report.diagnostics)
     times, reach = report.times, report.reach
     tools = " ".join(f"T{n}" for n in report.tools) or "no tool"
-    verdict = f"{len(report.errors)} errors: will not run" if report.errors else "proved"
+    count = len(report.errors)
+    verdict = f"{count} error{'s' * (count > 1)}: will not run" if count else "proved"
     return findings + (
         f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
         f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"

@@ -50,10 +50,12 @@ class _Finder:
             self._close_subroutine(made)
         elif self._ended and self._inside is None:
             self._unreachable(made)
-        elif made.flow == "LS":
+        elif made.flow == "LS" or _unread(made, "LS"):
             self._loops.append(made)
         elif made.flow == "LF":
             self._close_loop(made)
+        elif _unread(made, "LF") and self._loops:
+            self._loops.pop()
         elif self._inside is None and ends_job:
             self._end_main(made.line)
 
@@ -130,6 +132,8 @@ class _Finder:
 
     def _unclosed_loops(self) -> None:
         for made in self._loops:
+            if made.flow == UNREADABLE:
+                continue  # told already
             self._refuse(made, "loop-open", f"{made.text} has no LF.", "Add LF where the loop ends.")
         self._loops.clear()
 
@@ -162,6 +166,11 @@ class _Finder:
 
     def _refuse(self, made: Statement, code: str, text: str, hint: str) -> None:
         self.problems.append(Diagnostic(made.line, 1, Severity.ERROR, code, text, hint))
+
+
+def _unread(made: Statement, word: str) -> bool:
+    """Whether this line was meant to begin or end a loop: what it belongs to is no second mistake."""
+    return made.flow == UNREADABLE and made.text.lstrip(" /").upper().startswith(word)
 
 
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:

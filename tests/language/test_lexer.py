@@ -98,6 +98,8 @@ REFUSED = [
     ("W", 1, "unknown-letter"),
     ("N10G90", 1, "n-word"),
     ("X1,5", 3, "comma"),
+    ("X,5", 2, "comma"),
+    ("G01Z,125F2", 5, "comma"),
     (",", 1, "comma"),
     ("X1.2.3", 5, "two-points"),
     ("X..5", 1, "lone-point"),

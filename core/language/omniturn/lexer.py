@@ -142,6 +142,8 @@ class _Scanner:
         follower = text[end : end + 1]
         if follower == "O":
             return self._letter_o(end)
+        if follower == ",":
+            return self._skip(end, after_number=False)
         column = self._column(match.start())
         self._errors.append(faults.no_number(self._number, column, letter, follower))
         skipped = _TO_NEXT_LETTER.match(text, end)
