@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.executor.job import Job, Proof
+from core.executor.snapshot import Starts
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 
 
@@ -111,6 +112,19 @@ class ForceOutput:
     on: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Prepare:
+    """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
+
+    ``Starts.LINE`` without a job: MDI is open and no line is ready, so that nothing starts. Refused while
+    something is under way.
+    """
+
+    starts: Starts = Starts.PROGRAM
+    job: Job | None = None
+    proof: Proof | None = None
+
+
 Command = (
     LoadJob
     | GiveProof
@@ -127,4 +141,5 @@ Command = (
     | UseOffsets
     | SpindleStop
     | ForceOutput
+    | Prepare
 )

@@ -10,19 +10,15 @@ from core.executor.bench import Bench
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.homing import Homing
-from core.executor.inherited import as_it_is, at_power_up, given_up
-from core.executor.interpret import circumstances
+from core.executor.inherited import at_power_up
 from core.executor.job import Job
 from core.executor.jog import Jogger
-from core.executor.player import Player
+from core.executor.rounds import Rounds
 from core.executor.snapshot import Event, State
-from core.executor.standing import Counters, Standing
 from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
-from core.interpreter.actions import ProgramEnd
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
-from core.motion.limits import MotionLimits
 
 
 class Conductor:
@@ -30,23 +26,24 @@ class Conductor:
 
     def __init__(self, bench: Bench, passes: Callable[[Job, Setup], Pass]) -> None:
         self._bench = bench
-        self._passes = passes
-        self.standing = Standing(modal=at_power_up(bench))
-        self.counters = Counters()
-        self.cycle: Cycle | None = None
+        self.rounds = Rounds(bench, passes, self.enter)
+        self.standing = self.rounds.standing
+        self.standing.modal = at_power_up(bench)
+        self.counters = self.rounds.counters
         self.supervisor = Supervisor(bench)
         self.jogger = Jogger(bench)
         self.homing = Homing(bench)
-        machine = bench.machine
-        self._player = Player(
-            bench.ports.axes, MotionLimits.of(machine.axes, machine.timing.setpoint), machine.timing.lookahead
-        )
         self._giving_up = False
 
     @property
     def state(self) -> State:
         """The present state."""
         return self.standing.state
+
+    @property
+    def cycle(self) -> Cycle | None:
+        """The cycle under way, if any."""
+        return self.rounds.cycle
 
     @property
     def modal(self) -> Modal:
@@ -71,8 +68,8 @@ class Conductor:
         if state in STOPPED and cycle is not None:
             if not self.refuse(gate.busy(self._bench) or cycle.why_not_on()):
                 cycle.go_on()
-        elif not self.refuse(gate.refusal(self._bench, state, self.standing.job, self.standing.proof)):
-            self._begin()
+        elif not self.refuse(self.rounds.refusal(state)):
+            self.rounds.begin()
 
     def refuse(self, why: str) -> bool:
         """Keep and log why a start is refused; False when there is no reason."""
@@ -111,7 +108,7 @@ class Conductor:
         if pressed and self.state is not State.ESTOP:
             self.supervisor.react(Reaction.OFF)
             self._giving_up = False
-            self._forget_cycle()
+            self.rounds.forget()
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
             self.enter(State.DISABLED)
@@ -120,8 +117,7 @@ class Conductor:
 
     def go_on(self) -> None:
         """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
-        if self.cycle is None:
-            self.standing.modal = as_it_is(self.standing.modal, self._bench)
+        self.rounds.look()
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
                 self._leave()
@@ -136,67 +132,16 @@ class Conductor:
 
     def _mind_the_queue(self, cycle: Cycle) -> None:
         """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
-        left = self._player.starving - self._bench.now
-        if self._player.active and left < self._bench.machine.timing.low_water:
+        player = self.rounds.player
+        left = player.starving - self._bench.now
+        if player.active and left < self._bench.machine.timing.low_water:
             self.counters.underruns += 1
             self._bench.say("starved", "setpoints ran low; the slides stop on the path")
             cycle.starve()
 
-    # --- the cycle ----------------------------------------------------------------------------------------
-
-    def _begin(self) -> None:
-        job = self.standing.job
-        assert job is not None
-        self.counters.cycle = 0.0
-        self._open(job)
-        self.enter(State.RUN)
-        self._bench.say("start", job.source.name)
-
-    def _open(self, job: Job) -> None:
-        """A pass from the first line, from where the slides stand now; nothing is kept of an earlier one."""
-        at, _ = self._bench.ports.axes.demand_at(self._bench.now)
-        setup = circumstances(job.setup, tuple(at), self._bench.terminal)
-        self._player.forget()
-        source = self._passes(job, setup)
-        begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
-        self.cycle = Cycle(self._bench, self._player, source, begins, self.enter, self._ended)
-
-    def _ended(self, end: ProgramEnd) -> None:
-        """M30 and M02: one part more; M30 also ends what M functions have begun."""
-        counters, job, bench = self.counters, self.standing.job, self._bench
-        counters.parts += 1
-        counters.last_cycle, counters.cycle = counters.cycle, 0.0
-        bench.say("part", f"part {counters.parts}, {counters.last_cycle:.2f} s")
-        if end.reset:
-            bench.spindle.stop()
-            for name, on in bench.ports.io.outputs().items():
-                if on and name != "collet":
-                    bench.ports.io.write(name, False)
-        if end.reset and bench.switches.cycle_repeat and job is not None:
-            self._open(job)
-            return
-        bench.say("end", "program end")
-        left = self.cycle.modal if self.cycle is not None else self.standing.modal
-        self._forget_cycle()
-        self.standing.modal = left
-        self.enter(State.IDLE)
-
     def _leave(self) -> None:
-        """A cycle that was reset is over as soon as the slides rest."""
-        if self.cycle is None or not self.cycle.at_rest:
-            return
-        self._giving_up = False
-        self._forget_cycle()
-        self.enter(State.IDLE)
-        self._bench.say("end", "program given up by reset")
-
-    def _forget_cycle(self) -> None:
-        """What it leaves in force is what M30 would have left."""
-        if self.cycle is not None:
-            self.standing.modal = given_up(self.cycle.modal)
-        self.cycle = None
-        self._bench.line = 0
-        self._player.forget()
+        if self.rounds.leave():
+            self._giving_up = False
 
     def _stop_homing(self) -> None:
         self.homing.stop()
@@ -214,7 +159,7 @@ class Conductor:
         self.supervisor.react(reaction)
         self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
         self._giving_up = False
-        self._forget_cycle()
+        self.rounds.forget()
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
         bench.on_event(Event(bench.now, "alarm", f"{alarm.text}: {alarm.cause}", alarm.line))
@@ -228,7 +173,7 @@ class Conductor:
     def shut(self) -> None:
         """Nothing is left moving or switched on."""
         self.supervisor.react(Reaction.OFF)
-        self._forget_cycle()
+        self.rounds.forget()
         if self.state is not State.ESTOP:
             self.standing.state = State.DISABLED
 

@@ -36,13 +36,14 @@ class Cycle:
         source: Pass,
         begins: Modal,
         enter: Callable[[State], None],
-        ended: Callable[[ProgramEnd], None],
+        ended: Callable[[ProgramEnd | None], None],
     ) -> None:
         self._bench = bench
         self._player = player
         self._mover = Mover(bench, player)
         self._enter = enter
         self._ended = ended
+        self._needs_end = source.left is None
         self._feed = BlockFeed(source, lambda block: check_block(block, bench.machine))
         self._state = State.RUN
         self._wait: Wait | None = None
@@ -191,6 +192,8 @@ class Cycle:
             return self._act(feed.stop)
         elif feed.trouble is not None:
             raise feed.trouble
+        elif feed.ended and not self._needs_end:
+            self._ended(None)
         elif feed.ended:
             raise TroubleError("program", "the program ends without M30 or M02")
         return False

@@ -10,15 +10,20 @@ from typing import NamedTuple
 from core.executor.alarms import TroubleError
 from core.geometry.arcs import arc_length
 from core.interpreter.actions import SpindleRun
+from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block, Kind
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
 
 class Pass(NamedTuple):
-    """One pass through a program: its blocks as they come, and what the interpreter has to say so far."""
+    """One pass through a program: its blocks as they come, and what the interpreter has to say so far.
+
+    ``left`` tells what a line of MDI leaves to the next one; a program has none, it ends with M30 or M02.
+    """
 
     blocks: Iterator[Block]
     problems: Callable[[], Sequence[Diagnostic]]
+    left: Callable[[], Checkpoint] | None = None
 
 
 def needs_speed(block: Block) -> bool:

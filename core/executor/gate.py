@@ -22,8 +22,8 @@ def busy(bench: Bench) -> str:
     return bench.heard.trouble.lower()
 
 
-def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) -> str:
-    """Why Cycle Start does nothing now; empty when it may start."""
+def hindrance(bench: Bench, state: State) -> str:
+    """What keeps any cycle from being started at this machine now."""
     if state in _BUSY:
         return _BUSY[state]
     if busy(bench):
@@ -31,7 +31,12 @@ def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) ->
     away = [a.name for a, homed in zip(bench.machine.axes, bench.sample.homed, strict=True) if not homed]
     if away:
         return f"{', '.join(away)} must be homed first"
-    return _program(job, proof)
+    return ""
+
+
+def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) -> str:
+    """Why this job may not be started now; empty when it may."""
+    return hindrance(bench, state) or _program(job, proof)
 
 
 def _program(job: Job | None, proof: Proof | None) -> str:

@@ -20,6 +20,11 @@ def given_up(modal: Modal) -> Modal:
     return after_end(modal, modal.rpm, reset=True)
 
 
+def interrupted(modal: Modal) -> Modal:
+    """A line of MDI that was reset, or ended by an alarm, leaves its modes; nothing holds C any more."""
+    return modal._replace(c_locked=False, c_rpm=None)
+
+
 def as_it_is(modal: Modal, bench: Bench) -> Modal:
     """M functions as they are at the machine: an alarm, a reset or a hand may have switched them since.
 

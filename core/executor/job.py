@@ -17,6 +17,7 @@ class Job:
     setup: Setup
     digest: str
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
+    part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ class Proof:
     tools: tuple[int, ...] = ()  # offsets the program asks for
 
 
-def make_job(source: Source, setup: Setup) -> Job:
+def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
     """The job of this program under these circumstances.
 
     The digest covers all that the elementary blocks depend on except live inputs and where the slides stand.
@@ -42,7 +43,8 @@ def make_job(source: Source, setup: Setup) -> Job:
         (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
+        (setup.begin.key if setup.begin else "", part_of),
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     text.update(repr(circumstances).encode())
-    return Job(source, setup, text.hexdigest(), frozenset(setup.tools))
+    return Job(source, setup, text.hexdigest(), frozenset(setup.tools), part_of)

@@ -18,6 +18,7 @@ from core.executor.commands import (
     Jog,
     JogStop,
     LoadJob,
+    Prepare,
     Reset,
     SetSwitch,
     SpindleLimit,
@@ -25,8 +26,8 @@ from core.executor.commands import (
     UseOffsets,
 )
 from core.executor.conductor import Conductor
+from core.executor.loading import Loading
 from core.executor.snapshot import State
-from core.executor.states import CYCLE
 from core.executor.station_watch import StationWatch
 
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat")
@@ -40,6 +41,7 @@ class Orders:
         self._conductor = conductor
         self._station = station
         self._by_hand = ByHand(bench, conductor)
+        self._loading = Loading(bench, conductor)
         self._simple: dict[type[Command], Callable[[], None]] = {
             CycleStart: self._start,
             FeedHold: self._hold,
@@ -55,10 +57,8 @@ class Orders:
             simple()
             return
         match command:
-            case LoadJob():
-                self._load(command)
-            case GiveProof(proof=proof):
-                self._conductor.standing.proof = proof
+            case LoadJob() | GiveProof() | Prepare():
+                self._loading.obey(command)
             case SetSwitch(name=name, on=on):
                 self._switch(name, on)
             case FeedOverride(fraction=fraction):
@@ -82,17 +82,6 @@ class Orders:
 
     def _hold(self) -> None:
         self._conductor.feed_hold("")
-
-    def _load(self, command: LoadJob) -> None:
-        conductor = self._conductor
-        if conductor.state in CYCLE:
-            self._bench.say(
-                "refused", "a program is under way: it must end or be reset before another is loaded"
-            )
-            return
-        conductor.standing.job, conductor.standing.proof = command.job, command.proof
-        conductor.standing.start_refused = ""
-        self._bench.say("load", command.job.source.name)
 
     def _enable(self) -> None:
         conductor = self._conductor

@@ -67,6 +67,9 @@ class Publisher:
             underruns=counters.underruns,
             max_following_error=conductor.supervisor.max_following_error,
             proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
+            starts=standing.starts,
+            prepared=standing.prepared.digest if standing.prepared else "",
+            tool_open=standing.tool_open,
             start_refused=standing.start_refused,
         )
 

@@ -25,6 +25,14 @@ class State(StrEnum):
     FAULT = "ALARM"
 
 
+class Starts(StrEnum):
+    """What Cycle Start begins."""
+
+    PROGRAM = "program"
+    LINE = "line"
+    RESTART = "restart"
+
+
 @dataclass(frozen=True, slots=True)
 class Alarm:
     """Text, cause, what to do, and the line that was running (0: none)."""
@@ -83,6 +91,9 @@ class Snapshot:
     underruns: int = 0
     max_following_error: float = 0.0
     proof_wanted: bool = False  # a job is loaded that no proof covers
+    starts: Starts = Starts.PROGRAM  # what Cycle Start begins
+    prepared: str = ""  # digest of the line or restart that Cycle Start would begin
+    tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     start_refused: str = ""  # why the last Cycle Start did nothing
 
     @property

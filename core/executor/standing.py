@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from core.executor.job import Job, Proof
-from core.executor.snapshot import Alarm, State
+from core.executor.snapshot import Alarm, Starts, State
 from core.interpreter.modal import Modal
 
 
@@ -29,4 +29,8 @@ class Standing:
     alarms: tuple[Alarm, ...] = ()
     power_off: bool = False  # an alarm has switched the drives off
     start_refused: str = ""
+    starts: Starts = Starts.PROGRAM
+    prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
+    prepared_proof: Proof | None = None
+    tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     modal: Modal = field(default_factory=Modal)  # in force while no program is under way

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
+from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.modal import Modal
 from core.interpreter.refused import Refused
@@ -49,6 +50,15 @@ class Interpretation(Protocol):
         ...
 
 
+class Line(Interpretation, Protocol):
+    """One line of MDI."""
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What the next line inherits."""
+        ...
+
+
 def _omniturn(source: Source, setup: Setup) -> Interpretation:
     if len(setup.start) != _LATHE_AXES:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
@@ -56,7 +66,17 @@ def _omniturn(source: Source, setup: Setup) -> Interpretation:
     from core.interpreter.program import read_program
     from core.interpreter.run import Interpreter
 
+    if setup.begin is not None and setup.begin.single:
+        return line_alone(source, setup)
     return Interpreter(read_program(source, setup.strict), setup)
+
+
+def line_alone(source: Source, setup: Setup) -> Line:
+    """One line of MDI, beginning with what ``setup.begin`` says; MDI speaks OmniTurn alone."""
+    from core.interpreter.run import Interpreter
+    from core.interpreter.single import read_single
+
+    return Interpreter(read_single(source), setup)
 
 
 # A language is loaded when a program of it is: the others cost nothing.

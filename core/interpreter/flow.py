@@ -25,6 +25,10 @@ class Flow:
         """Whether the place is in a subroutine."""
         return bool(self._calls)
 
+    def until(self, line: int) -> None:
+        """Let the main program end before this line, counted from 1."""
+        self.end = min(line - 1, self._structure.main_end)
+
     def steer(self, made: Statement) -> None:
         """Follow a line that steers. Raises ProgramError for calls nested too deep."""
         flow = made.flow

@@ -95,7 +95,8 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
     """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
-        text = f"The first move after the T on line {tool_line} lacks {'X' if x is None else 'Z'}."
+        where = f"the T on line {tool_line}" if tool_line > 0 else "the T"
+        text = f"The first move after {where} lacks {'X' if x is None else 'Z'}."
         raise ProgramError(refusal(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it."))
 
 

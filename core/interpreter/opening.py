@@ -14,7 +14,9 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
     """Number of the first line to execute (0: none), and whether the program is too large to be begun."""
     log = state.log
     check_m_codes(state, program.m_codes)
-    first = _first_line(program, log, block_delete=state.setup.block_delete)
+    begin = state.setup.begin
+    alone = begin is not None and begin.single
+    first = 0 if alone else _first_line(program, log, block_delete=state.setup.block_delete)
     large = refuse_too_large(program, state.setup.inputs)
     if large is not None:
         log.add(large)

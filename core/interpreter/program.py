@@ -53,11 +53,11 @@ class _Reader:
         append = self.steps.append
         for text in self.source.lines:
             move = read_move(text)
-            append(self._statement(text) if move is None or self._plane else move)
+            append(self.statement(text) if move is None or self._plane else move)
         if self._plane:
             self._plane_open(self._plane)
 
-    def _statement(self, text: str) -> Statement | None:
+    def statement(self, text: str) -> Statement | None:
         number = len(self.steps) + 1
         if not text or text.isspace():
             self.style.tell("blank-line", number)
@@ -114,7 +114,7 @@ def read_program(source: Source, strict: bool = False) -> Program:
         ]
     reader.style.look_at_file(source)
     problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
-    if not any(fault.code in {"after-end", "no-end"} for fault in faults):
+    if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
         problems += _beyond_the_end(reader.steps, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
     return Program(
@@ -126,6 +126,14 @@ def read_program(source: Source, strict: bool = False) -> Program:
         names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
         m_codes=tuple(made for made in reader.statements if made.m not in {None, *codes.M_KNOWN}),
     )
+
+
+def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
+    """One line of a text on its own, and what is wrong with it; None for an empty one."""
+    reader = _Reader(Source("", text), strict=False)
+    reader.steps = [None] * (number - 1)
+    made = reader.statement(text)
+    return made, reader.problems
 
 
 def _executable(reader: _Reader) -> int:

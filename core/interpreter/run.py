@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
 from core.interpreter import codes
 from core.interpreter.actions import AskInput, ProgramEnd
+from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import looks_ahead
 from core.interpreter.count import MOST_BLOCKS, MOST_LINES, takes_call, terminal
@@ -19,6 +21,7 @@ from core.interpreter.opening import check_opening
 from core.interpreter.plain import plain
 from core.interpreter.program import Program
 from core.interpreter.reading import statement
+from core.interpreter.resume import checkpoint_of, restore, way_blocks
 from core.interpreter.setup import Setup
 from core.interpreter.shaper import Shaper
 from core.interpreter.spindle import rpm_at
@@ -46,6 +49,9 @@ class Interpreter:
         self._flow = Flow(program)
         self._stopped = False  # an error has been met: no more blocks
         self._first, self._refused = check_opening(self._state, program)
+        if setup.begin is not None:
+            restore(self._state, setup.begin)
+            self._flow.at = setup.begin.line - 1
 
     @property
     def source_blocks(self) -> int:
@@ -83,15 +89,29 @@ class Interpreter:
         At the first error the blocks end. What is left of the program is then still gone through for its
         errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
         """
-        for block in self._pass():
+        for block in chain(self._way(), self._pass()):
             if not self._stopped:
                 yield block
             elif to_first_error:
                 return
 
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What the line inherits that would be executed next."""
+        return checkpoint_of(self._state)
+
+    def _way(self) -> Iterator[Block]:
+        begin = self._state.setup.begin
+        return iter(()) if begin is None or self._refused else way_blocks(self._state, begin)
+
     def _pass(self) -> Iterator[Block]:
         if self._refused:
             return
+        yield from self._lines()
+        yield from self._held_back(self._shaper.end())
+        warn_of_idle_shifts(self._state)
+
+    def _lines(self) -> Iterator[Block]:
         steps, flow, state = self._program.steps, self._flow, self._state
         lines = self._program.source.lines
         left = MOST_LINES
@@ -117,8 +137,6 @@ class Interpreter:
                     yield from self._statement(step)
             except ProgramError as problem:
                 self._recover(problem, step)
-        yield from self._held_back(self._shaper.end())
-        warn_of_idle_shifts(state)
 
     def _statement(self, made: Statement) -> Iterator[Block]:
         contour = self._contour(made) if made.one_shot in codes.CONTOUR_CYCLES else ()

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from core.interpreter.begin import Begin
+
 
 @dataclass(frozen=True, slots=True)
 class ToolOffset:
@@ -65,7 +67,7 @@ class Setup:
 
     ``start`` is the machine position of all axes (on a lathe x, z, c) before the first block; ``metric`` and
     ``last_rapid`` what the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a
-    PLC input ``"10"``.
+    PLC input ``"10"``. ``begin`` is there where a pass does not begin with the first line of a program.
     """
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
@@ -78,3 +80,4 @@ class Setup:
     metric: bool = False
     last_rapid: float = 100 * 25.4 / 60  # mm/s
     inputs: Callable[[str], bool] = _no_inputs
+    begin: Begin | None = None

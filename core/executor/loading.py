@@ -1,0 +1,43 @@
+"""What Cycle Start will begin: a program with its proof, a restart in it, or a line of MDI."""
+
+from __future__ import annotations
+
+from core.executor.bench import Bench
+from core.executor.commands import GiveProof, LoadJob, Prepare
+from core.executor.conductor import Conductor
+from core.executor.snapshot import Starts
+from core.executor.states import CYCLE
+
+_UNDER_WAY = "a program is under way: it must end or be reset before another is loaded"
+
+
+class Loading:
+    """Obeys these commands, on the executor's thread; what it refuses it says."""
+
+    def __init__(self, bench: Bench, conductor: Conductor) -> None:
+        self._bench = bench
+        self._conductor = conductor
+
+    def obey(self, command: LoadJob | GiveProof | Prepare) -> None:
+        """Do it, or say why not."""
+        if isinstance(command, GiveProof):
+            self._conductor.standing.proof = command.proof
+        elif self._conductor.state in CYCLE:
+            self._bench.say("refused", _UNDER_WAY)
+        elif isinstance(command, LoadJob):
+            self._load(command)
+        else:
+            self._prepare(command)
+
+    def _load(self, command: LoadJob) -> None:
+        """A restart belonged to the program before; an open MDI stays open."""
+        standing = self._conductor.standing
+        standing.job, standing.proof, standing.start_refused = command.job, command.proof, ""
+        if standing.starts is Starts.RESTART:
+            self._prepare(Prepare())
+        self._bench.say("load", command.job.source.name)
+
+    def _prepare(self, command: Prepare) -> None:
+        standing = self._conductor.standing
+        standing.starts, standing.start_refused = command.starts, ""
+        standing.prepared, standing.prepared_proof = command.job, command.proof

@@ -1,0 +1,55 @@
+"""What Cycle Start begins: the program, a restart in it, or a line of MDI; and why it may not."""
+
+from __future__ import annotations
+
+from core.executor import gate
+from core.executor.bench import Bench
+from core.executor.inherited import as_it_is
+from core.executor.job import Job
+from core.executor.snapshot import Starts, State
+from core.executor.standing import Standing
+
+_SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
+
+
+def job_of(standing: Standing) -> Job | None:
+    """The job that Cycle Start would begin."""
+    return standing.job if standing.starts is Starts.PROGRAM else standing.prepared
+
+
+def refusal(bench: Bench, state: State, standing: Standing) -> str:
+    """Why Cycle Start does nothing now; empty when it may start."""
+    job, proof = job_of(standing), standing.proof
+    if standing.starts is not Starts.PROGRAM:
+        proof = standing.prepared_proof
+    if standing.starts is Starts.LINE and job is None:
+        return gate.hindrance(bench, state) or "no line is ready: type one and press Enter"
+    return gate.refusal(bench, state, job, proof) or (_moved(bench, job) or _changed(bench, standing, job))
+
+
+def _moved(bench: Bench, job: Job | None) -> str:
+    if job is None or job.setup.begin is None:
+        return ""
+    at, _ = bench.ports.axes.demand_at(bench.now)
+    away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
+    if away <= _SAME:
+        return ""
+    again = "press Enter again" if job.setup.begin.single else "search for the line again"
+    return f"the slides have moved since this was proved: {again}"
+
+
+def _changed(bench: Bench, standing: Standing, job: Job | None) -> str:
+    """Whether what the line or the restart was proved for is still so."""
+    begin = job.setup.begin if job is not None else None
+    if job is None or begin is None:
+        return ""
+    now, wanted = as_it_is(standing.modal, bench), begin.checkpoint.modal
+    if begin.single:
+        same = now == wanted
+        return "" if same else "the state has changed since the line was proved: press Enter again"
+    if standing.job is None or standing.job.digest != job.part_of:
+        return "the program was loaded anew: search for the line again"
+    if now.collet_closed != wanted.collet_closed:
+        is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
+        return f"the collet is {is_now} and must be {must} at line {begin.line}: use MDI"
+    return ""

@@ -1,0 +1,137 @@
+"""Passes through programs and lines of MDI, one at a time: begun, repeated, ended, given up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.executor import prepared
+from core.executor.bench import Bench
+from core.executor.cycle import Cycle
+from core.executor.feed import Pass
+from core.executor.inherited import as_it_is, given_up, interrupted
+from core.executor.interpret import circumstances
+from core.executor.job import Job
+from core.executor.player import Player
+from core.executor.snapshot import Starts, State
+from core.executor.standing import Counters, Standing
+from core.interpreter.actions import ProgramEnd
+from core.interpreter.modal import Modal
+from core.interpreter.setup import Setup
+from core.motion.limits import MotionLimits
+
+
+class Rounds:
+    """The cycle under way, if any, and what stands between two of them. On the executor's thread alone."""
+
+    def __init__(
+        self, bench: Bench, passes: Callable[[Job, Setup], Pass], enter: Callable[[State], None]
+    ) -> None:
+        self._bench = bench
+        self._passes = passes
+        self._enter = enter
+        machine = bench.machine
+        limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
+        self.player = Player(bench.ports.axes, limits, machine.timing.lookahead)
+        self.standing = Standing()
+        self.counters = Counters()
+        self.cycle: Cycle | None = None
+        self._source: Pass | None = None
+        self._line = False  # what is under way is a line of MDI
+
+    def refusal(self, state: State) -> str:
+        """Why what Cycle Start would begin may not begin; empty when it may."""
+        return prepared.refusal(self._bench, state, self.standing)
+
+    def begin(self) -> None:
+        """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
+        standing, bench = self.standing, self._bench
+        job = prepared.job_of(standing)
+        assert job is not None
+        self.counters.cycle = 0.0
+        self._line = standing.starts is Starts.LINE
+        if standing.starts is Starts.RESTART:
+            standing.starts = Starts.PROGRAM
+        standing.prepared = standing.prepared_proof = None
+        self._open(job)
+        self._enter(State.RUN)
+        bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
+        begin = job.setup.begin
+        if begin is not None and not begin.single:
+            bench.say("restart", f"from line {begin.line}")
+
+    def leave(self) -> bool:
+        """A cycle that was reset is over as soon as the slides rest; True once it is."""
+        if self.cycle is None or not self.cycle.at_rest:
+            return False
+        said = "the line was given up by reset" if self._line else "program given up by reset"
+        kind = "mdi" if self._line else "end"
+        self.forget()
+        self._enter(State.IDLE)
+        self._bench.say(kind, said)
+        return True
+
+    def forget(self) -> None:
+        """What an interrupted program leaves in force is what M30 would have left; MDI keeps its modes."""
+        if self.cycle is not None:
+            left = self.cycle.modal
+            self._stand(interrupted(left) if self._line else given_up(left))
+        self.cycle = self._source = None
+        self._bench.line = 0
+        self.player.forget()
+
+    def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
+        self.standing.modal, self.standing.tool_open = modal, tool_open
+
+    def look(self) -> None:
+        """Between two cycles: what stands is what the machine really does."""
+        if self.cycle is None:
+            self.standing.modal = as_it_is(self.standing.modal, self._bench)
+
+    def _open(self, job: Job) -> None:
+        """A pass from where the slides stand now; nothing is kept of an earlier one."""
+        at, _ = self._bench.ports.axes.demand_at(self._bench.now)
+        setup = circumstances(job.setup, at, self._bench.terminal)
+        self.player.forget()
+        begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
+        if setup.begin is not None:
+            begins = setup.begin.checkpoint.modal
+        self._source = self._passes(job, setup)
+        self.cycle = Cycle(self._bench, self.player, self._source, begins, self._enter, self._ended)
+
+    def _ended(self, end: ProgramEnd | None) -> None:
+        """M30 and M02, or the end of a line of MDI."""
+        if end is not None and end.reset:
+            self._end_functions()
+        if self._line:
+            self._line_ended()
+            return
+        counters, job, bench = self.counters, self.standing.job, self._bench
+        counters.parts += 1
+        counters.last_cycle, counters.cycle = counters.cycle, 0.0
+        bench.say("part", f"part {counters.parts}, {counters.last_cycle:.2f} s")
+        if end is not None and end.reset and bench.switches.cycle_repeat and job is not None:
+            self._open(job)
+            return
+        bench.say("end", "program end")
+        self._over()
+
+    def _line_ended(self) -> None:
+        left = self._source.left() if self._source is not None and self._source.left is not None else None
+        self._over()
+        if left is not None:
+            self._stand(as_it_is(left.modal, self._bench), tool_open=left.tool_line != 0)
+        self._bench.say("mdi", "done")
+
+    def _over(self) -> None:
+        left = self.cycle.modal if self.cycle is not None else self.standing.modal
+        self.forget()
+        self._stand(left)
+        self._enter(State.IDLE)
+
+    def _end_functions(self) -> None:
+        """M30 ends what M functions have begun; the collet stays."""
+        bench = self._bench
+        bench.spindle.stop()
+        for name, on in bench.ports.io.outputs().items():
+            if on and name != "collet":
+                bench.ports.io.write(name, False)

@@ -1,0 +1,80 @@
+"""Beginning elsewhere than at the first line of a program: a line of MDI, or a restart in the middle."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from core.interpreter.actions import Action
+from core.interpreter.modal import Modal
+
+
+class Checkpoint(NamedTuple):
+    """Everything that a line inherits from the lines before it. mm, X a radius, degrees; program frame.
+
+    ``x z c`` is the point reached, ``px pz`` the one programmed, which lacks the secondary offset.
+    """
+
+    modal: Modal
+    x: float = 0.0
+    z: float = 0.0
+    c: float = 0.0
+    px: float = 0.0
+    pz: float = 0.0
+    first_feed: float | None = None  # F of the program's first line under G94, mm/s: it counts as a rapid
+    tool_line: int = 0  # line of a T whose move to X and Z is still to come; -1: it was an MDI line
+    title_rapid: int = 0  # line of a G00 (TITLE) after which no F has come
+    coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
+    blocks: int = 0  # elementary blocks before it
+
+    @property
+    def machine(self) -> tuple[float, float]:
+        """Machine X and Z of the point reached, mm."""
+        return self.x + self.modal.offset_x, self.z + self.modal.offset_z
+
+
+class Leg(NamedTuple):
+    """A straight way to a machine point, mm; None: that axis stays. ``feed`` mm/s."""
+
+    x: float | None
+    z: float | None
+    feed: float
+    rapid: bool
+    text: str
+
+
+class Turn(NamedTuple):
+    """C alone turns to this machine angle, degrees, at ``speed`` degrees/s."""
+
+    c: float
+    speed: float
+    text: str
+
+
+class Do(NamedTuple):
+    """An M function on the way."""
+
+    action: Action
+    text: str
+
+
+Step = Leg | Turn | Do
+"""What leads from where the slides stand to where a program goes on."""
+
+
+class Begin(NamedTuple):
+    """Where and with what a pass begins. ``single``: the text is one line of MDI, not a program.
+
+    ``way`` comes before the line; it must end where the checkpoint stands.
+    """
+
+    checkpoint: Checkpoint
+    line: int = 1
+    single: bool = False
+    way: tuple[Step, ...] = ()
+
+    @property
+    def key(self) -> str:
+        """Text that is the same for two beginnings only if they are."""
+        modal = self.checkpoint.modal
+        whole = self._replace(checkpoint=self.checkpoint._replace(modal=modal._replace(outputs=frozenset())))
+        return repr((whole, sorted(modal.outputs)))

@@ -1,0 +1,205 @@
+"""A line of MDI runs like a line of a program, from the state that stands, and leaves its own behind."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.proof import proof_of
+from core.executor.commands import CycleStart, FeedHold, Prepare, Reset, SetSwitch
+from core.executor.snapshot import Starts, State
+from core.interpreter.setup import ToolOffset
+from core.proving.prove import prove
+from tests.executor.lines import errors, line_job, mdi, press
+from tests.executor.rig import INCH, Rig
+
+
+def test_modes_feed_and_tool_are_inherited_from_line_to_line() -> None:
+    rig = Rig()
+    mdi(rig, "G90G72", "T1", "X1Z.5F100", "X.5")
+    # the tip of T1 stands on X0 Z0 at machine -12.7, -50.8; X.5 is a diameter
+    assert rig.shot.actual[:2] == pytest.approx((-12.7 + 0.25 * INCH, -50.8 + 0.5 * INCH), abs=0.006)
+    assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.tool) == (True, True, 1)
+    assert rig.shot.modal.feed == pytest.approx(100 * INCH / 60)
+    assert rig.shot.parts == 0
+    assert rig.shot.state is State.IDLE
+
+
+def test_the_spindle_stays_on_and_the_next_line_knows_it() -> None:
+    rig = Rig()
+    mdi(rig, "M03S900")
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == pytest.approx(900, rel=0.05)
+    rig.post(Prepare(Starts.PROGRAM))  # MDI is left
+    rig.run(1.0)
+    assert rig.shot.rpm_command == 900
+    mdi(rig, "G90", "G95F.005X.1")
+    assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
+    mdi(rig, "M05")
+    assert rig.shot.rpm_command == 0.0
+
+
+def test_a_line_without_any_block_changes_its_modes() -> None:
+    rig = Rig()
+    mdi(rig, "G71", "G91", "X5F500", "X5")
+    assert rig.shot.actual[0] == pytest.approx(10.0, abs=0.006)
+    assert rig.shot.modal.metric
+    assert not rig.shot.modal.absolute
+
+
+def test_the_first_move_after_a_tool_needs_both_axes_in_mdi_too() -> None:
+    rig = Rig()
+    mdi(rig, "G90F100", "T1")
+    assert rig.shot.tool_open
+    assert errors(rig, "X1") == ["The first move after the T lacks Z."]
+    mdi(rig, "X1Z1")
+    assert not rig.shot.tool_open
+    assert errors(rig, "X.9") == []
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("X5F100", "beyond the travel limit"),
+        ("X1", "The move has no feed."),
+        ("G95F.01X1", "The spindle stands"),
+        ("M03S9000", "over the spindle's 3500 rpm"),
+        ("M03", "no S has said how fast"),
+        ("LS3", "begins a loop"),
+        ("M98P1", "calls a subroutine"),
+        ("P1", "calls a subroutine"),
+        ("M99", "ends a subroutine"),
+        ("}1", "begins a subroutine"),
+        ("G75I.1U.01", "its lines would have to follow"),
+        ("G78U.01", "its lines would have to follow"),
+        ("G41", "looks at the lines that follow"),
+        ("G40", "looks at the lines around it"),
+        ("G35", "needs a G92 on the next line"),
+        ("(~PLXC)", "plane switching"),
+        ("X1R.05F100", "rounds the corner with the next move"),
+        ("X1C.05F100", "corner"),
+        ("/X1", "leaves a line of a program out"),
+        ("G2X1", "two digits"),
+        ("X1X2", "holds X twice"),
+    ],
+)
+def test_what_means_nothing_alone_or_cannot_be_done_is_refused(line: str, message: str) -> None:
+    rig = Rig()
+    mdi(rig, "G90")
+    found = errors(rig, line)
+    assert any(message in each for each in found), found
+
+
+def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load("G90G94F300\nX1\nM30\n")
+    rig.post(Prepare(Starts.LINE))
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "no line is ready: type one and press Enter"
+    assert rig.state is State.IDLE
+
+
+def test_a_line_runs_once() -> None:
+    rig = Rig()
+    mdi(rig, "G91", "X.1F100")
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused.startswith("no line is ready")
+    assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
+
+
+def test_a_line_proved_elsewhere_or_under_another_state_does_not_start() -> None:
+    rig = Rig()
+    mdi(rig, "G91", "X.1F100")
+    old = line_job(rig, "X.1")
+    proof = proof_of(old, prove(old.source, old.setup, rig.machine))
+    mdi(rig, "Z-.1")
+    rig.run(0.4)
+    rig.post(Prepare(Starts.LINE, old, proof))
+    rig.post(CycleStart())
+    assert rig.shot.start_refused.startswith("the slides have moved since")
+    fresh = line_job(rig, "X.1")
+    proof = proof_of(fresh, prove(fresh.source, fresh.setup, rig.machine))
+    mdi(rig, "G90")
+    rig.run(0.4)
+    rig.post(Prepare(Starts.LINE, fresh, proof))
+    rig.post(CycleStart())
+    assert rig.shot.start_refused.startswith("the state has changed")
+
+
+def test_a_tool_that_nobody_has_set_is_not_called() -> None:
+    rig = Rig()
+    mdi(rig, "G90")
+    job = line_job(rig, "T9")
+    rig.run(0.4)
+    rig.post(Prepare(Starts.LINE, job, proof_of(job, prove(job.source, job.setup, rig.machine))))
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "tool offset T9 has never been set"
+
+
+def test_hold_go_on_and_reset_keep_the_modes() -> None:
+    rig = Rig()
+    mdi(rig, "G90G72", "M08")
+    press(rig, "X1F10")
+    rig.run(0.5)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.run(0.5)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.tick()
+    assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.coolant) == (True, True, False)
+    assert 0.0 < rig.shot.actual[0] < 0.5 * INCH
+    assert "the line was given up by reset" in rig.said("mdi")
+
+
+def test_single_block_and_optional_stop_work_in_mdi() -> None:
+    rig = Rig()
+    mdi(rig, "G90G94F300")
+    rig.post(SetSwitch("optional_stop", True))
+    press(rig, "X.1M01")
+    rig.until(State.PROGRAM_STOP)
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    rig.post(SetSwitch("single_block", True))
+    press(rig, "G81Z-.1F50")
+    rig.until(State.BLOCK_END)
+    assert rig.shot.actual[1] == pytest.approx(-0.1 * INCH, abs=0.02)
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until(State.BLOCK_END, State.IDLE)
+    assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.006)
+
+
+def test_m30_in_mdi_resets_the_modes_and_counts_no_part() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("cycle_repeat", True))
+    mdi(rig, "G90G72F100", "M08", "T2", "M30")
+    assert rig.shot.parts == 0
+    assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.feed) == (None, False, None)
+    assert (rig.shot.modal.tool, rig.shot.modal.coolant) == (2, False)
+
+
+def test_work_shift_and_preset_stay_for_the_next_line() -> None:
+    rig = Rig()
+    tools = {1: ToolOffset(-12.7, -50.8)}
+    mdi(rig, "G90F100", "G10Z.1", "T1", "G92X1Z1")
+    assert rig.shot.modal.shift_z == pytest.approx(0.1 * INCH)
+    # the slides have not moved: machine 0 is now program X1 Z1
+    assert rig.shot.offset == pytest.approx((-INCH, -INCH))
+    assert line_job(rig, "X1", tools).setup.begin is not None
+    mdi(rig, "X1Z.9")
+    assert rig.shot.actual[1] == pytest.approx(-0.1 * INCH, abs=0.006)
+
+
+def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes() -> None:
+    rig = Rig()
+    mdi(rig, "G91G72F100", "X.2")
+    rig.post(Prepare(Starts.PROGRAM))
+    rig.start("G90G94F300\nX.3\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.actual[0] == pytest.approx(0.3 * INCH, abs=0.006)  # a radius again
+    assert rig.shot.parts == 1
