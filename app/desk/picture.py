@@ -36,7 +36,8 @@ class Picture(Trail):
     """The path seen from above, X+ downwards; ``face`` and ``side`` are what is cut there with C locked.
 
     ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord`` (blocks,) mm from start to end
-    of a block. ``line`` (blocks,) is the source line that each block is of.
+    of a block. ``line`` (blocks,) is the source line that each block is of. ``metric``: the program ends in
+    G71.
     """
 
     ends: npt.NDArray[np.float64]
@@ -44,6 +45,7 @@ class Picture(Trail):
     line: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     face: Trail | None = None
     side: Trail | None = None
+    metric: bool = False
 
     def block_of_line(self, line: int) -> int:
         """The block that ends the first pass through a source line, or through the nearest one before that
@@ -76,6 +78,7 @@ class Sketch:
     def __init__(self) -> None:
         self._pencil = Pencil()
         self._turned: TurnedSketch | None = None
+        self._metric = False
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add(self, block: Block, end: float) -> None:
@@ -90,6 +93,7 @@ class Sketch:
             self._turned.end_block()
         self._ends.append(end)
         self._line.append(block.line)
+        self._metric = block.modal.metric
         self._chord.append(math.hypot(block.x - block.x0, block.z - block.z0) if block.moves else 0.0)
 
     def picture(self) -> Picture:
@@ -108,6 +112,7 @@ class Sketch:
             line=np.array(self._line, dtype=np.int64),
             face=face,
             side=side,
+            metric=self._metric,
         )
 
     def _locked(self, block: Block) -> None:

@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.prompts import MOVING
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.bars import CommentLine
@@ -45,6 +46,7 @@ class AutomaticPage(Page):
         super().__init__(host, parent)
         look, desk = host.look, host.desk
         self._loaded = Loaded()
+        self._moving = False
         self.listing = Listing(look, self)
         self.comment = CommentLine(look, self)
         self.path = PathView(look, self)
@@ -63,6 +65,13 @@ class AutomaticPage(Page):
         self.files.dismiss()
         return True
 
+    def escape(self) -> bool:
+        """Ends measuring; while something moves it holds the feed instead, as everywhere."""
+        measuring = self.path.ruler is not None and not self._moving
+        if measuring:
+            self.path.measure(on=False)
+        return measuring
+
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Everything again, in the new unit."""
         listing, comment, path = work_parts(Rect(0, 0, self.width(), self.height()), self.look.u)
@@ -79,6 +88,7 @@ class AutomaticPage(Page):
         """The program, where it is, and what it says."""
         if self.files.isVisible() and snapshot.state in {State.RUN, State.WAIT}:
             self.files.dismiss()  # a cycle was started at the station: the keys belong to it
+        self._moving = snapshot.state in MOVING
         self._show_program(loaded)
         self.comment.show_text(view.comment)
         self.listing.show_run(view.line, view.block_text, view.next_text)
@@ -109,6 +119,8 @@ class AutomaticPage(Page):
             "F10": partial(self._go, pages.SPECIAL),
             "Zoom in": partial(self.path.zoom, 1),
             "Zoom out": partial(self.path.zoom, -1),
+            "Measure": self.path.measure,
+            "View": self.path.next_view,
             "Pan left": partial(self.path.pan, -1, 0),
             "Pan right": partial(self.path.pan, 1, 0),
             "Pan up": partial(self.path.pan, 0, -1),

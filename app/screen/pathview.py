@@ -8,51 +8,77 @@ numpy comes with the first picture.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QPointF, QRectF
-from PySide6.QtGui import QMouseEvent, QPainter, QResizeEvent, QWheelEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.words import tr
-from app.screen.look import LEFT, Look, put
-from app.screen.panel import Panel, Press
-from app.screen.path.aspects import Aspect, Tip, View, trail_of, views_of
+from app.screen.look import Look
+from app.screen.panel import Panel
+from app.screen.path.aspects import Tip
+from app.screen.path.pointer import Pointer
 
 if TYPE_CHECKING:
     from app.desk.drawing.approach import Leg
     from app.desk.picture import Picture
+    from app.screen.path.measure import Measure
     from app.screen.path.pane import Pane, Place
+    from app.screen.path.panes import Panes
     from app.screen.path.plot import Frame
+
+Picked = Callable[[int], None]
 
 
 class PathView(Panel):
-    """Panes side by side, each with its own zoom; keys act on the first, fingers on the one they touch."""
+    """Panes side by side, each with its own zoom; keys act on the first, fingers on the one they touch.
+
+    ``picked`` is called with the block (from 1) whose line was touched. While measuring the view has the
+    keyboard; keys that mean nothing there go on to the window.
+    """
 
     title = "PATH"
     keeps = False  # whether what is looked at by hand stays when the picture changes
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
         super().__init__(look, parent)
-        self._picture: Picture | None = None
-        self._before: Picture | None = None
-        self._legs: tuple[Leg, ...] = ()
-        self._panes: list[Pane] = []
-        self._views: list[View] = []
-        self._view = 0
+        self.legs: tuple[Leg, ...] = ()
+        self.ruler: Measure | None = None
+        self._set: Panes | None = None
         self._tip = Tip()
-        self._held: tuple[Pane, QPointF] | None = None
-
-    @property
-    def view(self) -> Frame | None:
-        """What is looked at in the first pane."""
-        return self._panes[0].frame if self._panes else None
+        self._pointer, self._picked = Pointer(self), picked
+        self.grabGesture(Qt.GestureType.PinchGesture)
 
     @property
     def panes(self) -> Sequence[Pane]:
         """What is side by side now."""
-        return self._panes
+        return self._set.now if self._set is not None else ()
+
+    @property
+    def view(self) -> Frame | None:
+        """What is looked at in the first pane."""
+        return self.panes[0].frame if self.panes else None
+
+    @property
+    def several(self) -> bool:
+        """Whether there is another choice of panes."""
+        return self._set is not None and self._set.several
+
+    @property
+    def comparing(self) -> bool:
+        """Whether two pictures are shown."""
+        return self._set is not None and self._set.before is not None
+
+    @property
+    def picture(self) -> Picture | None:
+        """What is shown."""
+        return self._set.picture if self._set is not None else None
+
+    @property
+    def in_mm(self) -> bool:
+        """The unit of the program."""
+        return self.picture is not None and self.picture.metric
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -69,8 +95,8 @@ class PathView(Panel):
 
     def show_approach(self, legs: Sequence[Leg] | None) -> None:
         """The way back into the program, over its path; the first leg is where the tool stands."""
-        if tuple(legs or ()) != self._legs:
-            self._legs = tuple(legs or ())
+        if tuple(legs or ()) != self.legs:
+            self.legs = tuple(legs or ())
             self.update()
 
     def show_tip(self, tip: Tip) -> None:
@@ -80,52 +106,37 @@ class PathView(Panel):
             self._stand()
             self.update()
 
+    def mark(self, blocks: list[tuple[int, int]]) -> None:
+        """Draw blocks thick: ranges of numbers from 1, the last one in them."""
+        for pane in self.panes:
+            pane.mark(blocks)
+        self.update()
+
     def advance(self) -> None:
         """Once a frame: draw on what is not drawn yet, for a few milliseconds at most."""
-        drawn = [pane.advance() for pane in self._panes]
-        if any(drawn):
+        if self._set is not None and self._set.advance():
             self.update()
 
     def _show(self, picture: Picture | None, before: Picture | None) -> None:
-        if picture is self._picture and before is self._before:
+        from app.screen.path.panes import Panes
+
+        if self._set is None:
+            self._set = Panes(self.look, self.keeps)
+        if picture is self._set.picture and before is self._set.before:
             return
-        self._picture, self._before = picture, before
+        self.measure(on=False)
         self._tip = self._tip._replace(block=0)
-        views = views_of(picture) if picture is not None else []
-        if views != self._views:
-            self._views, self._view, self._panes = views, 0, []
-        self._set_panes()
-
-    def _set_panes(self) -> None:
-        from app.screen.path.pane import Pane
-
-        aspects = self._views[self._view] if self._views else ()
-        keep = self.keeps and tuple(pane.aspect for pane in self._panes) == aspects
-        panes = self._panes if keep else []
-        for number, aspect in enumerate(aspects):
-            trail, before = trail_of(self._picture, aspect), trail_of(self._before, aspect)
-            assert trail is not None
-            if keep:
-                panes[number].take(trail, before)
-            else:
-                panes.append(Pane(self.look, aspect, trail, before))
-        self._panes = panes
+        self._set.show(picture, before)
         self._lay_out()
 
     def _lay_out(self) -> None:
-        room = self._room()
-        if self.width() <= 40 or not self._panes:
-            self.update()
-            return
-        wide = room.width() / len(self._panes)
-        for number, pane in enumerate(self._panes):
-            box = QRectF(room.x() + number * wide, room.y(), wide, room.height())
-            pane.lay(box.toRect().toRectF())
-        self._stand()
+        if self._set is not None:
+            self._set.lay(self.room())
+            self._stand()
         self.update()
 
     def _stand(self) -> None:
-        for pane in self._panes:
+        for pane in self.panes:
             pane.stand(self._tip.block, self._place_in(pane))
 
     def _place_in(self, pane: Pane) -> Place:
@@ -136,46 +147,114 @@ class PathView(Panel):
 
     def next_view(self) -> None:
         """Another choice of panes, where the program gives one."""
-        if len(self._views) > 1:
-            self._view = (self._view + 1) % len(self._views)
-            self._panes = []
-            self._set_panes()
+        if self._set is not None and self.several:
+            measuring = self.ruler is not None
+            self.measure(on=False)
+            self._set.next_view()
+            self._lay_out()
+            self.measure(on=measuring)
 
     def fit(self) -> None:
         """The whole part, in every pane."""
-        for pane in self._panes:
+        for pane in self.panes:
             pane.fit()
         self.update()
 
     def restart(self) -> None:
         """The same again, in other colours."""
-        for pane in self._panes:
+        for pane in self.panes:
             pane.restart()
         self.update()
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
         """Nearer (positive) or farther, about a point of the widget or about the middle."""
-        pane = self._pane_at(at)
+        pane = self.pane_at(at)
         if pane is not None:
             pane.zoom(steps, at)
             self.update()
 
+    def magnify(self, factor: float, at: QPointF) -> None:
+        """Nearer by a factor about a point of the widget."""
+        pane = self.pane_at(at)
+        if pane is not None:
+            pane.magnify(factor, at)
+            self.update()
+
     def pan(self, across: int, down: int) -> None:
         """Look further right and down by so many steps."""
-        pane = self._pane_at(None)
+        pane = self.pane_at(None)
         if pane is not None:
             pane.pan(across, down)
             self.update()
 
-    def _pane_at(self, at: QPointF | None) -> Pane | None:
-        """The pane under a point, or the first one."""
-        if at is not None:
-            found = next((pane for pane in self._panes if pane.room.contains(at)), None)
-            if found is not None:
-                return found
-        return self._panes[0] if self._panes else None
+    def pane_at(self, at: QPointF | None) -> Pane | None:
+        """The pane under a point, or else the one that is measured in, or the first."""
+        found = self._set.at(at) if self._set is not None and at is not None else None
+        if found is None:
+            found = self.ruler.pane if self.ruler is not None else next(iter(self.panes), None)
+        return found
+
+    # --- measuring and picking -----------------------------------------------------------------------
+
+    def measure(self, *, on: bool | None = None) -> None:
+        """Begin or end measuring, in the last pane; None: the other way round."""
+        wanted = (self.ruler is None) if on is None else on
+        if wanted and self.view is not None:
+            self._measure_in(self.panes[-1])
+            self.setFocus()
+        elif not wanted and self.ruler is not None:
+            self.ruler = None
+            self.setMouseTracking(False)
+            if self.hasFocus():
+                self.window().setFocus()
+        self.update()
+
+    def _measure_in(self, pane: Pane) -> None:
+        from app.screen.path.measure import Measure
+
+        self.ruler = Measure(pane)
+        self.setMouseTracking(True)
+
+    def point(self, at: QPointF) -> None:
+        """The pointer moves over the view."""
+        if self.ruler is not None and self.ruler.pane.room.contains(at):
+            self.ruler.point(at)
+            self.update()
+
+    def touched(self, pane: Pane, at: QPointF) -> None:
+        """A pane was touched: measured from there, or the block that was drawn there is meant."""
+        if self.ruler is not None:
+            if self.ruler.pane is not pane:
+                self._measure_in(pane)
+            self.ruler.point(at)
+            self.ruler.hold()
+            self.update()
+        elif self._picked is not None and (block := pane.block_at(at)):
+            self._picked(block)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Keys of measuring; all others are the window's."""
+        if self.ruler is not None and self.ruler.key(event):
+            self.update()
+        else:
+            event.ignore()
+
+    def focusNextPrevChild(self, _next: bool) -> bool:
+        """Tab is a key of measuring."""
+        return False
+
+    def focusOutEvent(self, event: QFocusEvent) -> None:
+        """Another field has the keyboard: measuring is over. Another window: it waits."""
+        if event.reason() is not Qt.FocusReason.ActiveWindowFocusReason:
+            self.measure(on=False)
+
+    def event(self, event: QEvent) -> bool:
+        """Two fingers."""
+        if self._pointer.gesture(event):
+            return True
+        return super().event(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The wheel zooms about the pointer."""
@@ -183,21 +262,16 @@ class PathView(Panel):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """A button of the view, or the start of a drag."""
-        pane = self._pane_at(event.position())
-        if not self.touch(event.position()) and pane is not None:
-            self._held = (pane, event.position())
+        if not self.touch(event.position()):
+            self._pointer.press(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Drag the picture along."""
-        if self._held is not None:
-            pane, last = self._held
-            self._held = (pane, event.position())
-            pane.drag(event.position() - last)
-            self.update()
+        self._pointer.move(event)
 
-    def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """The drag is over."""
-        self._held = None
+        self._pointer.release(event)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Another size: the whole part again."""
@@ -205,60 +279,12 @@ class PathView(Panel):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def _room(self) -> QRectF:
+    def room(self) -> QRectF:
+        """What the panes share."""
         u = self.look.u
         return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -0.2 * u).toRect().toRectF()
 
     def draw(self, painter: QPainter) -> None:
-        from app.screen.path import furniture
+        from app.screen.path.whole import draw_view
 
-        look = self.look
-        if not self._panes:
-            furniture.draw_nothing(
-                painter, look, self.inside(), tr("The path is shown when a program is loaded.")
-            )
-            return
-        for pane in self._panes:
-            self._draw_pane(painter, pane)
-        self._title_again(painter)
-        furniture.draw_buttons(painter, look, self._room(), self._buttons(), self.place)
-        legend = furniture.run_legend if self._before is None else furniture.compared_legend
-        furniture.draw_legend(painter, look, self._panes[0].room, legend(look))
-
-    def _draw_pane(self, painter: QPainter, pane: Pane) -> None:
-        from app.screen.path import furniture
-        from app.screen.path.approach import draw_approach
-
-        painter.save()
-        painter.setClipRect(pane.room)
-        painter.translate(pane.room.topLeft())
-        pane.draw(painter)
-        if self._legs and pane.aspect is Aspect.PATH:
-            draw_approach(painter, self.look, pane, self._legs)
-        painter.restore()
-        if pane.frame is not None:
-            furniture.draw_scale(painter, self.look, pane.room, pane.frame, self._tip.metric)
-        if pane.aspect is not Aspect.PATH:
-            furniture.draw_pane_name(painter, self.look, pane.room, self._name_of(pane))
-
-    def _name_of(self, pane: Pane) -> str:
-        if pane.aspect is Aspect.FACE:
-            return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
-        return tr("SIDE  ·  UNROLLED")
-
-    def _buttons(self) -> list[tuple[str, Press]]:
-        found: list[tuple[str, Press]] = [
-            ("+", lambda: self.zoom(1)),
-            ("−", lambda: self.zoom(-1)),
-            (tr("FIT"), self.fit),
-        ]
-        if len(self._views) > 1:
-            found.append((tr("VIEW"), self.next_view))
-        return found
-
-    def _title_again(self, painter: QPainter) -> None:
-        """The panes have covered the lower half of the title."""
-        look, u = self.look, self.look.u
-        painter.setFont(look.font(1.7, bold=True))
-        painter.setPen(look.colour("soft"))
-        put(painter, QRectF(2.2 * u, 0, 20 * u, 2.0 * u), LEFT, self.title)
+        draw_view(painter, self)

@@ -22,14 +22,14 @@ class EditedPath(PathView):
         """Where the line of the cursor ends."""
         return self._tip
 
-    def follow(self, line: int, metric: bool) -> None:
+    def follow(self, line: int) -> None:
         """The tip to the end of a source line, or of the nearest one before it that moves."""
-        picture = self._picture
+        picture = self.picture
         if picture is None or not len(picture.z):
             return
         block = picture.block_of_line(line)
         at = max(0, picture.points_done(block) - 1)
-        self.show_tip(Tip(block, float(picture.z[at]), float(picture.x[at]), metric))
+        self.show_tip(Tip(block, float(picture.z[at]), float(picture.x[at])))
 
     def _place_in(self, pane: Pane) -> Place:
         return pane.end_of(self._tip.block)

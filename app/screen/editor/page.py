@@ -126,7 +126,7 @@ class EditorPage(Page):
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
         self.path.show_picture(findings.picture)
-        self.path.follow(line, snapshot.modal.metric)
+        self.path.follow(line)
         self.path.advance()
         self.versions.refresh()
 

@@ -28,7 +28,6 @@ class Tip(NamedTuple):
     block: int = 0
     z: float = 0.0
     x: float = 0.0
-    metric: bool = False
     c: float | None = None
     h: float = 0.0
 
@@ -42,7 +41,7 @@ def tip_of(snapshot: Snapshot) -> Tip:
     x, z, *rotary = snapshot.actual
     turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
     h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
-    return Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, modal.metric, turned, h)
+    return Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, turned, h)
 
 
 def trail_of(picture: Picture | None, aspect: Aspect) -> Trail | None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
-from app.desk.drawing.trail import Trail
+from app.desk.drawing.features import point_at
+from app.desk.drawing.trail import Bounds, Trail
 from app.desk.drawing.turned import face_point
 from app.screen.look import Look
 from app.screen.path.aspects import Aspect, Tip
@@ -16,6 +17,7 @@ from app.screen.path.scenery import draw_scenery
 
 ZOOM_STEP = 1.25
 PAN_STEP = 0.1  # of the width
+PICK = 1.6  # units: how near a finger must come to a line to mean it
 MARGIN = 2.8  # units round what is fitted
 MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
 
@@ -96,6 +98,47 @@ class Pane:
         self._layers.want(self._block - 1)
         self._layers.advance()
 
+    # --- places --------------------------------------------------------------------------------------
+
+    @property
+    def pixel(self) -> float:
+        """How many mm one is."""
+        return 1.0 / self.frame.scale if self.frame is not None else 1.0
+
+    def spot(self, z: float, x: float) -> QPointF:
+        """Where a point of the trail is in the pane; pixels from its corner."""
+        assert self.frame is not None
+        return QPointF(float(self.frame.across(z)), float(self.frame.down(x)))
+
+    def here(self, at: QPointF) -> Place:
+        """The trail's z and x at a place of the widget."""
+        frame, room = self.frame, self.room
+        assert frame is not None
+        z = frame.z + (at.x() - room.x() - frame.width / 2) / frame.scale
+        return z, frame.x + (at.y() - room.y() - frame.height / 2) / frame.scale
+
+    def sight(self) -> Bounds:
+        """What part of the trail is seen: least and greatest z, least and greatest x."""
+        (z0, x0), (z1, x1) = self.here(self.room.topLeft()), self.here(self.room.bottomRight())
+        return z0, z1, x0, x1
+
+    def show_spot(self, z: float, x: float) -> None:
+        """Look aside as far as is needed to see a point."""
+        at, room = self.spot(z, x), self.room
+        edge = MARGIN * self.look.u
+        over = QPointF(
+            min(0.0, at.x() - edge) + max(0.0, at.x() - room.width() + edge),
+            min(0.0, at.y() - edge) + max(0.0, at.y() - room.height() + edge),
+        )
+        if not over.isNull():
+            self.drag(-over)
+
+    def block_at(self, at: QPointF) -> int:
+        """The block that was drawn at a place of the widget, or very near to it; 0: none was."""
+        z, x = self.here(at)
+        point = point_at(self.trail, z, x, PICK * self.look.u * self.pixel)
+        return 0 if point is None else self.trail.block_of_point(point)
+
     # --- what moves ----------------------------------------------------------------------------------
 
     def stand(self, block: int, place: Place) -> None:
@@ -135,11 +178,6 @@ class Pane:
         return self._layers is not None and self._layers.complete
 
     # --- drawing -------------------------------------------------------------------------------------
-
-    def spot(self, z: float, x: float) -> QPointF:
-        """Where a point of the trail is in the pane; pixels from its corner."""
-        assert self.frame is not None
-        return QPointF(float(self.frame.across(z)), float(self.frame.down(x)))
 
     def draw(self, painter: QPainter) -> None:
         """Image, scenery, the marked line, what is under way, the tip. The painter's origin is the corner."""

@@ -1,0 +1,75 @@
+"""Everything that a path view shows, from back to front."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+
+from app.desk.words import tr
+from app.screen.look import LEFT, put
+from app.screen.path import furniture
+from app.screen.path.approach import draw_approach
+from app.screen.path.aspects import Aspect
+
+if TYPE_CHECKING:
+    from app.screen.path.pane import Pane
+    from app.screen.pathview import PathView
+
+
+def draw_view(painter: QPainter, view: PathView) -> None:
+    """Panes, title, buttons, legend; a sentence where there is nothing."""
+    look = view.look
+    if not view.panes:
+        why = tr("The path is shown when a program is loaded.")
+        furniture.draw_nothing(painter, look, view.inside(), why)
+        return
+    for pane in view.panes:
+        _pane(painter, view, pane)
+    _title(painter, view)
+    furniture.draw_buttons(painter, look, view.room(), _buttons(view), view.place)
+    legend = furniture.compared_legend(look) if view.comparing else furniture.run_legend(look)
+    furniture.draw_legend(painter, look, view.panes[0].room, legend)
+
+
+def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
+    painter.save()
+    painter.setClipRect(pane.room)
+    painter.translate(pane.room.topLeft())
+    pane.draw(painter)
+    if view.legs and pane.aspect is Aspect.PATH:
+        draw_approach(painter, view.look, pane, view.legs)
+    if view.ruler is not None and view.ruler.pane is pane:
+        view.ruler.draw(painter, view.in_mm)
+    painter.restore()
+    if pane.frame is not None:
+        furniture.draw_scale(painter, view.look, pane.room, pane.frame, view.in_mm)
+    if pane.aspect is not Aspect.PATH:
+        furniture.draw_pane_name(painter, view.look, pane.room, _name_of(pane))
+
+
+def _name_of(pane: Pane) -> str:
+    if pane.aspect is Aspect.FACE:
+        return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
+    return tr("SIDE  ·  UNROLLED")
+
+
+def _buttons(view: PathView) -> list[furniture.Button]:
+    found: list[furniture.Button] = [
+        ("+", lambda: view.zoom(1)),
+        ("−", lambda: view.zoom(-1)),
+        (tr("FIT"), view.fit),
+        (tr("MEAS"), view.measure),
+    ]
+    if view.several:
+        found.append((tr("VIEW"), view.next_view))
+    return found
+
+
+def _title(painter: QPainter, view: PathView) -> None:
+    """The panes have covered the lower half of it."""
+    look, u = view.look, view.look.u
+    painter.setFont(look.font(1.7, bold=True))
+    painter.setPen(look.colour("soft"))
+    put(painter, QRectF(2.2 * u, 0, 20 * u, 2.0 * u), LEFT, view.title)

@@ -1,0 +1,26 @@
+"""Blocks and trails made by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.desk.drawing.trail import Stroke, Trail
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+
+LOCKED = Modal(c_locked=True, tool=1)
+
+Way = tuple[float, float, float]
+
+
+def turned(n: int, kind: Kind, start: Way, end: Way, **more: object) -> Block:
+    """A block with C locked from (x, z, c) to (x, z, c)."""
+    given = {"offset_x": 0.0, "offset_z": 0.0, "modal": LOCKED, **more}
+    return Block(n, n, kind, "", *start, *end, **given)  # type: ignore[arg-type]
+
+
+def trail(points: list[tuple[float, float, Stroke]], first: list[int]) -> Trail:
+    """A trail of (z, x, stroke) points and where blocks end."""
+    z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
+    bounds = (float(z.min()), float(z.max()), float(x.min()), float(x.max()))
+    return Trail(z.astype(float), x.astype(float), stroke.astype(np.uint8), np.array(first), bounds)

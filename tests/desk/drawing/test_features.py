@@ -1,0 +1,101 @@
+"""Points to measure from: which there are, which is nearest, which comes next; and what was touched."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.desk.drawing.features import MOST_CROSSED, Features, Kind, Spot, crossings, point_at
+from app.desk.drawing.trail import Stroke
+from tests.desk.drawing.made import trail
+
+EVERYWHERE = (-100.0, 100.0, -100.0, 100.0)
+# a square of 4 mm, its last side crossed by a diagonal that comes from elsewhere
+SQUARE = trail(
+    [
+        (0, 0, Stroke.JUMP),
+        (4, 0, Stroke.TURN),
+        (4, 4, Stroke.TURN),
+        (0, 4, Stroke.TURN),
+        (-2, 1, Stroke.JUMP),
+        (6, 1, Stroke.TURN),
+    ],
+    [0, 2, 3, 4, 6],
+)
+
+
+def test_ends_of_blocks_and_starts_after_jumps_are_points() -> None:
+    features = Features(SQUARE)
+    assert features.nearest(0.3, 0.2) == Spot(0, 0, Kind.END)
+    assert features.nearest(-3, 1) == Spot(-2, 1, Kind.END)
+
+
+def test_points_within_an_arc_are_none() -> None:
+    bend = trail([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
+    assert Features(bend).nearest(1, 1) != Spot(1, 1, Kind.END)
+
+
+def test_middles_of_arcs_are_points() -> None:
+    features = Features(replace(SQUARE, centres=np.array([[2.0, 2.0]])))
+    assert features.nearest(2.4, 2.1) == Spot(2, 2, Kind.CENTRE)
+
+
+def test_crossings_are_found_where_they_are_in_sight() -> None:
+    features = Features(SQUARE)
+    assert features.nearest(4, 1.1) == Spot(4, 0, Kind.END)
+    features.look(EVERYWHERE)
+    assert features.nearest(4, 1.1) == Spot(4, 1, Kind.CROSSING)
+    features.look((-100, 3, -100, 100))
+    assert features.nearest(4, 1.1) == Spot(4, 0, Kind.END)
+
+
+def test_a_jump_crosses_nothing() -> None:
+    assert crossings(SQUARE, EVERYWHERE).tolist() == [[4, 1]]
+
+
+def test_too_many_stretches_have_no_crossings_and_take_no_time() -> None:
+    zigzag = trail(
+        [(float(k % 2), float(k), Stroke.TURN if k else Stroke.JUMP) for k in range(MOST_CROSSED + 2)],
+        list(range(MOST_CROSSED + 3)),
+    )
+    assert len(crossings(zigzag, (-1, 2, -1, 1e4))) == 0
+
+
+@pytest.mark.parametrize(
+    ("way", "found"), [((1, 0), (4, 0)), ((0, 1), (0, 4)), ((-1, 0), (-2, 1)), ((0, -1), None)]
+)
+def test_an_arrow_goes_to_the_next_point_that_way(
+    way: tuple[int, int], found: tuple[float, float] | None
+) -> None:
+    spot = Features(SQUARE).towards(0, 0, way)
+    assert (spot and spot[:2]) == found
+
+
+def test_along_the_path_and_on_at_the_other_end() -> None:
+    features = Features(SQUARE)
+    assert features.following(4, 4, 1) == Spot(0, 4, Kind.END)
+    assert features.following(0, 0, -1) == Spot(6, 1, Kind.END)
+    assert features.following(6, 1, 1) == Spot(0, 0, Kind.END)
+
+
+def test_an_empty_trail_has_no_points() -> None:
+    nothing = trail([(0, 0, Stroke.JUMP)], [0])
+    features = Features(replace(nothing, z=np.zeros(0), x=np.zeros(0), stroke=np.zeros(0, dtype=np.uint8)))
+    features.look(EVERYWHERE)
+    assert features.nearest(0, 0) is None
+    assert features.towards(0, 0, (1, 0)) is None
+    assert features.following(0, 0, 1) is None
+
+
+def test_what_was_touched_is_the_nearest_stretch() -> None:
+    point = point_at(SQUARE, 3.8, 2.5, 0.5)
+    assert point == 2
+    assert SQUARE.block_of_point(2) == 2
+    assert [SQUARE.block_of_point(p) for p in range(6)] == [1, 1, 2, 3, 4, 4]
+
+
+def test_beside_the_path_nothing_is_touched() -> None:
+    assert point_at(SQUARE, 2, 2.5, 0.5) is None
+    assert point_at(SQUARE, -1, 2.4, 0.5) is None  # on the way of a jump
