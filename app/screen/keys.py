@@ -37,6 +37,8 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Escape, NONE): "Esc",
     (Key.Key_Z, NONE): "Zoom in",
     (Key.Key_Z, SHIFT): "Zoom out",
+    (Key.Key_M, NONE): "Measure",
+    (Key.Key_V, NONE): "View",
     (Key.Key_Left, CTRL): "Pan left",
     (Key.Key_Right, CTRL): "Pan right",
     (Key.Key_Up, CTRL): "Pan up",
