@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -185,8 +186,12 @@ class Frame(QWidget):
 
     def _is_text(self, key: str) -> bool:
         """Whether a key goes to an entry now: to that of the page, or to a field that has the keyboard."""
+        if self.page.takes(key):
+            return True
         at = QApplication.focusWidget()
-        return self.page.takes(key) or (at is not None and at is not self.window() and self.isAncestorOf(at))
+        if at is None or at is self.window() or at.focusPolicy() is Qt.FocusPolicy.NoFocus:
+            return False
+        return self.isAncestorOf(at)
 
     def _show_large(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
         self.position.show_position(view.position)
