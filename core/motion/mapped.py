@@ -120,11 +120,12 @@ def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
 
 
 def _fed_by_c(words: Words) -> BoolArray:
-    """Straight moves (m,) at a feed per revolution in which C turns: its turns are meant."""
+    """Straight moves (m,) at a feed per revolution in which the spindle turns as C: its turns are meant."""
     delta = words.end - words.start
     lathe = np.isnan(words.length)
     slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
-    fed: BoolArray = lathe & words.per_rev & ~words.arc & slides & (np.abs(delta[:, 2]) > SAME_POINT)
+    turned = words.locked & (np.abs(delta[:, 2]) > SAME_POINT)
+    fed: BoolArray = lathe & words.per_rev & ~words.arc & slides & turned
     return fed
 
 

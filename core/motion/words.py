@@ -18,7 +18,8 @@ from core.motion.limits import BoolArray, FloatArray
 
 
 class ModalLike(Protocol):
-    """The clamp of the spindle speed under constant surface speed, rpm; how far C is shifted, degrees."""
+    """The clamp of the spindle speed under constant surface speed, rpm; how far C is shifted, degrees;
+    whether the spindle itself is C."""
 
     @property
     def css_min(self) -> float: ...
@@ -26,6 +27,8 @@ class ModalLike(Protocol):
     def css_max(self) -> float | None: ...
     @property
     def offset_c(self) -> float: ...
+    @property
+    def c_locked(self) -> bool: ...
 
 
 class MotionBlock(Protocol):
@@ -75,17 +78,19 @@ class MotionBlock(Protocol):
 
 KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
-_read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c")
+_read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
 
 
 @dataclass(frozen=True, slots=True)
 class Words:
     """The words of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
 
-    ``axis`` (m,) is the machine X of the spindle axis, from which radii count. ``surface lo hi`` (m,)
-    hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm. ``way`` has m ways on which
-    the axes do not run in proportion, such as those of the virtual mill, None elsewhere. ``length`` (m,) is
-    given by blocks that tell of all axes, NaN by those of the lathe, whose X, Z and C say enough.
+    ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
+    the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
+    ``surface lo hi`` (m,) hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
+    ``way`` has m ways on which the axes do not run in proportion, such as those of the virtual mill, None
+    elsewhere. ``length`` (m,) is given by blocks that tell of all axes, NaN by those of the lathe, whose X,
+    Z and C say enough.
     """
 
     n: FloatArray
@@ -100,6 +105,7 @@ class Words:
     rapid: BoolArray
     arc: BoolArray
     thread: BoolArray
+    locked: BoolArray
     surface: FloatArray
     lo: FloatArray
     hi: FloatArray
@@ -112,7 +118,7 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
 
     Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
     """
-    width = len(_COLUMNS) + 3
+    width = len(_COLUMNS) + 4
     table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
     _demand_finite(table)
     kinds = _kinds(blocks)
@@ -139,6 +145,7 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         rapid=kinds == KINDS["rapid"],
         arc=kinds == KINDS["arc"],
         thread=kinds == KINDS["thread"],
+        locked=table[:, 16] != 0.0,
         surface=surface,
         lo=lo,
         hi=hi,
@@ -172,7 +179,7 @@ def _demand_finite(table: FloatArray) -> None:
     bad = ~np.isfinite(table).all(axis=1)
     if bad.any():
         row = table[bad.argmax()]
-        names = (*_COLUMNS, "per_rev", "clockwise", "offset_c")
+        names = (*_COLUMNS, "per_rev", "clockwise", "offset_c", "c_locked")
         name = names[int(np.argmax(~np.isfinite(row)))]
         raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.")
 

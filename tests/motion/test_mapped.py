@@ -48,7 +48,7 @@ def turned(c0: float, c: float, feed: float, n: int = 1, **more: object) -> Bloc
 
 def fed_by_c(z: float, c: float, feed: float, rpm: float) -> Block:
     block = line((10.0, 0.0), (10.0, z), feed)
-    return replace(block, c=c, per_rev=True, rpm=rpm)
+    return replace(block, c=c, per_rev=True, rpm=rpm, modal=Modal(c_locked=True))
 
 
 def off_line(profile: Profile, move: PlaneMove, dt: float) -> float:
@@ -180,6 +180,15 @@ def test_the_slide_is_fed_by_the_turns_of_c() -> None:
     assert at[~arrived, 1] == pytest.approx(at[~arrived, 2] / 45.0 * way)
     # 45.1 degrees at 21 degrees/s; the ramps take next to nothing
     assert profile.duration == pytest.approx(45.1 / 21.0, abs=0.02)
+
+
+def test_a_c_of_its_own_drive_only_goes_along() -> None:
+    """.2 mm a turn at 300 rpm is 1 mm/s: 10 mm take 10 s, however far C turns meanwhile."""
+    block = replace(fed_by_c(-10.0, 5.0, 0.2, 300.0), modal=Modal())
+    profile = plan(build_path([block], LIMITS))
+    assert len(profile.path) == 1
+    assert profile.duration == pytest.approx(10.0, abs=0.01)
+    assert profile.position(profile.duration)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
 
 
 def test_exactly_enough_is_one_piece() -> None:
