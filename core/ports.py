@@ -108,6 +108,50 @@ class Spindle(Protocol):
     def fault(self) -> str: ...
 
 
+class Cam(NamedTuple):
+    """Motion over the turns of the spindle instead of over time.
+
+    ``way.t`` and ``way.dt`` are turns from the encoder's count ``zero`` on, in the direction ``sign`` in
+    which the spindle turns; ``way.v`` and ``way.a`` are per turn. At rest until it begins and behind its end.
+    ``then`` goes on from that end by time; its ``t`` are seconds from there.
+    """
+
+    zero: float
+    sign: float
+    way: Segments
+    then: Segments | None = None
+
+
+class Geared(NamedTuple):
+    """Where on its cam a driver is: turns from ``zero``, and turns by which it is behind the spindle."""
+
+    turns: float
+    lag: float
+
+
+class Gear(Protocol):
+    """Slides that follow the spindle inside the driver, at its own rate, by its own reading of the encoder.
+
+    The slides are those of the sink beside it, the encoder counts as ``Spindle.angle``. A gear slips rather
+    than ask a slide for more than it can: it falls behind and catches up. A spindle that stands leaves the
+    slides standing.
+    """
+
+    def mesh(self, cam: Cam) -> None:
+        """Follow the spindle; while it is being followed, replace everything from ``cam.way.t[0]`` on.
+
+        Raises DriverError unless the way begins at or behind what the spindle will reach within the sink's
+        commit, continues what stays, and ends at rest. The sink's ``demand_at`` and ``horizon`` then foretell
+        from the present speed, as far as the end of the way. Its ``splice`` releases a gear that has not yet
+        moved anything and is refused elsewhere; its ``stop`` brakes from wherever the slides are.
+        """
+        ...
+
+    def geared(self) -> Geared | None:
+        """None when the slides do not follow the spindle, or no longer."""
+        ...
+
+
 class DigitalIO(Protocol):
     """Inputs and outputs by the names of the machine file."""
 
@@ -159,3 +203,4 @@ class MachinePorts:
     io: DigitalIO
     station: Station
     warnings: Sequence[str] = ()
+    gear: Gear | None = None  # None: threads follow the spindle by setpoints in time

@@ -85,7 +85,12 @@ class SetpointQueue:
         For stops that do not ask the host (E-stop, a fault). It leaves the path only by the curve within the
         braking distance.
         """
-        p, v = self.demand_at(now)
+        return self._brake(now, self.demand_at(now), decel)
+
+    def _brake(
+        self, now: float, state: tuple[tuple[float, ...], tuple[float, ...]], decel: Sequence[float]
+    ) -> float:
+        p, v = state
         dt = max((abs(speed) / limit for speed, limit in zip(v, decel, strict=True)), default=0.0)
         if dt <= 0.0:
             self.rest_at(p)

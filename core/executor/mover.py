@@ -44,7 +44,7 @@ class Mover:
         """A new stretch, from rest; a thread pass is tied to the spindle."""
         self._single_from = None
         if blocks[0].kind is Kind.THREAD:
-            self.player.begin_pass(blocks, self._bench.spindle.turns)
+            self.player.begin_pass(blocks, self._bench.spindle.turns, self._bench.ports.gear)
         else:
             self.player.begin(blocks, self._bench.spindle.highest)
         self.go()

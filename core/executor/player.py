@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from core.executor.geared_pass import GearedPass
 from core.executor.stretch import Scales, Stretch
 from core.executor.thread_pass import ThreadPass
 from core.executor.tracks import Track, Tracks
@@ -18,7 +19,7 @@ from core.interpreter.blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.plan import plan
 from core.motion.profile import Profile
-from core.ports import AxisSink, DriverError, Segments
+from core.ports import AxisSink, DriverError, Gear, Segments
 
 _AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 _SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
@@ -37,7 +38,7 @@ class Player:
         self._cost = 0.0  # s that planning took of late
         self._stretch: Stretch | None = None
         self._profile: Profile | None = None
-        self._pass: ThreadPass | None = None  # instead of a stretch
+        self._pass: ThreadPass | GearedPass | None = None  # instead of a stretch
         self._origin = 0.0
         self._queued_to = 0.0  # end of the plan's part in the queue; behind it lies the tail
         self._tracks = Tracks()
@@ -73,13 +74,18 @@ class Player:
         self._stretch = Stretch(self._limits, rpm_max)
         self._stretch.add(blocks)
 
-    def begin_pass(self, blocks: Sequence[Block], turns: Turns) -> None:
+    def begin_pass(self, blocks: Sequence[Block], turns: Turns, gear: Gear | None) -> None:
         """A thread pass: it follows the spindle, so overrides, holds and single blocks act at its end.
 
-        Raises TroubleError without a turning spindle, DriverError.
+        Inside the driver where it has a gear, else by setpoints in time. Raises TroubleError without a
+        turning spindle, DriverError.
         """
         self.forget()
-        self._pass = ThreadPass(self._axes, self._limits, turns, blocks)
+        self._pass = (
+            ThreadPass(self._axes, self._limits, turns, blocks)
+            if gear is None
+            else GearedPass(self._axes, gear, self._limits, turns, blocks)
+        )
         self._pass.begin()
 
     def add(self, blocks: Iterable[Block]) -> None:

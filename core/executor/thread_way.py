@@ -93,6 +93,16 @@ class Way(NamedTuple):
         x_start = self.x + self.slope * s
         return self._joined(t, (x_start, self.slope * v_in, x_phases), (s, v_in, z_phases)), t + left
 
+    def drawn_back(self) -> Segments | None:
+        """Behind the end of a thread without pull-out: X straight out by time, from 0 on; None with one."""
+        x = self.x + self.slope * self.length
+        phases = _trapezoid(abs(self.out - x), 0.0, self.rapid, self.ax)
+        if self.beyond or not phases:
+            return None
+        sign = math.copysign(1.0, self.out - x)
+        still = [(sum(dt for dt, _ in phases), 0.0)]
+        return self._joined(0.0, (x, 0.0, [(dt, sign * a) for dt, a in phases]), (self.length, 0.0, still))
+
     def stopping(self, t: float, s: float, v: float) -> Segments:
         """To rest at once along the thread."""
         phases = [(v / self.a, -self.a)] if v > 0.0 else [(_BRIEF, 0.0)]

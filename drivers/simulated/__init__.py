@@ -9,7 +9,7 @@ from drivers.simulated.clocks import RealClock, StepClock
 from drivers.simulated.config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
 from drivers.simulated.machine import SimMachine
 from drivers.simulated.plant import Plant
-from drivers.simulated.ports import SimAxes, SimIO, SimStation
+from drivers.simulated.ports import SimAxes, SimGear, SimIO, SimStation
 from drivers.simulated.ports import SimSpindle as _SpindlePort
 
 __all__ = [
@@ -43,6 +43,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         spindle=_SpindlePort(plant),
         io=SimIO(plant),
         station=SimStation(plant),
+        gear=SimGear(plant),
     )
     return Simulation(ports, SimMachine(plant))
 

@@ -40,6 +40,12 @@ class SpindleMotor:
         swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
         return self._even * (1.0 + faults.wander * swing)
 
+    @property
+    def counted(self) -> float:
+        """Turns as the encoder counts them, in steps of its four edges."""
+        edges = 4 * self.config.ppr
+        return round(self.turns * edges) / edges
+
     def order(self, now: float, rpm: float, coast: bool = False) -> None:
         """A command that the inverter obeys after its latency."""
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):

@@ -7,9 +7,13 @@ from __future__ import annotations
 
 import threading
 
-from core.ports import Clock, DriverError, Segments, Stop
-from drivers.setpoint_queue import SetpointQueue, Tolerance
+from core.ports import Cam, Clock, DriverError, Segments, Stop
+from drivers.geared_queue import GearedQueue
+from drivers.gearing import Slides, State
+from drivers.phase import Phase
+from drivers.setpoint_queue import Tolerance
 from drivers.simulated.config import SimConfig
+from drivers.simulated.drive_limits import check_cam, check_limits
 from drivers.simulated.drive_spindle import SpindleMotor
 from drivers.simulated.servo import Servo
 from drivers.simulated.station_panel import Panel
@@ -18,7 +22,6 @@ from drivers.straight import straight
 
 _NEVER = float("inf")
 _PAST = 0.1  # s of setpoints that may still be asked for
-_STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
 
 
@@ -38,7 +41,14 @@ class Plant:
             position=(0.001,) * len(self.names),
             velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes),
         )
-        self.queue = SetpointQueue(self.names, self._readings(), config.commit, tolerance)
+        slides = Slides(
+            self.names,
+            tuple(axis.vmax for axis in config.axes),
+            tuple(axis.amax for axis in config.axes),
+            config.commit,
+            tolerance,
+        )
+        self.queue = GearedQueue(slides, self._readings())
         self.enabled = False
         self.fault = ""
         self._off_at = _NEVER
@@ -55,12 +65,12 @@ class Plant:
         """Bring everything up to the clock; returns the clock's time."""
         now = self.clock.now()
         with self.lock:
-            if now > self.spindle.t:
-                self.spindle.advance(now)
             last = int(now / self.config.step + 1e-6)
             if last > self._k:
                 self._slides(last)
                 self.queue.trim(self.t - _PAST)
+            if now > self.spindle.t:
+                self.spindle.advance(now)
         return now
 
     def splice(self, segments: Segments) -> None:
@@ -68,10 +78,16 @@ class Plant:
         with self.lock:
             now = self.advance()
             self._need_power()
-            if self._homing is not None:
-                raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
-            self._check_limits(segments)
+            check_limits(segments, self.servos, self.spindle.speed)
             self.queue.splice(segments, now)
+
+    def mesh(self, cam: Cam) -> None:
+        """Slides follow the spindle; raises DriverError when the drives cannot."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            check_cam(cam, self.servos, self.spindle.speed)
+            self.queue.mesh(cam, Phase(now, self.spindle.counted, self.spindle.speed / 60.0), now)
 
     def power(self, on: bool) -> None:
         """Drives on: they hold the slides where these are. Raises DriverError in E-stop or fault."""
@@ -151,22 +167,8 @@ class Plant:
             raise DriverError(f"{self.fault}; clear the fault first")
         if not self.enabled or self._off_at < _NEVER:
             raise DriverError("the drives are off; switch them on first")
-
-    def _check_limits(self, segments: Segments) -> None:
-        """The drives' own limits, the last line behind the control's."""
-        for i, servo in enumerate(self.servos):
-            axis = servo.axis
-            if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
-                raise DriverError(f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued")
-            if axis.name == "C" and abs(segments.v[:, i]).max() > 0.0 and abs(self.spindle.speed) > _STANDS:
-                raise DriverError(f"C: the spindle turns at {self.spindle.speed:.0f} rpm; nothing was queued")
-            if axis.travel is None or not servo.homed:
-                continue
-            low, high = axis.travel
-            if segments.p[:, i].min() < low - 0.01 or segments.p[:, i].max() > high + 0.01:
-                raise DriverError(
-                    f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued"
-                )
+        if self._homing is not None:
+            raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NEVER, None
@@ -202,12 +204,21 @@ class Plant:
             for servo in self.servos:
                 servo.roll(dt)
             return
-        p, v = self.queue.demand_at(t)
+        p, v = self._setpoint(t)
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
                 self.fault = f"{servo.axis.name}: following error"
         if self.fault and self._off_at == _NEVER:
             self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+
+    def _setpoint(self, t: float) -> State:
+        """What the drives get: as queued; by the spindle's encoder it makes up for what they trail."""
+        if not self.queue.meshed:
+            return self.queue.demand_at(t)
+        if t > self.spindle.t:
+            self.spindle.advance(t)
+        p, v, a = self.queue.play(t, self.spindle.t, self.spindle.counted)
+        return tuple(servo.lead(*each) for servo, *each in zip(self.servos, p, v, a, strict=True)), v
 
     def _reference(self) -> None:
         if self._homing is not None and self.t >= self._homing[1]:

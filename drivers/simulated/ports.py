@@ -1,10 +1,10 @@
-"""The simulated machine behind the ports: four thin fronts on one plant."""
+"""The simulated machine behind the ports: thin fronts on one plant."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.ports import AxisSample, DriverError, Segments, StationState, Stop
+from core.ports import AxisSample, Cam, DriverError, Geared, Segments, StationState, Stop
 from drivers.simulated.plant import Plant
 
 
@@ -75,6 +75,23 @@ class SimAxes:
             self._plant.clear_fault()
 
 
+class SimGear:
+    """``core.ports.Gear`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    def mesh(self, cam: Cam) -> None:
+        """Follow the spindle; raises DriverError as the port says."""
+        self._plant.mesh(cam)
+
+    def geared(self) -> Geared | None:
+        """Where on the cam the slides are."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.queue.geared()
+
+
 class SimSpindle:
     """``core.ports.Spindle`` on the plant."""
 
@@ -107,9 +124,7 @@ class SimSpindle:
         """(time, revolutions counted), in steps of the encoder's four edges."""
         with self._plant.lock:
             self._plant.advance()
-            motor = self._plant.spindle
-            edges = 4 * motor.config.ppr
-            return motor.t, round(motor.turns * edges) / edges
+            return self._plant.spindle.t, self._plant.spindle.counted
 
     def fault(self) -> str:
         """What the inverter says is wrong; empty when well."""

@@ -30,6 +30,13 @@ class Servo:
             return self.stuck
         return round(self.p / self.axis.count) * self.axis.count
 
+    def lead(self, p: float, v: float, a: float) -> float:
+        """The setpoint, told with velocity ``v``, that brings the slide to ``p`` although it trails.
+
+        ``follow`` turned round: 2(1 - ff)v/wn for the velocity, a/wn² for the acceleration ``a``.
+        """
+        return p + (2.0 * (1.0 - self.axis.feed_forward) * v + a / self._wn) / self._wn
+
     def follow(self, p: float, v: float, dt: float) -> bool:
         """One step of the powered drive towards setpoint ``p`` ``v``; True when the following error trips it.
 

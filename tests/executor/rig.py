@@ -43,10 +43,13 @@ class Rig:
     watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
     clock_kind: type[StepClock] = StepClock
     made: Iterable[Block] | None = None  # run these instead of interpreting
+    gear: bool = True  # whether the driver follows the spindle by itself
 
     def __post_init__(self) -> None:
         self.clock = self.clock_kind()
         self.sim: Simulation = simulated(self.machine, self.clock)
+        if not self.gear:
+            self.sim = self.sim._replace(ports=dataclasses.replace(self.sim.ports, gear=None))
         self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
         self.executor.tick()
 

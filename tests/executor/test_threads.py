@@ -1,4 +1,7 @@
-"""Threads on the simulated lathe: lead and entry angle on a wandering spindle, holds, losses, stalls."""
+"""Threads on the simulated lathe: lead and entry angle on a wandering spindle, holds, losses, stalls.
+
+On a driver that follows the spindle by itself, and on one that gets setpoints in time.
+"""
 
 from __future__ import annotations
 
@@ -29,6 +32,7 @@ class Recorder:
     """At every tick of a thread: which block, setpoint and true place of Z, turns of the spindle."""
 
     rig: Rig
+    lead: float = LEAD
     rows: dict[int, list[tuple[float, float, float]]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -48,18 +52,16 @@ class Recorder:
             table = np.array(rows)
             z = table[:, column]
             part = table[(z <= 0.0) & (z >= -1.0)]
-            found.append(np.stack([part[:, column], part[:, column] / LEAD + abs(part[:, 2])], axis=1))
+            found.append(np.stack([part[:, column], part[:, column] / self.lead + abs(part[:, 2])], axis=1))
         return found
 
 
-def lead_errors(phases: list[FloatArray]) -> list[float]:
+def lead_errors(phases: list[FloatArray], lead: float = LEAD) -> list[float]:
     """Of each pass, how much of an inch the thread is longer or shorter anywhere within its inch."""
-    return [float(np.ptp(each[:, 1])) * LEAD for each in phases]
+    return [float(np.ptp(each[:, 1])) * lead for each in phases]
 
 
-def entries(
-    phases: list[FloatArray],
-) -> FloatArray:
+def entries(phases: list[FloatArray]) -> FloatArray:
     """How far the angle at which each pass enters the work is from their mean, degrees."""
     angles = np.array([each[0, 1] % 1.0 for each in phases]) * 360.0
     spread = (angles - angles[0] + 180.0) % 360.0 - 180.0
@@ -67,11 +69,17 @@ def entries(
     return off
 
 
+@pytest.fixture(params=[True, False], ids=["gear", "time"])
+def gear(request: pytest.FixtureRequest) -> bool:
+    """Whether the driver has a gear."""
+    return bool(request.param)
+
+
 @pytest.mark.parametrize(
     ("period", "clock"), [(1.0, "step"), (2.0, "step"), (3.0, "step"), (2.0, "creeping")]
 )
-def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str) -> None:
-    rig = Rig(clock_kind=CreepingClock) if clock == "creeping" else Rig()
+def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str, gear: bool) -> None:
+    rig = Rig(clock_kind=CreepingClock, gear=gear) if clock == "creeping" else Rig(gear=gear)
     rig.sim.machine.spindle_wander(0.02, period)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
@@ -86,14 +94,48 @@ def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str) -> Non
     assert rig.said("thread") == []
 
 
+@pytest.mark.parametrize(
+    ("lead", "rpm", "period"),
+    [
+        (0.01, 600, 0.25),
+        (0.01, 3000, 0.25),
+        (0.05, 60, 0.25),
+        (0.05, 600, 0.25),
+        (0.05, 600, 0.5),
+        (0.05, 3000, 0.25),
+        (0.1, 2500, 0.25),
+        (0.2, 1400, 0.25),
+        (0.4, 300, 0.25),
+        (0.4, 300, 2.0),
+        (0.4, 700, 0.25),
+        (0.4, 700, 1.0),
+    ],
+)
+def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, period: float) -> None:
+    rig = Rig()
+    rig.sim.machine.spindle_wander(0.02, period)
+    recorder = Recorder(rig, lead)
+    coarse = "G35F2\nG92X.237Z.6\n" if lead > 0.2 else ""
+    head = f"G90G94F300G73\nM03S{rpm}\nT4\nX.3Z.6\nX.237\n{coarse}"
+    rig.start(f"{head}G33X.212Z-1.2I.025K{lead}P\nM30\n", TOOLS)
+    rig.until(State.IDLE, State.FAULT, limit=300)
+    assert rig.shot.alarms == ()
+    assert len(recorder.rows) == 4
+    for column in (0, 1):
+        phases = recorder.phases(column)
+        assert max(lead_errors(phases, lead)) < 0.0002
+        assert entries(phases).max() < 0.2
+    assert rig.said("thread") == []
+
+
 def test_without_following_it_would_not_hold() -> None:
     """The wander alone, at the commanded speed, is thirty times what the test above allows."""
     swing = 0.02 * 10.0 * 2.0 / (2.0 * math.pi)  # turns, of 10 a second, in a period of 2 s
     assert 2 * swing * LEAD > 30 * 0.0002
 
 
-def test_passes_at_other_speeds_enter_at_the_same_angle() -> None:
-    rig = Rig()
+def test_passes_at_other_speeds_enter_at_the_same_angle(gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
     for pot in (1.0, 0.8, 0.6):
@@ -105,8 +147,8 @@ def test_passes_at_other_speeds_enter_at_the_same_angle() -> None:
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_a_spindle_that_turns_backwards() -> None:
-    rig = Rig()
+def test_a_spindle_that_turns_backwards(gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL.replace("M03", "M04"), TOOLS)
     rig.until(State.IDLE, State.FAULT)
@@ -114,8 +156,8 @@ def test_a_spindle_that_turns_backwards() -> None:
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_the_pull_out_stays_in_step() -> None:
-    rig = Rig()
+def test_the_pull_out_stays_in_step(gear: bool) -> None:
+    rig = Rig(gear=gear)
     seen: list[tuple[float, float, float]] = []
 
     def look(shot: Snapshot) -> None:
@@ -135,8 +177,8 @@ def test_the_pull_out_stays_in_step() -> None:
     assert x1 - x0 == pytest.approx(z0 - z1, abs=0.03)
 
 
-def test_it_ends_where_the_block_says() -> None:
-    rig = Rig()
+def test_it_ends_where_the_block_says(gear: bool) -> None:
+    rig = Rig(gear=gear)
     rig.start(HEAD + "G33X.2Z-.5I.025K.05PO\nM00\nM30\n", TOOLS)
     ends: list[tuple[float, float]] = []
     rig.watch.append(lambda shot: ends.append(shot.demand[:2]) if shot.block_text.endswith("P") else None)
@@ -151,8 +193,8 @@ def in_thread(rig: Rig, z: float = -0.2) -> None:
 
 
 @pytest.mark.parametrize(("program", "z"), [(EXTERNAL, -1.2 - 0.075), (STRAIGHT_OUT, -1.2)])
-def test_hold_in_a_pass_acts_at_its_end(program: str, z: float) -> None:
-    rig = Rig()
+def test_hold_in_a_pass_acts_at_its_end(program: str, z: float, gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(program, TOOLS)
     in_thread(rig)
@@ -171,8 +213,8 @@ def test_hold_in_a_pass_acts_at_its_end(program: str, z: float) -> None:
     [(EXTERNAL, -0.2), (STRAIGHT_OUT, -0.2), (EXTERNAL, -1.19)],
     ids=["P", "straight", "pull-out"],
 )
-def test_a_lost_spindle_never_goes_deeper(program: str, z: float) -> None:
-    rig = Rig()
+def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) -> None:
+    rig = Rig(gear=gear)
     rig.start(program, TOOLS)
     in_thread(rig, z)
     depth = rig.shot.demand[0]
@@ -187,8 +229,8 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float) -> None:
     assert rig.shot.rpm_command == 0.0
 
 
-def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold() -> None:
-    rig = Rig()
+def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL.replace("S600", "S60"), TOOLS)  # a turn takes a second
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
@@ -203,9 +245,9 @@ def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold() -> None:
     assert entries(recorder.phases(0)).max() < 0.2
 
 
-def test_a_thread_at_the_slides_greatest_speed_is_no_alarm() -> None:
+def test_a_thread_at_the_slides_greatest_speed_is_no_alarm(gear: bool) -> None:
     """300 in/min and a spindle that runs 2 % fast: the slide falls behind, and that is told."""
-    rig = Rig()
+    rig = Rig(gear=gear)
     rig.sim.machine.spindle_wander(0.02, 2.0)
     rig.start(HEAD.replace("S600", "S2000").replace("Z.2", "Z.5") + "G33X.212Z-2.I.025K.15P\nM30\n", TOOLS)
     rig.until(State.IDLE, State.FAULT)
@@ -214,8 +256,8 @@ def test_a_thread_at_the_slides_greatest_speed_is_no_alarm() -> None:
     assert rig.said("thread")
 
 
-def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    rig = Rig()
+def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPatch, gear: bool) -> None:
+    rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
@@ -224,8 +266,8 @@ def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPa
     assert rig.shot.demand[1] == pytest.approx(0.2 * INCH)  # the next pass did not begin
 
 
-def test_reset_in_a_pass_stops_along_the_thread() -> None:
-    rig = Rig()
+def test_reset_in_a_pass_stops_along_the_thread(gear: bool) -> None:
+    rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
     before = rig.shot.demand
@@ -236,8 +278,8 @@ def test_reset_in_a_pass_stops_along_the_thread() -> None:
     assert -2.0 < rig.shot.demand[1] - before[1] < 0.0
 
 
-def test_a_host_that_is_away_leaves_a_whole_pass() -> None:
-    rig = Rig()
+def test_a_host_that_is_away_leaves_a_whole_pass(gear: bool) -> None:
+    rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
     rig.tick(6.0)  # the pass takes less
@@ -245,21 +287,21 @@ def test_a_host_that_is_away_leaves_a_whole_pass() -> None:
     assert rig.shot.alarms == ()
 
 
-def test_a_spindle_that_is_braked_in_a_pass_is_followed_and_told() -> None:
-    rig = Rig()
+def test_a_spindle_that_is_braked_in_a_pass_is_followed_and_told(gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
     rig.sim.machine.set_spindle_pot(0.7)
     rig.until_true(lambda shot: shot.block_text.endswith("P"))
-    assert len(rig.said("thread")) == 1
+    assert len(rig.said("thread")) == (0 if gear else 1)
     last = recorder.phases(0)[0][-5:, 1]
     first = recorder.phases(0)[0][0, 1]
     assert np.abs(last - first).max() < 0.002  # of a turn: in step again
 
 
-def test_feed_override_does_not_touch_a_pass() -> None:
-    rig = Rig()
+def test_feed_override_does_not_touch_a_pass(gear: bool) -> None:
+    rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)

@@ -1,0 +1,261 @@
+"""Slides that follow the spindle inside the driver: cams, slipping, what releases and what brakes a gear."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from core.ports import Cam, DriverError, Gear, Segments, Stop
+from drivers.phase import Phase
+from drivers.simulated import Simulation, StepClock
+from tests.drivers.machines import play, ramp, simulation
+
+ZERO = (0.0, 0.0, 0.0)
+LEAD = 2.0  # mm a turn
+
+
+def turning(rpm: float = 600.0) -> tuple[Simulation, StepClock, Gear]:
+    """A lathe whose spindle is up to speed, and its gear."""
+    sim, clock = simulation()
+    sim.ports.spindle.run(rpm)
+    play(sim, clock, 4.0)
+    assert sim.ports.gear is not None
+    return sim, clock, sim.ports.gear
+
+
+def cam(sim: Simulation, lead: float = LEAD, turns: float = 10.0, start: float = 1.0) -> Cam:
+    """Z, from ``start`` turns ahead: half a turn of running up, ``turns`` in step, half a turn to rest."""
+    read = sim.ports.spindle.angle()
+    assert read is not None
+    sign = math.copysign(1.0, sim.machine.spindle_rpm())
+    a = 2.0 * lead
+    z = np.array([0.0, 0.25 * lead, (0.25 + turns) * lead])
+    v, acc, still = np.array([0.0, lead, lead]), np.array([a, 0.0, -a]), np.zeros(3)
+    way = Segments(
+        t=np.array([0.0, 0.5, 0.5 + turns]),
+        dt=np.array([0.5, turns, 0.5]),
+        p=np.column_stack([still, z, still]),
+        v=np.column_stack([still, v, still]),
+        a=np.column_stack([still, acc, still]),
+    )
+    return Cam(read[1] + sign * start, sign, way)
+
+
+def z_of(sim: Simulation, clock: StepClock) -> float:
+    return sim.ports.axes.demand_at(clock.now())[0][1]
+
+
+@pytest.mark.parametrize("rpm", [600.0, -600.0])
+def test_setpoints_follow_the_true_angle(rpm: float) -> None:
+    sim, clock, gear = turning(rpm)
+    sim.machine.spindle_wander(0.02, 0.5)
+    made = cam(sim)
+    gear.mesh(made)
+    off = []
+    for _ in range(150):
+        clock.advance(0.01)
+        z = z_of(sim, clock)
+        if LEAD < z < 10.0 * LEAD:
+            turns = made.sign * (sim.machine.spindle_turns() - made.zero)
+            off.append(z - LEAD * (turns - 0.25))  # running up for half a turn covers a quarter of a lead
+    assert len(off) > 80
+    assert np.abs(off).max() < LEAD * 0.0003  # a tenth of a degree
+    assert gear.geared() is None
+    assert z_of(sim, clock) == pytest.approx(10.5 * LEAD)
+    assert sim.ports.axes.horizon() <= clock.now()
+
+
+def test_then_goes_on_by_time_at_once() -> None:
+    sim, clock, gear = turning()
+    made = cam(sim)
+    end = (0.0, 10.5 * LEAD, 0.0)
+    gear.mesh(made._replace(then=ramp(0.0, end, 60.0, 0.2)))
+    while gear.geared() is not None:
+        clock.advance(0.001)
+    clock.advance(0.02)
+    assert sim.ports.axes.demand_at(clock.now())[1][0] == pytest.approx(60.0)
+    clock.advance(0.22)
+    assert sim.ports.axes.demand_at(clock.now())[0] == pytest.approx((60.0 * 0.22, 10.5 * LEAD, 0.0))
+
+
+def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
+    sim, clock, gear = turning()
+    gear.mesh(cam(sim, turns=60.0))
+    play(sim, clock, 0.5)
+    sim.ports.spindle.run(0.0)
+    play(sim, clock, 3.0)
+    stood = z_of(sim, clock)
+    assert stood > LEAD
+    play(sim, clock, 2.0)
+    assert z_of(sim, clock) == pytest.approx(stood, abs=1e-6)
+    assert sim.ports.axes.horizon() == math.inf
+    assert sim.ports.axes.sample().fault == ""
+    sim.ports.spindle.run(600.0)
+    play(sim, clock, 1.0)
+    assert z_of(sim, clock) > stood + 4 * LEAD
+
+
+def test_a_gear_slips_at_the_slides_greatest_speed_and_catches_up() -> None:
+    sim, clock, gear = turning(600.0)
+    gear.mesh(cam(sim, lead=12.6, turns=8.0))  # 126 mm/s of 127
+    sim.machine.spindle_wander(0.03, 0.5)
+    speeds, lags = [], []
+    while gear.geared() is not None:
+        clock.advance(0.005)
+        speeds.append(sim.ports.axes.demand_at(clock.now())[1][1])
+        geared = gear.geared()
+        lags.append(geared.lag if geared else 0.0)
+    assert max(speeds) < 127.0 * 1.001
+    assert max(lags) > 0.01
+    caught_up = lags[np.argmax(lags) :]
+    assert min(caught_up[:-1]) == pytest.approx(0.0, abs=1e-9)
+    assert min(lags) > -0.001  # never ahead
+    assert sim.ports.axes.sample().fault == ""
+
+
+def test_a_later_way_replaces_the_end() -> None:
+    sim, clock, gear = turning()
+    made = cam(sim, turns=60.0)
+    gear.mesh(made)
+    play(sim, clock, 0.6)
+    short = cam(sim, turns=20.0).way
+    cut = Segments(*(part[1:] for part in short))
+    at = 8.0
+    cut.t[0], cut.dt[0] = at, 20.5 - at
+    cut.p[0, 1] = LEAD * (at - 0.25)
+    gear.mesh(made._replace(way=cut))
+    play(sim, clock, 3.0)
+    assert z_of(sim, clock) == pytest.approx(20.5 * LEAD)
+
+
+def test_the_drives_own_stop_brakes_from_where_they_are() -> None:
+    sim, clock, gear = turning()
+    gear.mesh(cam(sim, turns=60.0))
+    play(sim, clock, 0.6)
+    began = z_of(sim, clock)
+    sim.ports.axes.stop(Stop.RAMP_HOLD)
+    assert gear.geared() is None
+    play(sim, clock, 0.5)
+    speed = LEAD * 10.0
+    assert z_of(sim, clock) - began == pytest.approx(speed**2 / 2.0 / 3048.0, abs=1e-3)
+    assert sim.ports.axes.sample().enabled
+
+
+# --- refusals -----------------------------------------------------------------------------------------------
+
+
+def test_a_standing_spindle_is_not_followed() -> None:
+    sim, _ = simulation()
+    assert sim.ports.gear is not None
+    with pytest.raises(DriverError, match="does not turn"):
+        sim.ports.gear.mesh(cam(sim))
+
+
+def test_nor_one_that_turns_the_other_way() -> None:
+    sim, _, gear = turning(-600.0)
+    made = cam(sim)
+    with pytest.raises(DriverError, match="does not turn"):
+        gear.mesh(made._replace(sign=1.0))
+
+
+def test_a_way_that_begins_within_the_commit_is_too_early() -> None:
+    sim, _, gear = turning()  # ten turns a second: .3 turn in 30 ms
+    with pytest.raises(DriverError, match="too early"):
+        gear.mesh(cam(sim, start=0.25))
+    assert gear.geared() is None
+    gear.mesh(cam(sim, start=0.35))
+
+
+def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
+    sim, _, gear = turning()
+    made = cam(sim)
+    with pytest.raises(DriverError, match=r"Z: .*jump in position"):
+        gear.mesh(made._replace(way=made.way._replace(p=made.way.p + np.array([0.0, 1.0, 0.0]))))
+    with pytest.raises(DriverError, match="do not end at rest"):
+        gear.mesh(made._replace(way=Segments(*(part[:2] for part in made.way))))
+    assert gear.geared() is None
+
+
+def test_another_index_is_refused_once_it_moves() -> None:
+    sim, clock, gear = turning()
+    made = cam(sim, turns=60.0)
+    gear.mesh(made._replace(zero=made.zero + 1.0))
+    gear.mesh(made)  # nothing has moved yet
+    play(sim, clock, 0.5)
+    with pytest.raises(DriverError, match="another index"):
+        gear.mesh(made._replace(zero=made.zero + 1.0))
+
+
+def test_too_fast_for_the_slides_and_out_of_their_travel() -> None:
+    sim, _, gear = turning(1500.0)
+    with pytest.raises(DriverError, match="Z: setpoints faster"):
+        gear.mesh(cam(sim, lead=6.0))  # 150 mm/s
+    with pytest.raises(DriverError, match="Z: setpoints leave the travel"):
+        gear.mesh(cam(sim, turns=100.0))  # to 201 mm
+
+
+def test_not_while_the_slides_move_by_time() -> None:
+    sim, clock, gear = turning()
+    sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.5))
+    play(sim, clock, 0.1)
+    with pytest.raises(DriverError, match="have to rest"):
+        gear.mesh(cam(sim))
+
+
+def test_setpoints_in_time_release_a_gear_that_waits_and_no_other() -> None:
+    sim, clock, gear = turning()
+    gear.mesh(cam(sim, start=5.0))
+    with pytest.raises(DriverError, match="follow the spindle"):
+        sim.ports.axes.splice(ramp(clock.now() + 1.0, ZERO, 60.0, 0.1))  # will have moved by then
+    sim.ports.axes.splice(ramp(clock.now() + 0.1, ZERO, 60.0, 0.1))
+    assert gear.geared() is None
+    play(sim, clock, 2.0)
+    assert z_of(sim, clock) == 0.0
+
+
+def test_drives_that_are_off_follow_nothing() -> None:
+    sim, clock, gear = turning()
+    sim.ports.axes.enable(False)
+    with pytest.raises(DriverError, match="off"):
+        gear.mesh(cam(sim))
+    sim.ports.axes.enable(True)
+    gear.mesh(cam(sim))
+    play(sim, clock, 0.5)
+    sim.machine.press_estop()
+    play(sim, clock, 0.5)
+    assert gear.geared() is None
+
+
+# --- the angle ----------------------------------------------------------------------------------------------
+
+
+def test_the_angle_of_a_swinging_spindle_from_an_encoder_with_steps() -> None:
+    def truth(t: float) -> float:
+        return 50.0 * (t - 0.02 * 0.25 / (2 * math.pi) * math.cos(2 * math.pi * t / 0.25))  # 3000 rpm
+
+    phase = Phase(0.0, truth(0.0), 50.0)
+    off = []
+    for k in range(1, 2000):
+        t = 0.001 * k
+        phase.note(t, round(truth(t) * 4096) / 4096)
+        off.append(phase.turns - truth(t))
+    assert np.abs(off[100:]).max() * 360.0 < 0.06
+    jerk = 50.0 * 0.02 * (2 * math.pi / 0.25) ** 2  # what the filter trails: jerk over the cube of its pole
+    assert np.abs(off[100:]).max() < jerk / 250.0**3 + 1.0 / 4096
+
+
+def test_an_accelerating_spindle_is_met_without_lag() -> None:
+    phase = Phase(0.0, 0.0, 0.0)
+    for k in range(1, 1000):
+        phase.note(0.001 * k, 12.5 * (0.001 * k) ** 2)
+    assert phase.turns == pytest.approx(12.5 * 0.999**2, abs=1e-9)
+    assert phase.at(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
+
+
+def test_the_same_reading_again_says_nothing() -> None:
+    phase = Phase(1.0, 5.0, 10.0)
+    phase.note(1.0, 7.0)
+    phase.note(0.5, 9.0)
+    assert (phase.t, phase.turns, phase.speed) == (1.0, 5.0, 10.0)
