@@ -6,52 +6,70 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from app.cli.errors import EXIT_OK, CommandError
-from app.cli.offset_file import KEYS, out_of_range
+from app.cli.offset_file import out_of_range, shown
 from app.cli.opened_store import opened_store
 from app.cli.toml_file import unknown
 from app.desk.arithmetic import EntryError, value_of
-from core.store.rows import MM_PER_INCH, OFFSETS, Change, Kind, inches
+from core.store.fields import FIELDS, Field, Sort
+from core.store.rows import MM_PER_INCH, OFFSETS, Change, Kind, Row, ToolRow, Value, inches
 
 _OFFSET = re.compile(r"([TD])0*(\d{1,4})", re.IGNORECASE)
 _KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY}
 _LETTER = {kind: letter for letter, kind in _KIND.items()}
 
 
+_FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
+
+
 def _show(args: argparse.Namespace) -> int:
     with opened_store(read_only=True) as store:
-        tools = {n: _in_inches(row._asdict()) for n, row in store.tools().items()}
-        secondary = {n: _in_inches(row._asdict()) for n, row in store.secondary().items()}
+        rows: dict[Kind, dict[int, Row]] = {
+            Kind.TOOL: {**store.tools()},
+            Kind.SECONDARY: {**store.secondary()},
+        }
     if args.json:
-        sys.stdout.write(json.dumps({"tool": tools, "secondary": secondary}) + "\n")
+        told = {
+            kind.value: {n: _in_inches(kind, row) for n, row in table.items()} for kind, table in rows.items()
+        }
+        sys.stdout.write(json.dumps(told) + "\n")
         return EXIT_OK
-    lines = [_line(f"T{n}", values.values()) for n, values in tools.items()]
-    lines += [_line(f"D{n}", values.values()) for n, values in secondary.items()]
+    lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
     sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
     return EXIT_OK
 
 
-def _in_inches(row: dict[str, float]) -> dict[str, float]:
-    return {key: inches(value) for key, value in row.items()}
+def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
+    """Every field by its name, lengths in inches."""
+    values: list[Value] = list(row)
+    return {
+        name: _typed(field, value) for (name, field), value in zip(FIELDS[kind].items(), values, strict=True)
+    }
 
 
-def _line(name: str, values: Iterable[float]) -> str:
-    x, z, r = values
-    return f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
+def _line(name: str, row: Row) -> str:
+    x, z, r = (inches(value) for value in row[:3])
+    line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
+    return line + _more(row) if isinstance(row, ToolRow) else line
+
+
+def _more(row: ToolRow) -> str:
+    """What else is set of a tool."""
+    wear = (
+        f"  wear X {inches(row.wear_x):+.5f} Z {inches(row.wear_z):+.5f}" if row.wear_x or row.wear_z else ""
+    )
+    tip = f"  tip {row.quadrant}" if row.quadrant else ""
+    return wear + tip + ("  master" if row.master else "") + (f"  {row.remark}" if row.remark else "")
 
 
 def _set(args: argparse.Namespace) -> int:
     kind, number = _named(args.offset)
     values = _values(kind, args.values)
     with opened_store() as store:
-        if kind is Kind.TOOL:
-            store.set_tool(number, args.why, **values, who="command line").result()
-        else:
-            store.set_secondary(number, args.why, **values, who="command line").result()
-        new = (store.tools() if kind is Kind.TOOL else store.secondary())[number]
-    sys.stdout.write(_line(f"{_LETTER[kind]}{number}", (inches(value) for value in new)) + "\n")
+        new = store.set_offset(kind, number, args.why, values, who="command line").result()
+    sys.stdout.write(_line(f"{_LETTER[kind]}{number}", new) + "\n")
     return EXIT_OK
 
 
@@ -62,30 +80,49 @@ def _named(text: str) -> tuple[Kind, int]:
     return _KIND[match[1].upper()], int(match[2])
 
 
-def _values(kind: Kind, entries: list[str]) -> dict[str, float]:
-    """Keys and millimetres from ``x=1.25`` entries. Raises CommandError for the first that is no good."""
-    values: dict[str, float] = {}
+def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
+    """Fields from entries such as ``x=1.25``, lengths mm. Raises CommandError for the first mistake."""
+    values: dict[str, Value] = {}
     for entry in entries:
         key, equals, text = entry.partition("=")
         key = key.strip().lower()
         if not equals:
             raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as x=1.25")
-        if key not in KEYS[kind]:
-            raise CommandError(unknown(key, KEYS[kind]))
+        if key not in FIELDS[kind]:
+            raise CommandError(unknown(key, FIELDS[kind]))
         if key in values:
             raise CommandError(f"{key} is given twice; give it once")
-        values[key] = _inches_entered(kind, key, text) * MM_PER_INCH
+        values[key] = _entered(FIELDS[kind][key], text)
     return values
 
 
-def _inches_entered(kind: Kind, key: str, text: str) -> float:
+def _entered(field: Field, text: str) -> Value:
+    value = _value(field, text)
+    if mistake := out_of_range(field, value):
+        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
+    return value
+
+
+def _typed(field: Field, value: Value) -> Value:
+    """The value again in the unit of the entry."""
+    return inches(value) if field.sort is Sort.LENGTH and not isinstance(value, str) else value
+
+
+def _value(field: Field, text: str) -> Value:
+    """What the text comes to; lengths mm. Raises CommandError."""
+    if field.sort is Sort.TEXT:
+        return text.strip()
+    if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
+        raise CommandError(f"{field.name} = {text} is neither 1 nor 0")
+    if field.sort is Sort.FLAG:
+        return _FLAGS[text.strip().lower()]
     try:
         value = value_of(text)
     except EntryError as error:
-        raise CommandError(f"{key}: {error}") from error
-    if mistake := out_of_range(kind, key, value):
-        raise CommandError(f"{key} = {value:g} {mistake}")
-    return value
+        raise CommandError(f"{field.name}: {error}") from error
+    if field.sort is Sort.WHOLE:
+        return int(value) if value.is_integer() else value
+    return value * MM_PER_INCH
 
 
 def _clear(args: argparse.Namespace) -> int:
@@ -112,15 +149,14 @@ def _history(args: argparse.Namespace) -> int:
 def _change(change: Change) -> dict[str, object]:
     """One change for a program to read, inches."""
     fields: dict[str, object] = change._asdict()
-    for side in ("old", "new"):
-        values = change.old if side == "old" else change.new
-        fields[side] = values and dict(zip(KEYS[change.kind], map(inches, values), strict=True))
+    for side, row in (("old", change.old), ("new", change.new)):
+        fields[side] = row and _in_inches(change.kind, row)
     return fields
 
 
 def _told(change: Change) -> str:
     """One change for a person to read."""
-    sides = ["not set" if v is None else _line("", map(inches, v)).strip() for v in (change.old, change.new)]
+    sides = ["not set" if row is None else _line("", row).strip() for row in (change.old, change.new)]
     name = f"{_LETTER[change.kind]}{change.number}"
     return f"{change.at}  {name:<3} {' → '.join(sides)}  {change.why} ({change.who})"
 

@@ -15,10 +15,16 @@ def add_parser(subparsers: SubParsers) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="all offsets that are set")
     show.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
-    change = actions.add_parser("set", help="set T3 x=1.25 z=-.5, or D4 x=-.0005 (a radius, as it is stored)")
+    change = actions.add_parser(
+        "set", help="set T3 x=1.25 wear_x=-.0005 quadrant=3, or D4 x=-.0005 (a radius, as stored)"
+    )
     change.add_argument("offset", metavar="T3|D4")
     change.add_argument(
-        "values", metavar="KEY=VALUE", nargs="+", help="inches; sums such as x=.5-.002 are fine"
+        "values",
+        metavar="KEY=VALUE",
+        nargs="+",
+        help="inches, sums such as x=.5-.002 are fine; "
+        "T: x z nose_radius wear_x wear_z quadrant remark master, D: x z r",
     )
     clear = actions.add_parser("clear", help="clear D: all secondary offsets")
     clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)

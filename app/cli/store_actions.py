@@ -9,11 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.cli.errors import EXIT_ERRORS, EXIT_OK
-from app.cli.offset_file import read_offsets
+from app.cli.offset_file import read_rows
 from app.cli.opened_store import opened_store, told
 from app.desk.home import home
 from core.store import backup, checking, database, export
-from core.store.rows import SecondaryRow, ToolRow
 
 
 def _backup(args: argparse.Namespace) -> int:
@@ -41,15 +40,10 @@ def _export(args: argparse.Namespace) -> int:
 def _import(args: argparse.Namespace) -> int:
     folder = Path(args.path)
     offsets_file = folder / export.OFFSETS
-    tools, secondary = read_offsets(offsets_file) if offsets_file.exists() else ({}, {})
+    tools, secondary = read_rows(offsets_file) if offsets_file.exists() else ({}, {})
     with opened_store() as store:
         programs = export.program_files(folder)
-        store.import_all(
-            programs,
-            {n: ToolRow(tool.x, tool.z, tool.nose_radius) for n, tool in tools.items()},
-            {n: SecondaryRow(row.x, row.z, row.r) for n, row in secondary.items()},
-            f"import of {folder.name}",
-        ).result()
+        store.import_all(programs, tools, secondary, f"import of {folder.name}").result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
     sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
     return EXIT_OK

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 from app.desk.home import home
 from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.force import secondary_offsets, tool_offsets
 from core.interpreter.setup import SecondaryOffset, ToolOffset
-from core.store.rows import Kind
+from core.store.rows import SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
@@ -40,9 +41,7 @@ def stored_offsets() -> Offsets:
 
 def offsets_of(store: Store) -> Offsets:
     """What an open store holds, by value."""
-    tools = {n: ToolOffset(row.x, row.z, row.nose_radius) for n, row in store.tools().items()}
-    secondary = {n: SecondaryOffset(row.x, row.z, row.r) for n, row in store.secondary().items()}
-    return tools, secondary
+    return tool_offsets(store.tools()), secondary_offsets(store.secondary())
 
 
 def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
@@ -53,11 +52,11 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
     if journal is not None and offsets is stored_offsets:
         return journal.book()
     tools, secondary = offsets()
-    values = {
-        Kind.TOOL: {n: (row.x, row.z, row.nose_radius) for n, row in tools.items()},
-        Kind.SECONDARY: {n: (row.x, row.z, row.r) for n, row in secondary.items()},
-    }
-    return OffsetBook(locked=OF_A_FILE, values=values)
+    return OffsetBook(
+        locked=OF_A_FILE,
+        tools={n: ToolRow(row.x, row.z, row.nose_radius) for n, row in tools.items()},
+        secondary={n: SecondaryRow(row.x, row.z, row.r) for n, row in secondary.items()},
+    )
 
 
 def chosen_offsets(path: str | None) -> Callable[[], Offsets]:

@@ -17,6 +17,7 @@ from app.desk import prompts
 from app.desk.alarms import AlarmLog
 from app.desk.hands import OVERRIDE_MOST, StationHands, stepped
 from app.desk.offsets.book import NONE_KEPT, OffsetBook
+from app.desk.offsets.force import use_offsets
 from app.desk.pulse import Pulse
 from app.desk.session import Loaded, Phase, Session
 from app.desk.shelf import Shelf
@@ -179,6 +180,7 @@ class Desk:
             self._rebuild = True
         if self._rebuild and snapshot.state not in UNDER_WAY and not self.book.busy:
             self._rebuild = False
+            self.post(use_offsets(self.book.tools, self.book.secondary))  # at once, for the loaded tool
             now = self.session.now
             if now.path is not None:
                 self.session.load(now.path, now.block_delete)

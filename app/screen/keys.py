@@ -71,10 +71,13 @@ _TYPED = {
     Key.Key_Tab: "Tab",
     Key.Key_Up: "Up",
     Key.Key_Down: "Down",
+    Key.Key_Left: "Left",
+    Key.Key_Right: "Right",
     Key.Key_PageUp: "Page up",
     Key.Key_PageDown: "Page down",
 }
-TYPED_AGAIN = frozenset({"Back", "Up", "Down", "Page up", "Page down"})  # these may repeat by being held
+# These may repeat by being held.
+TYPED_AGAIN = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up", "Page down"})
 
 
 def typed_of(event: QKeyEvent) -> str:

@@ -8,7 +8,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages import EDITOR, MENU, SECCMP, TOOLS
 from app.screen.menu import MenuPage
-from app.screen.offsets.page import SeccmpPage, ToolsPage
+from app.screen.offsets.seccmp import SeccmpPage
+from app.screen.offsets.tools import ToolsPage
 from app.screen.pages import Host, Page
 
 MakePage = Callable[[Host, QWidget], Page]

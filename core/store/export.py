@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import json
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from core.store.errors import StoreError
-from core.store.rows import EventRow, inches
+from core.store.fields import FIELDS, Field, Sort
+from core.store.rows import EventRow, Kind, Value, inches
 from core.store.store import Store
 
 PROGRAMS, OFFSETS, EVENTS = "programs", "offsets.toml", "events.csv"
@@ -46,12 +48,20 @@ def _write_all(store: Store, folder: Path) -> int:
 
 def _offset_lines(store: Store) -> Iterator[str]:
     yield "# Offsets in inches, X a radius."
-    for number, tool in store.tools().items():
-        yield f"[tool.{number}]"
-        yield from (f"{key} = {inches(value)!r}" for key, value in tool._asdict().items())
-    for number, row in store.secondary().items():
-        yield f"[secondary.{number}]"
-        yield from (f"{key} = {inches(value)!r}" for key, value in row._asdict().items())
+    for kind, rows in ((Kind.TOOL, store.tools()), (Kind.SECONDARY, store.secondary())):
+        for number, row in rows.items():
+            yield f"[{kind.value}.{number}]"
+            for name, value in row._asdict().items():
+                yield f"{name} = {_toml(FIELDS[kind][name], value)}"
+
+
+def _toml(field: Field, value: Value) -> str:
+    """A value of an offset as TOML writes it."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(inches(value)) if field.sort is Sort.LENGTH else str(value)
 
 
 def _write_events(store: Store, path: Path) -> None:

@@ -35,12 +35,12 @@ class StoreReader:
     def tools(self) -> dict[int, ToolRow]:
         """The tool offsets that have been set."""
         with self.read() as connection:
-            return {n: ToolRow(*row) for n, row in offsets.current(connection, Kind.TOOL).items()}
+            return offsets.tools(connection)
 
     def secondary(self) -> dict[int, SecondaryRow]:
         """The secondary offsets that have been set."""
         with self.read() as connection:
-            return {n: SecondaryRow(*row) for n, row in offsets.current(connection, Kind.SECONDARY).items()}
+            return offsets.secondary(connection)
 
     def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
         """Changes of offsets, newest first."""

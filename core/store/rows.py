@@ -11,6 +11,9 @@ OFFSETS = range(1, 33)
 TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
 SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
 RADIUS_MAX = 50.8  # mm: 2 in
+WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
+REMARK_LONGEST = 40  # characters
+Value = float | int | str | bool
 
 
 class Kind(StrEnum):
@@ -21,11 +24,24 @@ class Kind(StrEnum):
 
 
 class ToolRow(NamedTuple):
-    """Machine position at which the tip stands on part zero, and the nose radius."""
+    """Machine position at which the tip stood on part zero when it was touched off, and its wear since.
+
+    ``quadrant`` is where the tip lies as seen from the nose centre, 0…9; one tool at most is the master.
+    """
 
     x: float = 0.0
     z: float = 0.0
     nose_radius: float = 0.0
+    wear_x: float = 0.0
+    wear_z: float = 0.0
+    quadrant: int = 0
+    remark: str = ""
+    master: bool = False
+
+    @property
+    def offset(self) -> tuple[float, float]:
+        """Geometry and wear together: what the control moves by."""
+        return self.x + self.wear_x, self.z + self.wear_z
 
 
 class SecondaryRow(NamedTuple):
@@ -36,8 +52,11 @@ class SecondaryRow(NamedTuple):
     r: float = 0.0
 
 
+Row = ToolRow | SecondaryRow
+
+
 class Change(NamedTuple):
-    """One offset's change: (x, z, r) before and after, None where it was not set. Ids give the order."""
+    """One offset's change: its row before and after, None where it was not set. Ids give the order."""
 
     id: int
     step: int
@@ -45,8 +64,8 @@ class Change(NamedTuple):
     at: str
     kind: Kind
     number: int
-    old: tuple[float, float, float] | None
-    new: tuple[float, float, float] | None
+    old: Row | None
+    new: Row | None
     why: str
     who: str
 

@@ -9,12 +9,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from core.store import offsets, programs, records
+from core.store import offsets, programs, records, toolset
 from core.store.errors import StoreError
 from core.store.offsets import Reason
 from core.store.opening import Opened, open_to_read, open_to_write
 from core.store.reading import StoreReader
-from core.store.rows import Change, EventRow, Kind, SecondaryRow, ToolRow, utc_now
+from core.store.rows import Change, EventRow, Kind, Row, SecondaryRow, ToolRow, Value, utc_now
+from core.store.toolset import Touch
 from core.store.writer import Operation, StoreWriter
 
 __all__ = ["Store", "StoreError"]
@@ -69,37 +70,30 @@ class Store(StoreReader):
             raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
         return self._writer.post(operation)
 
-    def set_tool(
-        self,
-        number: int,
-        why: str,
-        *,
-        x: float | None = None,
-        z: float | None = None,
-        nose_radius: float | None = None,
-        who: str = "operator",
-    ) -> Future[ToolRow]:
-        """Sets what is given of tool offset 1…32, mm; the rest stays."""
-        reason = Reason(why, who)
-        return self.write(
-            lambda c: ToolRow(*offsets.change(c, Kind.TOOL, number, reason, (x, z, nose_radius)))
-        )
+    def set_offset(
+        self, kind: Kind, number: int, why: str, values: Mapping[str, Value], *, who: str = "operator"
+    ) -> Future[Row]:
+        """Sets the fields of offset 1…32 that ``values`` names, mm and X a radius; the rest stays."""
+        reason, wanted = Reason(why, who), dict(values)
+        return self.write(lambda c: offsets.change(c, kind, number, reason, wanted))
 
-    def set_secondary(
-        self,
-        number: int,
-        why: str,
-        *,
-        x: float | None = None,
-        z: float | None = None,
-        r: float | None = None,
-        who: str = "operator",
-    ) -> Future[SecondaryRow]:
-        """Sets what is given of D offset 1…32, mm, X as the radius that is stored; the rest stays."""
-        reason = Reason(why, who)
-        return self.write(
-            lambda c: SecondaryRow(*offsets.change(c, Kind.SECONDARY, number, reason, (x, z, r)))
-        )
+    def set_tool(self, number: int, why: str, *, who: str = "operator", **values: Value) -> Future[Row]:
+        """Sets what is given of tool offset 1…32, by the names of ``ToolRow``."""
+        return self.set_offset(Kind.TOOL, number, why, values, who=who)
+
+    def set_secondary(self, number: int, why: str, *, who: str = "operator", **values: Value) -> Future[Row]:
+        """Sets what is given of D offset 1…32, by the names of ``SecondaryRow``."""
+        return self.set_offset(Kind.SECONDARY, number, why, values, who=who)
+
+    def touch_off(
+        self, number: int, touch: Touch, why: str, *, who: str = "operator"
+    ) -> Future[tuple[Change, ...]]:
+        """Sets a tool by what it touched, and all with it when it is the master; answers the changes."""
+        return self.write(lambda c: toolset.touch_off(c, number, touch, Reason(why, who)))
+
+    def choose_master(self, number: int, why: str, *, who: str = "operator") -> Future[tuple[Change, ...]]:
+        """The tool that the others are relative to, 0: none; no tip moves by it."""
+        return self.write(lambda c: toolset.choose_master(c, number, Reason(why, who)))
 
     def clear_secondary(self, why: str, *, who: str = "operator") -> Future[int]:
         """All D offsets at once, as one step of the history; answers how many were set."""
@@ -153,8 +147,8 @@ class Store(StoreReader):
             for name, text in texts.items():
                 programs.save(connection, name, text, why)
             for number, tool in tools.items():
-                offsets.change(connection, Kind.TOOL, number, reason, tool)
+                offsets.change(connection, Kind.TOOL, number, reason, tool._asdict())
             for number, row in secondary.items():
-                offsets.change(connection, Kind.SECONDARY, number, reason, row)
+                offsets.change(connection, Kind.SECONDARY, number, reason, row._asdict())
 
         return self.write(operation)

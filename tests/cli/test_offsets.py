@@ -36,6 +36,12 @@ def shown(capsys: Captured) -> object:
     return json.loads(capsys.readouterr().out)
 
 
+def tool(**fields: float | str) -> dict[str, object]:
+    """A tool as ``show --json`` tells it."""
+    zeros = dict.fromkeys(("x", "z", "nose_radius", "wear_x", "wear_z"), 0.0)
+    return {**zeros, "quadrant": 0, "remark": "", "master": False, **fields}
+
+
 def test_nothing_is_set_at_first_and_showing_makes_no_store(capsys: Captured, home: Path) -> None:
     assert shown(capsys) == {"tool": {}, "secondary": {}}
     assert main(["offsets", "show"]) == 0
@@ -47,7 +53,7 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
     assert main(["offsets", "set", "T3", "x=1.25", "z=-.5"]) == 0
     assert main(["offsets", "set", "D4", "x=-.0005"]) == 0
     assert shown(capsys) == {
-        "tool": {"3": {"x": 1.25, "z": -0.5, "nose_radius": 0.0}},
+        "tool": {"3": tool(x=1.25, z=-0.5)},
         "secondary": {"4": {"x": -0.0005, "z": 0.0, "r": 0.0}},
     }
     with Store.open(home, read_only=True) as store:  # millimetres inside; D's x is the radius as given
@@ -58,7 +64,7 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
 def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
     main(["offsets", "set", "t03", "x=1", "nose_radius=.015"])
     main(["offsets", "set", "T3", "x=.5-.002"])
-    assert shown(capsys) == {"tool": {"3": {"x": 0.498, "z": 0.0, "nose_radius": 0.015}}, "secondary": {}}
+    assert shown(capsys) == {"tool": {"3": tool(x=0.498, nose_radius=0.015)}, "secondary": {}}
 
 
 def test_text_has_five_places(capsys: Captured) -> None:
@@ -72,7 +78,7 @@ def test_clear_undo_and_history(capsys: Captured) -> None:
     main(["offsets", "set", "D1", "z=.1", "--why", "long part"])
     main(["offsets", "set", "T1", "x=1"])
     assert main(["offsets", "clear", "D"]) == 0
-    assert shown(capsys) == {"tool": {"1": {"x": 1.0, "z": 0.0, "nose_radius": 0.0}}, "secondary": {}}
+    assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
     assert main(["offsets", "undo"]) == 0
     capsys.readouterr()
     assert main(["offsets", "history", "--json"]) == 0
@@ -115,6 +121,13 @@ def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
         (("set", "T1", "x=50.1"), "-50…50 in"),
         (("set", "D1", "x=10.1"), "-10…10 in"),
         (("set", "D1", "r=-.001"), "0…2 in"),
+        (("set", "T1", "quadrant=10"), "quadrant = 10 is out of range; expected 0…9"),
+        (("set", "T1", "quadrant=two"), "quadrant: t in two is no number"),
+        (("set", "T1", "wear_x=.2"), "wear_x = 0.2 is out of range; expected -0.1…0.1 in"),
+        (("set", "T1", f"remark={'x' * 41}"), "up to 40 characters"),
+        (("set", "T1", "master=1"), "T1 was never set"),
+        (("set", "T1", "master=perhaps"), "neither 1 nor 0"),
+        (("set", "D1", "wear_x=.001"), "wear_x is unknown"),
         (("undo",), "no offset change to undo"),
         (("history", "--limit", "0"), "give 1 or more"),
     ],
@@ -141,10 +154,28 @@ def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -
     with Store.open(home) as store:
         store.set_tool(1, "screen", x=25.4).result()
         assert "in use by another TurnDesk" in refused(capsys, "set", "T1", "x=2")
-        assert shown(capsys) == {"tool": {"1": {"x": 1.0, "z": 0.0, "nose_radius": 0.0}}, "secondary": {}}
+        assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
 
 
 def test_damaged_store_is_told_in_one_line(capsys: Captured, home: Path) -> None:
     home.mkdir()
     (home / "turndesk.db").write_bytes(b"rubbish" * 100)
     assert "is not a database" in refused(capsys, "show")
+
+
+def test_every_field_of_a_tool_is_set_shown_and_told(capsys: Captured) -> None:
+    main(["offsets", "set", "T3", "x=1.25", "z=-.5", "master=1"])
+    main(["offsets", "set", "T3", "wear_x=-.001/2", "quadrant=3", "remark=rough, DCMT 11"])
+    assert shown(capsys) == {
+        "tool": {"3": tool(x=1.25, z=-0.5, wear_x=-0.0005, quadrant=3, remark="rough, DCMT 11", master=True)},
+        "secondary": {},
+    }
+    main(["offsets", "show"])
+    told = (
+        "T3  X +1.25000  Z -0.50000  R 0.00000  wear X -0.00050 Z +0.00000  tip 3  master  rough, DCMT 11\n"
+    )
+    assert capsys.readouterr().out == told
+    main(["offsets", "history", "--json"])
+    newest = json.loads(capsys.readouterr().out)[0]
+    assert (newest["old"]["wear_x"], newest["new"]["wear_x"]) == (0.0, -0.0005)
+    assert newest["who"] == "command line"

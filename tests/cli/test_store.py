@@ -64,6 +64,26 @@ def test_export_and_import_into_an_empty_home(
         assert store.history()[0].why == "import of out"
 
 
+def test_every_field_goes_with_an_export(
+    capsys: Captured, filled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, 'a "rough" one, 45°', master=True)
+    with Store.open(filled) as store:
+        store.set_tool(2, "x", **row._asdict()).result()
+    folder = tmp_path / "out"
+    main(["store", "export", str(folder)])
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "second"))
+    assert main(["store", "import", str(folder)]) == 0
+    with Store.open(tmp_path / "second") as store:
+        again = store.tools()[2]
+    assert again[:6] == pytest.approx(row[:6])
+    assert again[6:] == row[6:]
+    text = (folder / "offsets.toml").read_text().replace("master = false", "master = true")
+    (folder / "offsets.toml").write_text(text)
+    capsys.readouterr()
+    assert "both master; one tool at most is" in refused(capsys, "import", str(folder))
+
+
 def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> None:
     assert main(["store", "verify", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["problems"] == []

@@ -6,9 +6,11 @@ from pathlib import Path
 
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
+from app.compose.special import furnish
 from app.desk.desk import Desk
 from app.desk.editing.bench import Archive, Bench, NoArchive
 from app.desk.editing.editor import Editor
+from app.desk.keep import Keep, NothingKept
 from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
@@ -18,7 +20,6 @@ from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove
 from core.proving.timeline import Timeline, timed_blocks
-from core.store.rows import Kind
 from tests.screen.fake import FakeMachine
 
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
@@ -26,7 +27,11 @@ TOOLS = {n: ToolOffset(x, z) for n, x, z in ((1, -12.7, -76.2), (2, 6.35, -63.5)
 
 
 def desk_on(
-    machine: FakeMachine, *folders: Path, two_hand: bool = True, archive: Archive | None = None
+    machine: FakeMachine,
+    *folders: Path,
+    two_hand: bool = True,
+    archive: Archive | None = None,
+    keep: Keep | None = None,
 ) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
@@ -58,9 +63,10 @@ def desk_on(
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )
+    furnish(desk, lathe, keep or NothingKept())
     built.append(desk)
     return desk
 
 
 def _secondary(desk: Desk) -> dict[int, SecondaryOffset]:
-    return {n: SecondaryOffset(*values) for n, values in desk.book.values[Kind.SECONDARY].items()}
+    return {n: SecondaryOffset(*values) for n, values in desk.book.secondary.items()}

@@ -73,7 +73,7 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
 def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(home: Path) -> None:
     journal = Journal(home)
     book = book_of(stored_offsets, journal)
-    assert book.change(Kind.SECONDARY, 4, (0.1, -0.2, 0.4), "X .2") == ""
+    assert book.change(Kind.SECONDARY, 4, {"x": 0.1, "z": -0.2, "r": 0.4}, "X .2") == ""
     journal.close()  # writes what is queued
     assert stored_offsets()[1] == {4: SecondaryOffset(0.1, -0.2, 0.4)}
 
@@ -81,8 +81,8 @@ def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(
 def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     book = book_of(chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml")), journal)
-    assert sorted(book.values[Kind.TOOL]) == [1, 2, 3]
-    assert "READ ONLY" in book.change(Kind.TOOL, 1, (1.0, 2.0, 0.0), "try")
+    assert sorted(book.tools) == [1, 2, 3]
+    assert "READ ONLY" in book.change(Kind.TOOL, 1, {"x": 1.0}, "try")
     assert "READ ONLY" in book.clear_secondary()
     assert "READ ONLY" in book.undo(Kind.TOOL)
     assert book.history(Kind.TOOL) == ()
@@ -95,7 +95,7 @@ def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> No
     (file,) = home.glob("*.db")
     file.write_bytes(b"not a database" * 100)
     journal = Journal(home)
-    assert str(file) in journal.book().change(Kind.TOOL, 1, (1.0, 2.0, 0.0), "try")
+    assert str(file) in journal.book().change(Kind.TOOL, 1, {"x": 1.0}, "try")
     journal.close()
 
 

@@ -12,11 +12,12 @@ from PySide6.QtTest import QTest
 
 from app.desk import pages
 from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.desk import CLEAR, CLEAR_ASKED, KEEPS_ITS_OWN, LEAVE, TOOLS_REFUSED
 from app.desk.session import Phase
-from app.screen.offsets.page import OffsetPage
-from core.executor.commands import FeedHold, LoadJob
+from app.screen.offsets.seccmp import SeccmpPage
+from app.screen.offsets.tools import ToolsPage
+from core.executor.commands import FeedHold, LoadJob, UseOffsets
 from core.executor.snapshot import State
+from core.store.rows import ToolRow
 from core.store.store import Store
 from tests.screen.hands import Hands, Key
 
@@ -28,9 +29,15 @@ def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
         yield store
 
 
-def page_of(hands: Hands) -> OffsetPage:
+def page_of(hands: Hands) -> SeccmpPage:
     page = hands.frame.page
-    assert isinstance(page, OffsetPage)
+    assert isinstance(page, SeccmpPage)
+    return page
+
+
+def tools_of(hands: Hands) -> ToolsPage:
+    page = hands.frame.page
+    assert isinstance(page, ToolsPage)
     return page
 
 
@@ -45,13 +52,16 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     hands.key(Key.Key_F9)
     page = page_of(hands)
     assert hands.frame.title.page == pages.SECCMP
-    hands.sees(lambda: page.asked.question == "Offset Number?")
-    assert (page.asked.which, page.asked.foot) == ("Secondary offset number:", f"{LEAVE}        {CLEAR}")
+    hands.sees(lambda: page.asked.asked.question == "Offset Number?")
+    assert (page.asked.asked.which, page.asked.asked.foot) == (
+        "Secondary offset number:",
+        "Press Esc to exit offset adjustment screen        Press C to clear all offsets",
+    )
     answer(hands, "1")
-    hands.sees(lambda: page.asked.question == "X DIAMETER CORRECTION?")
+    hands.sees(lambda: page.asked.asked.question == "X DIAMETER CORRECTION?")
     answer(hands, ".5-.502", "")
-    hands.sees(lambda: page.asked.question == "R?")
-    assert page.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
+    hands.sees(lambda: page.asked.asked.question == "R?")
+    assert page.asked.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
     answer(hands, "")
     hands.sees(lambda: 1 in page.table.offsets)
     assert store.secondary()[1].x == pytest.approx(-0.001 * 25.4)
@@ -68,7 +78,7 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     page = page_of(hands)
     answer(hands, "2", "0,5")
     assert hands.prompt() == "REFUSED: , in 0,5 is no number; the decimal sign is a point"
-    assert page.asked.text == "0,5"
+    assert page.asked.asked.text == "0,5"
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Delete)
     answer(hands, ".005", "", "")
@@ -83,7 +93,7 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     hands.type("c")
     assert not hands.machine.now.cycle_repeat
     assert (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot) == before
-    assert page_of(hands).asked.text == "1+1-/.,"
+    assert page_of(hands).asked.asked.text == "1+1-/.,"
     hands.sees(lambda: hands.frame.strip.mute == {"C", "/"})
 
 
@@ -92,9 +102,9 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     page = page_of(hands)
     for number in ("1", "32"):
         answer(hands, number, ".1", "", "")
-        hands.sees(lambda: not page.model.book.busy and page.asked.question == "Offset Number?")
+        hands.sees(lambda: not page.model.book.busy and page.asked.asked.question == "Offset Number?")
     hands.key(Key.Key_C)
-    assert hands.prompt() == CLEAR_ASKED
+    assert hands.prompt().startswith("PRESS C ONCE MORE TO CLEAR ALL 32")
     hands.key(Key.Key_Escape)
     assert hands.frame.page is page
     hands.key(Key.Key_C)
@@ -120,22 +130,30 @@ def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     hands.sees(page.table.isVisible)
 
 
-def test_between_cycles_and_while_running(hands: Hands, store: Store) -> None:
+def test_no_correction_while_running_but_at_a_stop_and_it_counts_afterwards(
+    hands: Hands, store: Store
+) -> None:
     hands.load("bushing")
     hands.both_palms()
     hands.sees_state(State.RUN)
     loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
     hands.key(Key.Key_F9)
-    hands.sees(lambda: hands.prompt() == KEEPS_ITS_OWN)
-    answer(hands, "1", ".1", "", "")
-    hands.sees(lambda: hands.prompt() == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START")
+    hands.sees(lambda: hands.prompt().startswith("A CYCLE IS UNDER WAY"))
+    answer(hands, "1")
+    assert page_of(hands).asked.asked.question == "Offset Number?"
     hands.key(Key.Key_Space)
     assert FeedHold() in hands.machine.posted
-    hands.sees_state(State.HOLD)
+    hands.machine.now = replace(hands.machine.now, state=State.PROGRAM_STOP)
+    hands.sees_state(State.PROGRAM_STOP)
+    hands.key(Key.Key_Delete)
+    answer(hands, "1", ".1", "", "")
+    hands.sees(lambda: hands.prompt() == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START")
     assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
     hands.machine.idle()
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)][-1]
+    assert used.secondary[1].x == pytest.approx(0.05 * 25.4)
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
@@ -145,22 +163,63 @@ def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
     modal = hands.machine.now.modal._replace(metric=True)
     hands.machine.now = replace(hands.machine.now, modal=modal)
     answer(hands, "1")
-    hands.sees(lambda: "Z +2.5400" in page_of(hands).asked.change)
+    hands.sees(lambda: "Z +2.5400" in page_of(hands).asked.asked.change)
 
 
 def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: Store) -> None:
     hands.load("pin")
     hands.key(Key.Key_F8)
-    page = page_of(hands)
+    page = tools_of(hands)
     assert hands.frame.title.page == pages.TOOLS
-    answer(hands, "9", "-.5", "-3-.25", ".0156")
-    hands.sees(lambda: 9 in page.table.offsets)
-    assert store.tools()[9] == pytest.approx((-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4))
-    assert page.asked.change.startswith("T9   not set  →  X −0.50000  Z −3.25000")
+    for _ in range(8):
+        hands.key(Key.Key_Down)
+    hands.sees(lambda: page.asked.asked.question == "T9  X R?")
+    answer(hands, "-.5", "-3-.25")
+    hands.sees(lambda: 9 in page.model.book.tools)
+    hands.key(Key.Key_Right)
+    answer(hands, ".0156")
+    hands.sees(lambda: page.asked.asked.change.startswith("T9   X −0.50000  Z −3.25000  R 0.00000  →"))
+    assert store.tools()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
     hands.machine.now = replace(hands.machine.now, state=State.HOLD)
-    answer(hands, "9")
-    hands.sees(lambda: hands.prompt() == TOOLS_REFUSED)
-    assert page.asked.question == "Tool Number?"
+    answer(hands, "1")
+    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY")
+    assert store.tools()[9].nose_radius == 0.0156 * 25.4
+
+
+def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
+    store.set_tool(1, "touched off", x=-12.7, z=-76.2).result(5)
+    hands.desk.book = OffsetBook(store)
+    hands.load("pin")
+    hands.key(Key.Key_F8)
+    for _ in range(4):
+        hands.key(Key.Key_Right)
+    hands.sees(lambda: tools_of(hands).asked.asked.question == "T1  WEAR X R?")
+    hands.type("-.0005")
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: hands.prompt() == "T1 SAVED")
+    hands.type("-.0002")
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.0007 * 25.4))
+    hands.sees(lambda: any(isinstance(command, UseOffsets) for command in hands.machine.posted))
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)][-1]
+    assert used.tools[1].x == pytest.approx(-12.7 - 0.0007 * 25.4)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.0005 * 25.4))
+
+
+def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
+    store.set_tool(1, "touched off", x=1.0, z=1.0).result(5)
+    hands.desk.book = OffsetBook(store)
+    hands.key(Key.Key_F8)
+    for _ in range(7):
+        hands.key(Key.Key_Right)
+    hands.key(Key.Key_Return)
+    hands.type("she Dares")
+    hands.sees(lambda: {"S", "H", "E", "R", "D"} & hands.frame.strip.mute != set())
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: store.tools()[1].remark == "she Dares")
+    assert hands.machine.now.state is State.IDLE
+    assert not hands.machine.now.single_block
 
 
 def test_without_a_store_nothing_is_changed(hands: Hands) -> None:

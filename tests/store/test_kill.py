@@ -25,7 +25,7 @@ number = len(store.versions("part"))
 
 def both(connection):
     programs.save(connection, "part", b"%d " % number * 2000, "kill")
-    wanted = (float(number % 1000), None, None)
+    wanted = {"x": float(number % 1000)}
     offsets.change(connection, Kind.TOOL, 1, offsets.Reason("kill", "test"), wanted)
 
 while True:

@@ -209,5 +209,5 @@ def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: py
     with Store.open(closed.parent) as store:
         assert store.tools() == {1: ToolRow(1.0, 0.0, 0.0)}
     assert database.check_file(closed, thorough=True) == len(newer)
-    kept = closed.with_name("turndesk-version-1.db")
+    kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
     assert database.check_file(kept, thorough=True) == len(newer) - 1

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from app.desk.offsets.figures import Triple
 from core.store.errors import StoreError
-from core.store.rows import Change, Kind
+from core.store.rows import Change, Kind, Row, SecondaryRow, ToolRow, Value
+from core.store.toolset import Touch
 
 if TYPE_CHECKING:
     from core.store.store import Store
@@ -22,14 +22,14 @@ class Waiting(Protocol):
     def exception(self) -> BaseException | None: ...
 
 
-Write = Callable[[], Waiting]
+Write = Callable[["Store"], Waiting]
 NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
 SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 
 @dataclass(slots=True)
 class OffsetBook:
-    """Present offsets by kind and number, mm, X a radius.
+    """Present offsets by number, mm, X a radius.
 
     Without ``store`` nothing can be changed, and ``locked`` says why. A change is posted to the store's
     writer and shown when it is on the disk; ``poll`` is called once a frame.
@@ -37,9 +37,11 @@ class OffsetBook:
 
     store: Store | None = None
     locked: str = ""
-    values: dict[Kind, dict[int, Triple]] = field(default_factory=lambda: {kind: {} for kind in Kind})
+    tools: dict[int, ToolRow] = field(default_factory=dict)
+    secondary: dict[int, SecondaryRow] = field(default_factory=dict)
     changes: int = 0  # how many were saved
     _waiting: Waiting | None = None
+    _reopened: tuple[Store | None, str] | None = None  # by another thread, for the next poll
 
     def __post_init__(self) -> None:
         self._read()
@@ -49,33 +51,34 @@ class OffsetBook:
         """Whether a change is on its way to the disk."""
         return self._waiting is not None
 
-    def of(self, kind: Kind, number: int) -> Triple | None:
-        """The offset of this number; None when it was never set."""
-        return self.values[kind].get(number)
+    @property
+    def master(self) -> int:
+        """The tool that the others are relative to; 0: none."""
+        return next((number for number, row in self.tools.items() if row.master), 0)
 
-    def change(self, kind: Kind, number: int, new: Triple, why: str) -> str:
-        """Save an offset; the answer is why not, or nothing."""
-        store = self.store
-        if store is None or self.busy:
-            return self.locked or SAVING
-        x, z, r = new
-        if kind is Kind.TOOL:
-            return self._post(lambda: store.set_tool(number, why, x=x, z=z, nose_radius=r))
-        return self._post(lambda: store.set_secondary(number, why, x=x, z=z, r=r))
+    def of(self, kind: Kind, number: int) -> Row | None:
+        """The offset of this number; None when it was never set."""
+        return self.tools.get(number) if kind is Kind.TOOL else self.secondary.get(number)
+
+    def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
+        """Save fields of an offset; the answer is why not, or nothing. So it is with the others below."""
+        return self._post(lambda store: store.set_offset(kind, number, why, values))
+
+    def touch_off(self, number: int, touch: Touch, why: str) -> str:
+        """Set a tool by what it touched; with the master all others follow."""
+        return self._post(lambda store: store.touch_off(number, touch, why))
+
+    def choose_master(self, number: int, why: str) -> str:
+        """Another master, 0: none."""
+        return self._post(lambda store: store.choose_master(number, why))
 
     def clear_secondary(self) -> str:
-        """All secondary offsets at once; the answer is why not, or nothing."""
-        store = self.store
-        if store is None or self.busy:
-            return self.locked or SAVING
-        return self._post(lambda: store.clear_secondary("C: all offsets cleared"))
+        """All secondary offsets at once."""
+        return self._post(lambda store: store.clear_secondary("C: all offsets cleared"))
 
     def undo(self, kind: Kind) -> str:
-        """Take the last change of this kind back; the answer is why not, or nothing."""
-        store = self.store
-        if store is None or self.busy:
-            return self.locked or SAVING
-        return self._post(lambda: store.undo_offset(kind=kind))
+        """Take the last change of this kind back."""
+        return self._post(lambda store: store.undo_offset(kind=kind))
 
     def history(self, kind: Kind, limit: int = 200) -> tuple[Change, ...]:
         """The last changes, newest first; none where there is no store to remember them."""
@@ -83,8 +86,14 @@ class OffsetBook:
             return ()
         return self.store.history(kind, limit)
 
+    def reopen(self, store: Store | None, trouble: str) -> None:
+        """Another store is in the place of the one before; None: ``trouble`` says why. From any thread."""
+        self._reopened = store, trouble
+
     def poll(self) -> str:
         """Look whether the change is on the disk; the answer is what went wrong, or nothing."""
+        if self._reopened is not None:
+            return self._turn_to(*self._reopened)
         waiting = self._waiting
         if waiting is None or not waiting.done():
             return ""
@@ -98,9 +107,22 @@ class OffsetBook:
             return str(unread)
         return str(error) if error is not None else ""
 
-    def _post(self, write: Write) -> str:
+    def _turn_to(self, store: Store | None, trouble: str) -> str:
+        self._reopened, self._waiting = None, None
+        self.store = store
+        self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
+        self.changes += 1
         try:
-            self._waiting = write()
+            self._read()
+        except StoreError as unread:
+            return str(unread)
+        return ""
+
+    def _post(self, write: Write) -> str:
+        if self.store is None or self.busy:
+            return self.locked or SAVING
+        try:
+            self._waiting = write(self.store)
         except StoreError as error:
             return str(error)
         return ""
@@ -108,5 +130,4 @@ class OffsetBook:
     def _read(self) -> None:
         """The values of the store; it answers at once, also while it is being written."""
         if self.store is not None:
-            tools, secondary = self.store.tools(), self.store.secondary()
-            self.values = {Kind.TOOL: {**tools}, Kind.SECONDARY: {**secondary}}
+            self.tools, self.secondary = self.store.tools(), self.store.secondary()

@@ -2,16 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import datetime
 
 from app.desk import formats
 from app.desk.formats import MINUS, MM_PER_INCH
-from core.store.rows import Change
+from app.desk.words import tr
+from core.store.rows import Change, Row, SecondaryRow, ToolRow
 
-Triple = tuple[float, float, float]
-NOT_SET = "not set"
-Figures = Callable[[Triple | None, bool], str]
+
+@dataclass(frozen=True, slots=True)
+class Mode:
+    """The control's unit and whether X is a diameter, from one snapshot."""
+
+    metric: bool = False
+    diameter: bool = False
+
+    @property
+    def unit(self) -> float:
+        """Millimetres in one unit of an entry."""
+        return 1.0 if self.metric else MM_PER_INCH
+
+    @property
+    def name(self) -> str:
+        """The unit in words."""
+        return "mm" if self.metric else "in"
+
+
+def not_set() -> str:
+    """What stands for an offset that nobody has entered."""
+    return tr("not set")
 
 
 def signed(mm: float, metric: bool) -> str:
@@ -20,22 +40,37 @@ def signed(mm: float, metric: bool) -> str:
     return figure if figure.startswith(MINUS) else f"+{figure}"
 
 
-def row(number: int, offset: Triple, metric: bool) -> str:
+def row(number: int, offset: SecondaryRow, metric: bool) -> str:
     """One row of the secondary offsets as the control writes it; X as the radius that is stored."""
     x, z, r = offset
     return f"{number}  X: {signed(x, metric)} Z: {signed(z, metric)}R: {formats.length(r, metric)}"
 
 
-def triple(offset: Triple | None, metric: bool, diameter: bool = False) -> str:
-    """X, Z and R in words; ``diameter``: X doubled, as a control in G72 shows it."""
+def in_words(offset: Row | None, mode: Mode) -> str:
+    """An offset in one line: a tool's X as the control has it, a secondary one's as the radius stored."""
     if offset is None:
-        return NOT_SET
+        return not_set()
+    if isinstance(offset, ToolRow):
+        return f"{_pair(offset.x, offset.z, mode)}{_more(offset, mode)}"
     x, z, r = offset
-    mark = "Ø" if diameter else ""
-    return (
-        f"X{mark} {signed(2 * x if diameter else x, metric)}  Z {signed(z, metric)}"
-        f"  R {formats.length(r, metric)}"
-    )
+    return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
+
+
+def _pair(x: float, z: float, mode: Mode) -> str:
+    mark = "Ø" if mode.diameter else ""
+    return f"X{mark} {signed(2 * x if mode.diameter else x, mode.metric)}  Z {signed(z, mode.metric)}"
+
+
+def _more(tool: ToolRow, mode: Mode) -> str:
+    """What else there is of a tool, as far as it is anything."""
+    parts = [f"  R {formats.length(tool.nose_radius, mode.metric)}"]
+    if tool.wear_x or tool.wear_z:
+        parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode)}")
+    if tool.quadrant:
+        parts.append(f"  {tr('TIP')} {tool.quadrant}")
+    if tool.master:
+        parts.append(f"  {tr('MASTER')}")
+    return "".join(parts) + (f"  {tool.remark}" if tool.remark else "")
 
 
 def to_mm(value: float, metric: bool) -> float:
@@ -49,9 +84,9 @@ def added(mm: float, value: float, metric: bool) -> float:
     return round(mm / unit + value, 10) * unit
 
 
-def told(change: Change, letter: str, metric: bool, diameter: bool) -> tuple[str, str, str, str]:
+def told(change: Change, letter: str, mode: Mode) -> tuple[str, str, str, str]:
     """Of one change: when (local time), which offset, from → to, why and by whom."""
     at = datetime.fromisoformat(change.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
-    was, now = (triple(side, metric, diameter) for side in (change.old, change.new))
+    was, now = in_words(change.old, mode), in_words(change.new, mode)
     who = "" if change.who == "operator" else f" ({change.who})"
     return at, f"{letter}{change.number}", f"{was}  →  {now}", f"{change.why}{who}"

@@ -10,7 +10,8 @@ import pytest
 
 from app.desk.desk import Desk
 from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.desk import OffsetDesk, seccmp, tool_offsets
+from app.desk.offsets.desk import SeccmpDesk
+from app.desk.offsets.grid import ToolGrid
 from app.desk.picture import Sketch
 from app.desk.session import Proved, Session, Workshop
 from app.desk.shelf import Shelf
@@ -37,11 +38,15 @@ class Room:
         modal = self.now[0].modal._replace(metric=metric, diameter=diameter)
         self.now[0] = replace(self.now[0], state=state, modal=modal)
 
-    def page(self, *, tools: bool = False) -> OffsetDesk:
-        """F8 or F9, on the desk's book."""
-        return (tool_offsets if tools else seccmp)(self.desk, self.desk.book)
+    def page(self) -> SeccmpDesk:
+        """F9, on the desk's book."""
+        return SeccmpDesk(self.desk, self.desk.book)
 
-    def enter(self, page: OffsetDesk, *answers: str) -> None:
+    def grid(self) -> ToolGrid:
+        """F8, on the desk's book."""
+        return ToolGrid(self.desk, self.desk.book)
+
+    def enter(self, page: SeccmpDesk | ToolGrid, *answers: str) -> None:
         """Type each answer with its Return, and wait until what they change is saved."""
         page.look(self.now[0])
         for answer in answers:
@@ -50,7 +55,7 @@ class Room:
             assert page.typed("Enter")
         self.settle(page)
 
-    def settle(self, page: OffsetDesk) -> None:
+    def settle(self, page: SeccmpDesk | ToolGrid) -> None:
         """Wait for the disk, then look as a frame would."""
         self.store.write(lambda _connection: None).result(LIMIT)
         self.desk.look()

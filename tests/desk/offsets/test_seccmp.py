@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.desk import CLEAR_ASKED, KEEPS_ITS_OWN, REPEATS
-from app.desk.offsets.dialogue import Step
 from app.desk.offsets.figures import row
+from app.desk.offsets.rules import Step
 from core.executor.snapshot import State
-from core.store.rows import Kind
+from core.store.rows import Kind, SecondaryRow
 from tests.desk.offsets.conftest import LIMIT, Room
 
 
@@ -36,8 +35,8 @@ def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
 
 
 def test_an_empty_row_reads_as_on_the_control() -> None:
-    assert row(1, (0.0, 0.0, 0.0), metric=False) == "1  X: +0.00000 Z: +0.00000R: 0.00000"
-    assert row(32, (0.0, -0.01, 0.4), metric=True) == "32  X: +0.0000 Z: −0.0100R: 0.4000"
+    assert row(1, SecondaryRow(), metric=False) == "1  X: +0.00000 Z: +0.00000R: 0.00000"
+    assert row(32, SecondaryRow(0.0, -0.01, 0.4), metric=True) == "32  X: +0.0000 Z: −0.0100R: 0.4000"
 
 
 def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
@@ -106,7 +105,7 @@ def test_metric_when_the_control_is_metric(room: Room) -> None:
 def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".02")
-    room.at(State.RUN, metric=True)
+    room.at(metric=True)
     page.look(room.now[0])
     assert page.dialogue.step is Step.NUMBER
     assert "NOTHING WAS CHANGED" in room.desk.notice
@@ -128,7 +127,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     room.enter(page, "1", ".1", "", "")
     room.enter(page, "9", "", ".1", "")
     assert page.typed("C")
-    assert room.desk.notice == CLEAR_ASKED
+    assert room.desk.notice.startswith("PRESS C ONCE MORE TO CLEAR ALL 32")
     assert page.escape()
     page.typed("c")
     page.typed("7")  # any other key takes the question back
@@ -173,14 +172,14 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "")
-    page.toggle_history()
-    assert page.looking_back is not None
-    at, which, change, why = page.told(page.looking_back[0])
+    page.ledger.toggle_history()
+    assert page.ledger.looking_back is not None
+    at, which, change, why = page.ledger.told(page.ledger.looking_back[0])
     assert at.startswith("20")
     assert (which, why) == ("D1", "X .5-.002")
     assert change == "not set  →  X +0.24900  Z +0.00000  R 0.00000"
     assert page.escape()
-    assert page.looking_back is None
+    assert page.ledger.looking_back is None
 
 
 def test_a_change_loads_the_program_again(room: Room) -> None:
@@ -193,15 +192,29 @@ def test_a_change_loads_the_program_again(room: Room) -> None:
     assert room.desk.session.now.block_delete
 
 
-def test_a_running_job_keeps_its_offsets_until_it_ends(room: Room) -> None:
+@pytest.mark.parametrize("state", [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END])
+def test_no_correction_while_a_cycle_is_under_way(room: Room, state: State) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.at(state)
+    room.enter(page, "1", "")
+    page.typed("C")
+    page.undo()
+    assert room.desk.notice.startswith("A CYCLE IS UNDER WAY: CORRECTIONS CHANGE BETWEEN CYCLES")
+    assert page.prompt(room.now[0]) == room.desk.notice
+    room.settle(page)
+    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+
+
+def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:
     room.desk.session.load(Path("part.nc"))
     room.desk.session.settled(LIMIT)
     page = room.page()
-    room.at(State.RUN)
-    assert page.prompt(room.now[0]) == KEEPS_ITS_OWN
+    room.at(State.PROGRAM_STOP)
+    assert "COUNTS FROM THE NEXT CYCLE START" in page.prompt(room.now[0])
     room.enter(page, "1", ".1", "", "")
     assert room.desk.notice == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
-    room.at(State.PROGRAM_STOP)
+    room.at(State.RUN)
     room.desk.look()
     assert room.loads == ["part.nc"]
     room.at(State.IDLE)
@@ -211,14 +224,12 @@ def test_a_running_job_keeps_its_offsets_until_it_ends(room: Room) -> None:
 
 
 def test_cycle_repeat_is_named(room: Room) -> None:
-    running = replace(room.now[0], state=State.RUN, cycle_repeat=True)
-    assert room.page().prompt(running) == REPEATS
+    stopped = replace(room.now[0], state=State.PROGRAM_STOP, cycle_repeat=True)
+    assert room.page().prompt(stopped).startswith("CYCLE REPEAT GOES ON WITH THE OLD OFFSETS")
 
 
 def test_offsets_of_a_file_are_read_only(room: Room) -> None:
-    room.desk.book = OffsetBook(
-        locked="READ ONLY", values={Kind.TOOL: {}, Kind.SECONDARY: {1: (0.0, 0.1, 0.0)}}
-    )
+    room.desk.book = OffsetBook(locked="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
     page = room.page()
     room.enter(page, "1")
     assert room.desk.notice == "READ ONLY"
@@ -231,8 +242,8 @@ def test_offsets_of_a_file_are_read_only(room: Room) -> None:
 
 def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     book = OffsetBook(room.store)
-    assert book.change(Kind.SECONDARY, 1, (0.1, 0.0, 0.0), "one") == ""
-    assert book.change(Kind.SECONDARY, 1, (0.2, 0.0, 0.0), "two").startswith("STILL SAVING")
+    assert book.change(Kind.SECONDARY, 1, {"x": 0.1}, "one") == ""
+    assert book.change(Kind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
     assert book.undo(Kind.SECONDARY).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
     assert book.poll() == ""
@@ -242,7 +253,7 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
 def test_a_store_that_is_closed_is_told(room: Room) -> None:
     book = OffsetBook(room.store)
     room.store.close()
-    assert "closed" in book.change(Kind.SECONDARY, 1, (0.1, 0.0, 0.0), "late")
+    assert "closed" in book.change(Kind.SECONDARY, 1, {"x": 0.1}, "late")
 
 
 def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(room: Room) -> None:

@@ -1,0 +1,290 @@
+"""The model of F8: a table of 32 tools in which a cell is chosen, typed into, and saved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.desk.arithmetic import LONGEST, EntryError
+from app.desk.desk import Desk
+from app.desk.offsets import allowed
+from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.dialogue import CHARACTERS
+from app.desk.offsets.entry import marked, shown_value, value_added, value_typed, word
+from app.desk.offsets.figures import not_set
+from app.desk.offsets.ledger import Ledger
+from app.desk.words import tr
+from core.executor.snapshot import Snapshot
+from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow, Value
+
+COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
+PAGE = 16  # rows that Page up and Page down go
+_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
+
+
+@dataclass(slots=True)
+class ToolGrid:
+    """Where the cursor stands and what is typed there. A remark takes letters once Return has opened it."""
+
+    desk: Desk
+    book: OffsetBook
+    ledger: Ledger = field(init=False)
+    number: int = 1
+    column: int = 0
+    text: str = ""
+    writing: bool = False  # a remark is open
+    relative: bool = False  # X and Z are shown from the master
+    half: dict[str, Value] = field(default_factory=dict)  # of a tool that was never set: X or Z alone
+    _half_of: int = 0
+
+    def __post_init__(self) -> None:
+        self.ledger = Ledger(self.desk, self.book, Kind.TOOL)
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """The field under the cursor."""
+        return COLUMNS[self.column]
+
+    @property
+    def tool(self) -> ToolRow | None:
+        """The tool under the cursor; None when it was never set."""
+        return self.book.tools.get(self.number)
+
+    def shown(self, number: int, name: str) -> str:
+        """A cell of the table; X and Z of another tool from the master when that is asked for."""
+        row = self.book.tools.get(number)
+        if row is None:
+            return self._half(name) if number == self._half_of else ""
+        master = self.book.tools.get(self.book.master)
+        if self.relative and master is not None and name in {"x", "z"} and number != self.book.master:
+            at = "xz".index(name)
+            return shown_value(name, row.offset[at] - master.offset[at], self.ledger.mode)
+        return shown_value(name, getattr(row, name), self.ledger.mode)
+
+    def _half(self, name: str) -> str:
+        return shown_value(name, self.half[name], self.ledger.mode) if name in self.half else ""
+
+    @property
+    def question(self) -> str:
+        """What is asked: tool and field."""
+        mark = marked(self.name, self.ledger.mode)
+        return f"T{self.number}  {word(self.name)}{f' {mark}' if mark else ''}?"
+
+    @property
+    def old_to_new(self) -> str:
+        """The cell before and after what is typed, or else the last change."""
+        if not (self.text or self.writing):
+            return self.ledger.last_told
+        was = self.shown(self.number, self.name) or (not_set() if self.tool is None else "")
+        try:
+            new = shown_value(
+                self.name, value_typed(self.name, self.text, self.ledger.mode), self.ledger.mode
+            )
+        except EntryError:
+            new = "…"  # half a sum is no mistake yet
+        return f"{was}  →  {new}"
+
+    @property
+    def proposed(self) -> dict[int, ToolRow]:
+        """The tools as they would be with what is typed."""
+        row = self.tool
+        if row is None or not self.text:
+            return self.book.tools
+        try:
+            value = value_typed(self.name, self.text, self.ledger.mode)
+        except EntryError:
+            return self.book.tools
+        return {**self.book.tools, self.number: row._replace(**{self.name: value})}  # type: ignore[arg-type]
+
+    def prompt(self, snapshot: Snapshot) -> str:
+        """The page's own words on the prompt line."""
+        why = self.barred(snapshot) or allowed.standing(snapshot)
+        if why:
+            return why
+        if self.ledger.looking_back is not None:
+            return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
+        if self.writing:
+            return tr("TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
+        return tr("ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE")
+
+    def barred(self, snapshot: Snapshot) -> str:
+        """Why the cell under the cursor may not be changed now; empty when it may."""
+        return self.book.locked or allowed.refusal(snapshot, correction=self.name in allowed.CORRECTIONS)
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: an entry in another unit is given up."""
+        before = self.ledger.mode
+        self.ledger.look(snapshot)
+        if self.ledger.mode != before and (self.text or self.half):
+            self._drop()
+            self.desk.say(
+                tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
+            )
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def takes(self, key: str) -> bool:
+        """Whether a character goes to the entry."""
+        return self.writing or key in CHARACTERS
+
+    def typed(self, key: str) -> bool:
+        """A typed key; False leaves it to the window."""
+        if key == "Enter":
+            self._enter()
+        elif key in {"Page up", "Page down"}:
+            self._go(self.number + (PAGE if key == "Page down" else -PAGE), self.column)
+        elif key in _MOVES:
+            down, right = _MOVES[key]
+            self._go(self.number + down, self.column + right)
+        elif key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        elif len(key) == 1 and self.takes(key):
+            self._add(key)
+        else:
+            return False
+        return True
+
+    def choose(self, number: int, column: int) -> None:
+        """A cell by a finger; touched again its remark opens, or its mark is set."""
+        again = (number, column) == (self.number, self.column)
+        self._go(number, column)
+        if again and self.name in {"remark", "master"} and not self.writing:
+            self._enter()
+
+    def add(self) -> None:
+        """F2: what is typed is added to what is there."""
+        if self.tool is None or not self.text.strip():
+            self.desk.say(tr("TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2"))
+            return
+        self._store(adding=True)
+
+    def _add(self, key: str) -> None:
+        if self.name == "remark" and not self.writing:
+            self.desk.say(tr("PRESS RETURN TO WRITE A REMARK"))
+            return
+        if not self.text:
+            self.desk.clear()
+        if len(self.text) < (REMARK_LONGEST if self.writing else LONGEST):
+            self.text += key
+
+    def _go(self, number: int, column: int) -> None:
+        """The cursor there; what was typed and not entered stays behind, and that is said."""
+        if self.text or self.writing:
+            self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
+            return
+        self.number = max(OFFSETS[0], min(OFFSETS[-1], number))
+        self.column = max(0, min(len(COLUMNS) - 1, column))
+        if self.half and self.number != self._half_of:
+            self.desk.say(tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=self._half_of))
+            self._drop()
+
+    def _enter(self) -> None:
+        if self.name == "master":
+            self._master()
+        elif self.name == "remark" and not self.writing:
+            self._open()
+        elif self.text.strip() or self.writing:
+            self._store(adding=False)
+        else:
+            self._go(self.number, self.column + 1)
+
+    def _open(self) -> None:
+        why = self.barred(self.desk.snapshot())
+        if why or self.tool is None:
+            self.desk.say(why or self._never())
+            return
+        self.writing, self.text = True, self.tool.remark
+
+    def _master(self) -> None:
+        """The tool that the others are relative to; entered on the master itself there is none."""
+        why = self.barred(self.desk.snapshot())
+        if why or self.tool is None:
+            self.desk.say(why or self._never())
+        elif self.tool.master:
+            self.ledger.answer(self.book.choose_master(0, tr("no master")))
+        else:
+            self.ledger.answer(self.book.choose_master(self.number, tr("chosen as master")))
+
+    def _never(self) -> str:
+        return tr("T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE").format(
+            number=self.number
+        )
+
+    def _store(self, *, adding: bool) -> None:
+        why = self.barred(self.desk.snapshot())
+        try:
+            why = why or self._save(adding)
+        except EntryError as error:
+            why = tr("REFUSED: {why}").format(why=error)
+        if why:
+            self.desk.say(why)
+        else:
+            self.text, self.writing = "", False
+
+    def _save(self, adding: bool) -> str:
+        """Save the cell; the answer is why not. Raises EntryError for a text that is no value."""
+        name, mode, row = self.name, self.ledger.mode, self.tool
+        if row is None:
+            return self._first(value_typed(name, self.text, mode))
+        value = value_added(name, row, self.text, mode) if adding else value_typed(name, self.text, mode)
+        if value == getattr(row, name):
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+            return ""
+        typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{self.text.strip()}"
+        return self.book.change(Kind.TOOL, self.number, {name: value}, typed)
+
+    def _first(self, value: Value) -> str:
+        """X and Z of a tool that was never set are saved together: half an offset would run into the part."""
+        if self.name not in {"x", "z"}:
+            return self._never()
+        values = {**(self.half if self._half_of == self.number else {}), self.name: value}
+        if len(values) == 2:
+            why = self.book.change(Kind.TOOL, self.number, values, tr("entered by hand"))
+            if not why:
+                self._drop()
+            return why
+        self.half, self._half_of = values, self.number
+        self.column = 1 - COLUMNS.index(self.name)
+        self.desk.say(
+            tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE").format(
+                axis=word(self.name), number=self.number
+            )
+        )
+        return ""
+
+    def undo(self) -> None:
+        """Take the last change of the tools back."""
+        why = self.book.locked or allowed.refusal(self.desk.snapshot(), correction=False)
+        if not why:
+            self._drop()
+        self.ledger.undo(why)
+
+    def turn_relative(self) -> None:
+        """X and Z from home, or from the master."""
+        if not self.relative and not self.book.master:
+            self.desk.say(tr("NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN"))
+            return
+        self.relative = not self.relative
+
+    def escape(self) -> bool:
+        """Esc closes the history, takes an entry back; False when the page may be left."""
+        if self.ledger.looking_back is not None:
+            self.ledger.looking_back = None
+        elif self.text or self.writing or self.half:
+            self._drop()
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        else:
+            return False
+        return True
+
+    def _drop(self) -> None:
+        self.text, self.writing, self.half, self._half_of = "", False, {}, 0
+
+    def leave(self) -> None:
+        """The page goes: nothing stays half entered."""
+        self._drop()
+        self.desk.clear()
+        self.ledger.looking_back = None

@@ -1,0 +1,135 @@
+"""F8's table: sixteen of the 32 tools, each field a cell that a finger or the cursor chooses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.offsets.entry import marked, word
+from app.desk.offsets.figures import not_set
+from app.desk.offsets.grid import COLUMNS, PAGE, ToolGrid
+from app.desk.words import tr
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.offsets.tip import draw_tip
+from app.screen.panel import Panel
+from core.store.rows import OFFSETS
+
+NUMBER = 4.6  # units: width of the column of numbers
+# Widths of the columns in parts of what is left.
+SHARES = {
+    "x": 15.0,
+    "z": 14.0,
+    "nose_radius": 11.5,
+    "quadrant": 6.6,
+    "wear_x": 14.0,
+    "wear_z": 13.0,
+    "master": 9.6,
+    "remark": 19.0,
+}
+
+
+class GridTable(Panel):
+    """Draws the model; redrawn when something of it has changed."""
+
+    def __init__(self, look: Look, model: ToolGrid, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._model = model
+        self._shown: tuple[object, ...] = ()
+        self.top = 1  # the first number that is shown
+        self.choose: Callable[[int, int], None] = model.choose
+
+    def show_grid(self) -> None:
+        """The model as it is now; the cursor is always in sight."""
+        model = self._model
+        last = OFFSETS[-1] - PAGE + 1
+        self.top = max(model.number - PAGE + 1, min(self.top, model.number, last), 1)
+        shown = (
+            model.book.tools,
+            (model.number, model.column, self.top, model.relative, model.ledger.mode),
+            dict(model.half),
+            tuple(change.number for change in model.ledger.last),
+        )
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """A row a notch."""
+        self._model.typed("Up" if event.angleDelta().y() > 0 else "Down")
+
+    def draw(self, painter: QPainter) -> None:
+        look, u, model = self.look, self.look.u, self._model
+        mode = model.ledger.mode
+        x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
+        title = f"{tr('TOOL OFFSETS')}  ·  {tr('MM') if mode.metric else tr('INCH')}  ·  {x}"
+        if model.relative:
+            title += "  ·  " + tr("X AND Z FROM THE MASTER T{number}").format(number=model.book.master)
+        self.frame(painter, title)
+        room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
+        high = room.height() / (PAGE + 1)
+        columns = self._columns(room)
+        painter.setPen(look.colour("soft"))
+        for name, (left, wide) in columns.items():
+            mark = marked(name, mode)
+            text = f"{word(name)} {mark}" if mark else word(name)
+            painter.setFont(look.fit(text, 1.5, wide - 0.6 * u, bold=True))
+            put(painter, QRectF(left, room.y(), wide - 0.4 * u, high), CENTRE, text)
+        for place in range(PAGE):
+            row = QRectF(room.x(), room.y() + (place + 1) * high, room.width(), high)
+            self._row(painter, row, self.top + place, columns)
+
+    def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
+        """Left edge and width of each column, pixels."""
+        left = room.x() + NUMBER * self.look.u
+        part = (room.right() - left) / sum(SHARES.values())
+        columns = {}
+        for name in COLUMNS:
+            columns[name] = (left, SHARES[name] * part)
+            left += SHARES[name] * part
+        return columns
+
+    def _row(
+        self, painter: QPainter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
+    ) -> None:
+        look, u, model = self.look, self.look.u, self._model
+        here = number == model.number
+        if here:
+            painter.fillRect(row, look.colour("here"))
+        if number in {change.number for change in model.ledger.last}:
+            painter.fillRect(QRectF(row.x(), row.y(), 0.5 * u, row.height()), look.colour("lit"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.0, bold=True))
+        put(painter, QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height()), RIGHT, f"T{number}")
+        unset = number not in model.book.tools
+        for at, (name, (left, wide)) in enumerate(columns.items()):
+            cell = QRectF(left, row.y(), wide, row.height())
+            self._cell(painter, cell, number, name)
+            if here and at == model.column:
+                painter.setPen(look.pen("accent", 0.24))
+                painter.drawRect(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u))
+            self.place(cell, partial(self.choose, number, at))
+        if unset and not (here and model.half):
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.font(1.7))
+            put(painter, QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height()), LEFT, not_set())
+
+    def _cell(self, painter: QPainter, cell: QRectF, number: int, name: str) -> None:
+        look, u = self.look, self.look.u
+        text = self._model.shown(number, name)
+        room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
+        if name == "quadrant" and text:
+            draw_tip(
+                painter,
+                QRectF(room.right() - 2.6 * u, room.y() + 0.2 * u, 2.6 * u, room.height() - 0.4 * u),
+                look,
+                int(text),
+            )
+            room.setRight(room.right() - 3.0 * u)
+        worn = name.startswith("wear") and text.strip("+0.") == ""
+        painter.setPen(look.colour("soft" if worn else "text"))
+        painter.setFont(look.fit(text, 1.8, room.width(), bold=not worn and name != "remark"))
+        put(painter, room, LEFT if name == "remark" else RIGHT, text)
