@@ -66,7 +66,8 @@ def check_under_nose(state: State, made: Statement) -> None:
     other = made.value("D") not in {None, state.modal.secondary}
     if other and "T" not in made.words and not state.shape.approach:
         text = f"D changes while G{on} is on."
-        raise _refused(made, "comp-d", text, "D belongs on the first move after G41 or G42 alone.")
+        hint = "D belongs on the first move after G41 or G42 alone."
+        raise ProgramError(refusal(made.line, made.column("D"), "comp-d", text, hint))
 
 
 def check_approach(state: State, block: Block) -> None:
