@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from core.interpreter.program import read_program
 from core.interpreter.run import Interpreter
 from core.interpreter.setup import ControlLimits
+from core.language.source import Source
 from tests.interpreter.programs import body, lines, passed, setup
 
 END = "M30"
@@ -210,3 +212,19 @@ def test_errors_are_never_crowded_out_by_warnings() -> None:
     result = passed(body(*["X.00001"] * 300, "S9000"))
     assert result.errors == [(303, 1, "speed-range")]
     assert len(result.warnings) == 100
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ("LS0", "X1", "LF"),
+        ("LS2,5", "X1", "LF"),
+        ("LS2", "X1", "LF3"),
+        ("LS0", "X1"),
+        ("P1", END, "}1", "X1", "M99", "}1", "X2", "M99"),
+    ],
+)
+def test_what_follows_from_a_mistake_is_no_second_one(body: tuple[str, ...]) -> None:
+    text = "\n".join(("G90F300", *body, *(() if END in body else (END,))))
+    found = [d.code for d in read_program(Source("A", text)).diagnostics if d.severity == "error"]
+    assert len(found) == 1, found
