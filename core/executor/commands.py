@@ -70,8 +70,20 @@ class Jog:
 
 
 @dataclass(frozen=True, slots=True)
+class JogStep:
+    """Move one axis by exactly ``distance``, mm or degrees, at ``speed``, mm/s or degrees/s, and rest there.
+
+    Refused while anything moves, and where the whole of it would leave the travel.
+    """
+
+    axis: str
+    distance: float
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
 class JogStop:
-    """Give the jog lease back at once."""
+    """Give the jog lease back at once; a step that is under way ends short."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +147,7 @@ Command = (
     | SetSwitch
     | FeedOverride
     | Jog
+    | JogStep
     | JogStop
     | SpindleLimit
     | Home

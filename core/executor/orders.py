@@ -16,6 +16,7 @@ from core.executor.commands import (
     GiveProof,
     Home,
     Jog,
+    JogStep,
     JogStop,
     LoadJob,
     Prepare,
@@ -26,6 +27,7 @@ from core.executor.commands import (
     UseOffsets,
 )
 from core.executor.conductor import Conductor
+from core.executor.jog import at_the_end
 from core.executor.loading import Loading
 from core.executor.snapshot import State
 from core.executor.station_watch import StationWatch
@@ -67,6 +69,8 @@ class Orders:
                 self._limit(rpm)
             case Jog():
                 self._jog(command)
+            case JogStep():
+                self._step(command)
             case Home(axis=axis):
                 self._home(axis)
             case UseOffsets() | SpindleStop() | ForceOutput():
@@ -117,8 +121,7 @@ class Orders:
 
     def _jog(self, command: Jog) -> None:
         conductor, jogger = self._conductor, self._conductor.jogger
-        if conductor.state not in {State.IDLE, State.JOG}:
-            self._bench.say("refused", f"no jog in state {conductor.state.value}")
+        if self._may_not_jog():
             return
         why = jogger.refusal(command.axis, command.velocity, command.lease)
         if why:
@@ -126,6 +129,30 @@ class Orders:
             self._bench.say("refused", f"jog: {why}")
         elif jogger.move(command.axis, command.velocity, command.lease):
             conductor.enter(State.JOG)
+        elif conductor.state is State.IDLE:
+            self._bench.say("refused", f"jog: {at_the_end(command.axis, command.velocity)}")
+
+    def _step(self, command: JogStep) -> None:
+        conductor, jogger = self._conductor, self._conductor.jogger
+        if self._may_not_jog():
+            return
+        why = jogger.step_refusal(command.axis, command.distance, command.speed)
+        if not why:
+            jogger.step(command.axis, command.distance, command.speed)
+            conductor.enter(State.JOG)
+            return
+        if not jogger.stepping:
+            jogger.stop()  # a held jog and a step at once: nobody can mean both
+        self._bench.say("refused", f"jog: {why}")
+
+    def _may_not_jog(self) -> bool:
+        conductor = self._conductor
+        if conductor.state is State.IDLE:
+            conductor.jogger.forget()  # an alarm or the E-stop may have ended the jog before
+        elif conductor.state is not State.JOG:
+            self._bench.say("refused", f"no jog in state {conductor.state.value}")
+            return True
+        return False
 
     def _home(self, axis: str) -> None:
         conductor = self._conductor

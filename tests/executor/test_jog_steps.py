@@ -1,0 +1,268 @@
+"""A step is exactly its length; and the known accidents of hand moves, as the executor meets them."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import pytest
+
+from core.executor.commands import (
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    Home,
+    Jog,
+    JogStep,
+    JogStop,
+    Reset,
+)
+from core.executor.snapshot import State
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
+
+AMAX = 120 * INCH
+SPEED = 20 * INCH / 60
+FAST = 100 * INCH / 60
+
+
+def ready(machine: Machine | None = None) -> Rig:
+    rig = Rig(machine) if machine else Rig()
+    rig.ready()
+    return rig
+
+
+def nothing_homed() -> Machine:
+    """A lathe that only counts: Z is homed before X."""
+    machine = load_machine()
+    x, z, *rest = machine.axes
+    x = dataclasses.replace(x, absolute=False, home_speed=20.0, home_order=2)
+    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    return dataclasses.replace(machine, axes=(x, z, *rest))
+
+
+# --- steps -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("inches", [0.1, 0.01, 0.001, 0.0001, 0.00005])
+@pytest.mark.parametrize(("axis", "sign"), [("X", 1), ("X", -1), ("Z", 1), ("Z", -1)])
+def test_a_step_is_exactly_its_length_and_ends_at_rest(axis: str, sign: int, inches: float) -> None:
+    rig = ready()
+    rig.post(JogStep(axis, sign * inches * INCH, SPEED))
+    rig.until(State.IDLE)
+    index = "XZ".index(axis)
+    assert rig.shot.demand[index] == pytest.approx(sign * inches * INCH, abs=1e-9)
+    assert rig.shot.demand[1 - index] == 0.0
+    rig.run(0.2)
+    assert not rig.sim.ports.axes.sample().moving
+    assert rig.shot.actual[index] == pytest.approx(sign * inches * INCH, abs=0.00127)
+
+
+def test_ten_steps_are_ten_times_one_and_take_the_time_they_must() -> None:
+    rig = ready()
+    for _ in range(10):
+        rig.post(JogStep("Z", -0.001 * INCH, SPEED))
+        rig.until(State.IDLE)
+    assert rig.shot.demand[1] == pytest.approx(-0.01 * INCH, abs=1e-9)
+    rig.post(JogStep("Z", 0.1 * INCH, SPEED))
+    # way/v + v/a, and what is queued already
+    assert rig.until(State.IDLE) == pytest.approx(2.54 / SPEED + SPEED / AMAX + 0.03, abs=2 * TICK)
+
+
+def test_c_steps_in_degrees() -> None:
+    rig = ready()
+    rig.post(JogStep("C", 1.0, 90.0))
+    rig.until(State.IDLE)
+    assert rig.shot.demand[2] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
+    rig = ready()
+    rig.post(JogStep("X", 2.54, SPEED))
+    rig.run(0.1)
+    rig.post(JogStep("X", 2.54, SPEED))
+    assert "wait for the end of its step" in rig.said("refused")[0]
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] == pytest.approx(2.54, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("step", "why"),
+    [
+        (JogStep("B", 0.1, SPEED), "no axis B"),
+        (JogStep("X", 0.0, SPEED), "longer than 0"),
+        (JogStep("X", 2.6, SPEED), "no longer than 2.54"),
+        (JogStep("X", math.nan, SPEED), "longer than 0"),
+        (JogStep("X", math.inf, SPEED), "longer than 0"),
+        (JogStep("X", 0.1, 0.0), "speed above 0"),
+        (JogStep("X", 0.1, math.nan), "speed above 0"),
+    ],
+)
+def test_steps_without_sense_are_refused(step: JogStep, why: str) -> None:
+    rig = ready()
+    rig.post(step)
+    rig.run(0.3)
+    assert why in rig.said("refused")[0]
+    assert rig.shot.demand == (0.0, 0.0, 0.0)
+
+
+def test_a_step_that_would_leave_the_travel_is_refused_whole() -> None:
+    rig = ready()
+    for _ in range(600):
+        rig.executor.post(Jog("X", FAST, 0.2))
+        rig.tick()
+    before = rig.shot.demand[0]
+    rig.post(JogStep("X", 0.0254, SPEED))
+    assert rig.state is State.IDLE
+    assert rig.said("refused")[-1] == "jog: X is at the end of its travel in +"
+    assert rig.shot.demand[0] == before
+    rig.post(JogStep("X", -0.0254, SPEED))
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] == pytest.approx(before - 0.0254, abs=1e-9)
+
+
+def test_a_jog_against_the_end_of_the_travel_is_told() -> None:
+    rig = ready()
+    for _ in range(600):
+        rig.executor.post(Jog("Z", -500.0, 0.2))
+        rig.tick()
+    assert set(rig.said("refused")) == {"jog: Z is at the end of its travel in −"}
+
+
+@pytest.mark.parametrize("stopper", [JogStop(), FeedHold(), Reset()])
+def test_a_step_that_is_stopped_says_that_it_is_short(stopper: JogStop | FeedHold | Reset) -> None:
+    rig = ready()
+    rig.post(JogStep("X", 2.54, SPEED))
+    rig.run(0.1)
+    rig.post(stopper)
+    assert rig.until(State.IDLE) < 0.03 + SPEED / AMAX + 2 * TICK + 0.001
+    assert 0.0 < rig.shot.demand[0] < 2.5
+    assert rig.said("refused") == ["X was stopped before the end of its step"]
+
+
+def test_a_step_whose_host_dies_ends_at_its_end() -> None:
+    rig = ready()
+    rig.post(JogStep("X", 2.54, SPEED))
+    rig.clock.advance(5.0)
+    sample = rig.sim.ports.axes.sample()
+    assert not sample.moving
+    assert sample.demand[0] == pytest.approx(2.54, abs=1e-9)
+
+
+# --- two things at once ------------------------------------------------------------------------------------
+
+
+def test_a_step_while_a_jog_is_held_ends_both() -> None:
+    rig = ready()
+    rig.post(Jog("X", 10.0, 1.0))
+    rig.run(0.1)
+    rig.post(JogStep("X", 0.1, SPEED))
+    assert rig.until(State.IDLE) < 0.1
+    assert "still moving" in rig.said("refused")[0]
+
+
+def test_a_held_jog_during_a_step_ends_the_step() -> None:
+    rig = ready()
+    rig.post(JogStep("X", 2.54, SPEED))
+    rig.run(0.1)
+    rig.post(Jog("Z", 10.0, 0.2))
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] < 2.5
+    assert rig.shot.demand[1] == 0.0
+    assert rig.said("refused")[-1] == "jog: X is still on its step"
+
+
+def test_after_an_estop_in_the_middle_of_a_jog_another_axis_may_be_jogged() -> None:
+    rig = ready()
+    rig.post(Jog("X", 10.0, 1.0))
+    rig.run(0.1)
+    rig.sim.machine.press_estop()
+    rig.run(0.5)
+    rig.sim.machine.release_estop()
+    rig.run(0.1)
+    rig.post(EnableDrives())
+    rig.post(Jog("Z", 10.0, 0.2))
+    assert rig.state is State.JOG
+    assert rig.said("refused") == []
+
+
+def test_a_late_step_is_refused() -> None:
+    rig = ready()
+    rig.executor.post(JogStep("X", 0.1, SPEED))
+    rig.clock.advance(0.6)
+    rig.executor.tick()
+    rig.run(0.2)
+    assert rig.shot.demand[0] == 0.0
+    assert "JogStep came too late" in rig.said("refused")[0]
+
+
+@pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogStep("X", 0.1, SPEED)])
+def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogStep) -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
+    rig.run(0.2)
+    rig.post(command)
+    assert rig.said("refused") == ["no jog in state RUNNING"]
+    rig.until(State.PROGRAM_STOP)
+    rig.post(command)
+    rig.run(0.3)
+    assert rig.shot.demand[0] == 0.0
+
+
+def test_c_is_not_jogged_while_the_spindle_turns() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S500\nM02\n")
+    rig.until(State.IDLE)
+    rig.run(0.5)
+    assert rig.shot.rpm_actual > 100
+    rig.post(Jog("C", 90.0, 0.2))
+    assert rig.said("refused") == ["jog: C is the spindle, and the spindle turns; stop it first"]
+    assert rig.shot.alarms == ()
+    rig.post(JogStep("X", 0.254, SPEED))  # touching off on a turning part
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] == pytest.approx(0.254, abs=1e-9)
+
+
+# --- a machine that does not know where it is ---------------------------------------------------------------
+
+
+def test_unhomed_only_slow_jogs_and_no_program() -> None:
+    rig = ready(nothing_homed())
+    fastest: list[float] = []
+    rig.watch.append(lambda shot: fastest.append(shot.velocity))
+    rig.post(JogStep("Z", 2.54, FAST))
+    rig.until(State.IDLE)
+    assert max(fastest) == pytest.approx(0.1 * FAST, rel=0.05)
+    rig.load("G90G94F300\nX1Z1\nM30\n")
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "X, Z must be homed first"
+
+
+def test_home_takes_the_axes_in_their_order() -> None:
+    rig = ready(nothing_homed())
+    order: list[tuple[bool, ...]] = []
+    rig.watch.append(lambda shot: order.append(tuple(shot.homed[:2])))
+    rig.post(Home())
+    rig.until(State.IDLE)
+    assert list(dict.fromkeys(order)) == [(False, False), (False, True), (True, True)]
+
+
+def test_one_axis_is_homed_alone() -> None:
+    rig = ready(nothing_homed())
+    rig.post(Home("X"))
+    rig.until(State.IDLE)
+    assert rig.shot.homed[:2] == (True, False)
+
+
+@pytest.mark.parametrize("command", [Jog("Z", 5.0, 0.2), JogStep("Z", 0.1, SPEED), Home(), CycleStart()])
+def test_nothing_else_moves_while_it_is_homing(command: Jog | JogStep | Home | CycleStart) -> None:
+    rig = ready(unhomed_machine())
+    rig.post(Jog("Z", -5.0, 0.9))
+    rig.until(State.IDLE)
+    rig.post(Home())
+    rig.run(0.05)
+    rig.post(command)
+    assert rig.state is State.HOME
+    assert rig.said("refused")
