@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import threading
+from collections import deque
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 from app.desk.home import home
 from app.desk.offsets.book import OffsetBook
 from core.executor.snapshot import Event
 from core.language.source import Source
+from core.store import backup
 from core.store.errors import StoreError
-from core.store.rows import VersionRow
+from core.store.rows import EventRow, RunRow, VersionRow
 from core.store.store import Store
+
+HELD = 10_000  # events that are kept back while a backup takes the store's place
 
 
 class Journal:
@@ -20,6 +26,10 @@ class Journal:
     """
 
     def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._lock = threading.Lock()  # held for the blink in which stores or events change hands
+        self._held: deque[Event] | None = None  # while a restore is under way
+        self._books: list[OffsetBook] = []
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
@@ -42,17 +52,24 @@ class Journal:
         """The offsets of the store, for the screen to show and to change."""
         if self._store is None:
             return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
-        return OffsetBook(self._store)
+        book = OffsetBook(self._store)
+        self._books.append(book)
+        return book
 
     def hear(self, event: Event) -> None:
         """Keep an event; a finished part counts for the program that made it."""
-        if event.kind == "load":
-            self._program = event.text
-        if self._store is None:
-            return
-        self._store.log_event(event.kind, event.text, event.line)
+        with self._lock:
+            if event.kind == "load":
+                self._program = event.text
+            if self._held is not None:
+                self._held.append(event)
+            elif self._store is not None:
+                self._write(self._store, event)
+
+    def _write(self, store: Store, event: Event) -> None:
+        store.log_event(event.kind, event.text, event.line)
         if event.kind == "part" and self._program:
-            self._store.count_part(Path(self._program).name)
+            store.count_part(Path(self._program).name)
 
     def keep(self, source: Source) -> None:
         """The text that is about to be proved and run becomes a version of its program."""
@@ -72,10 +89,103 @@ class Journal:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
         return self._opened().save_program(name, text, why).result()
 
+    # --- what the screen keeps (``app.desk.keep``) ---------------------------------------------------
+
+    def setting(self, key: str) -> object:
+        """A setting; None: not set, or nothing is kept."""
+        store = self._store
+        return store.setting(key) if store else None
+
+    def keep_setting(self, key: str, value: object) -> None:
+        """Post a setting."""
+        self._post(lambda store: store.set_setting(key, value))
+
+    def parts(self, program: str) -> int:
+        """Parts counted of this program."""
+        store = self._store
+        return store.parts(program) if store else 0
+
+    def reset_parts(self, program: str) -> None:
+        """Post its count to nought."""
+        self._post(lambda store: store.reset_parts(program))
+
+    def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
+        """The log, newest first."""
+        return self._opened().events(search, limit, kinds)
+
+    def runs(self) -> tuple[RunRow, ...]:
+        """What each program has done."""
+        return self._opened().runs()
+
+    def run_started(self, program: str) -> None:
+        """Post that a run begins."""
+        self._post(lambda store: store.run_started(program))
+
+    def run_ended(self, program: str, outcome: str) -> None:
+        """Post how it ended."""
+        self._post(lambda store: store.run_ended(program, outcome))
+
+    def cycle_finished(self, program: str, seconds: float) -> None:
+        """Post one whole cycle."""
+        self._post(lambda store: store.cycle_finished(program, seconds))
+
+    def program_proved(self, program: str, result: str, planned: float | None) -> None:
+        """Post what proving found."""
+        self._post(lambda store: store.program_proved(program, result, planned))
+
+    def renamed(self, old: str, new: str) -> None:
+        """Versions, count and record go with the program; back when that is on the disk."""
+        store = self._store
+        if store is not None:
+            store.rename_program(old, new).result()
+
+    def keep_text(self, program: str, text: bytes, why: str) -> None:
+        """Keep a version; back when it is on the disk. Raises StoreError."""
+        self.keep_version(program, text, why)
+
+    def backup(self, target: Path) -> None:
+        """A copy of the store, also while it is written. Raises StoreError."""
+        self._opened()
+        backup.backup(self._folder, target)
+
+    def restore(self, source: Path) -> Path | None:
+        """Put a backup in the store's place; events of the meantime are written to it. Raises StoreError.
+
+        Whatever happens a store is open again afterwards: the restored one, or the one before.
+        """
+        with self._lock:
+            store, self._store = self._opened(), None
+            self._held = deque(maxlen=HELD)
+        store.close()
+        try:
+            return backup.restore(self._folder, source)
+        finally:
+            self._open_again()
+
+    def _open_again(self) -> None:
+        try:
+            store: Store | None = Store.open(self._folder)
+            self._trouble = ""
+        except StoreError as error:
+            store, self._trouble = None, str(error)
+        with self._lock:
+            held, self._held, self._store = self._held or (), None, store
+            for event in held:
+                if store is not None:
+                    self._write(store, event)
+        for book in self._books:
+            book.reopen(store, self._trouble)
+
+    def _post(self, write: Callable[[Store], object]) -> None:
+        store = self._store
+        if store is not None:
+            write(store)
+
     def _opened(self) -> Store:
-        if self._store is None:
+        store = self._store
+        if store is None:
             raise StoreError(self._trouble or "the store is closed")
-        return self._store
+        return store
 
     def close(self) -> None:
         """Write what is queued and give the store free."""

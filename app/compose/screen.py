@@ -13,10 +13,12 @@ from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.simulated import simulated
+from app.compose.special import furnish
 from app.desk.desk import Desk
 from app.desk.editing.bench import Bench, NoArchive
 from app.desk.editing.editor import Editor
 from app.desk.home import home
+from app.desk.keep import NothingKept
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
 from core.executor.executor import Executor
@@ -93,6 +95,7 @@ def desk_and_executor(
         book=book_of(offsets, journal),
         editor=_editor(machine, offsets, journal),
     )
+    furnish(desk, machine, journal or NothingKept())
     heard.append(desk)
     return desk, executor
 

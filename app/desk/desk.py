@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING
 
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
+from app.desk.files.record import RunRecord
 from app.desk.hands import OVERRIDE_MOST, StationHands, stepped
 from app.desk.offsets.book import NONE_KEPT, OffsetBook
 from app.desk.offsets.force import use_offsets
 from app.desk.pulse import Pulse
 from app.desk.session import Loaded, Phase, Session
+from app.desk.settings import SettingsBook
 from app.desk.shelf import Shelf
+from app.desk.special.counter import PartCounter
 from app.desk.station import StationPanel
 from app.desk.view import Readout, Tone, View, view_of
 from core.executor.commands import (
@@ -33,9 +36,11 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import Event, Snapshot, State
+from core.store.errors import StoreError
 
 if TYPE_CHECKING:
     from app.desk.editing.editor import Editor
+    from app.desk.special.special import SpecialDesk
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
 SILENT = "CONTROL SILENT"
@@ -72,7 +77,11 @@ class Desk:
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
     editor: Editor | None = None
-    readout: Readout = Readout.POSITION
+    special: SpecialDesk | None = None
+    settings: SettingsBook = field(default_factory=SettingsBook)
+    counter: PartCounter = field(default_factory=PartCounter)
+    record: RunRecord = field(default_factory=RunRecord)
+    restoring: bool = False  # a backup takes the place of what is kept
     notice: str = ""
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     starts_here: bool = True  # whether the page in front is one on which cycles are started
@@ -101,10 +110,13 @@ class Desk:
         self._answer(snapshot)
         self._tell_unkept()
         self._build_anew(snapshot)
-        view = view_of(snapshot, self.readout, self.with_c)
+        loaded = self.session.now
+        self.counter.see(snapshot, self.post, self.say)
+        self.record.see(snapshot, loaded)
+        view = view_of(snapshot, self.readout, self.with_c, self.settings.units)
         if self._pulse.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
-        return snapshot, view, self.session.now
+        return snapshot, view, loaded
 
     def prompt(self, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
         """The prompt line: the answer to the last key, or else what can be done now.
@@ -244,7 +256,19 @@ class Desk:
 
     def next_readout(self) -> None:
         """Position, distance to go, distance from home."""
-        self.readout = self.readout.following
+        self.choose_setting("readout", self.readout.following.value)
+
+    @property
+    def readout(self) -> Readout:
+        """What the large figures show."""
+        return Readout(self.settings.now.readout)
+
+    def choose_setting(self, name: str, value: object) -> None:
+        """Take a choice of the screen; where it cannot be kept it counts until the end, and that is said."""
+        try:
+            self.settings.choose(name, value)
+        except StoreError as error:
+            self.say(f"NOT KEPT: {error}")
 
     def later(self, key: str) -> None:
         """A key whose page is not there yet says so."""
@@ -279,6 +303,8 @@ class Desk:
         """Why the palms start nothing now; empty when they may."""
         if not self.starts_here:
             return prompts.NOT_HERE
+        if self.restoring:
+            return prompts.RESTORING
         loaded = self.session.now
         if self.snapshot().state is not State.IDLE:
             return ""
@@ -294,8 +320,9 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
-        if self.editor is not None:
-            self.editor.close()
+        for part in (self.editor, self.special):
+            if part is not None:
+                part.close()
         self.shut()
 
     def hear(self, event: Event) -> None:

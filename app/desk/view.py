@@ -8,6 +8,7 @@ from enum import StrEnum
 
 from app.desk import formats
 from app.desk.lamps import TURNING, Lamp, lamps_of, modes_of
+from app.desk.settings import Units
 from core.executor.snapshot import Alarm, Snapshot, State
 
 
@@ -126,9 +127,13 @@ class View:
     alarm: Alarm | None
 
 
-def view_of(snapshot: Snapshot, readout: Readout, with_c: bool) -> View:
-    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis."""
+def view_of(snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = Units.PROGRAM) -> View:
+    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis.
+
+    Every figure is in the one unit that ``units`` and this very snapshot come to.
+    """
     modal = snapshot.modal
+    metric = units.metric(modal.metric)
     state = snapshot.state.value
     if snapshot.state is State.WAIT and snapshot.waiting_for:
         state = f"WAITING: {snapshot.waiting_for}"
@@ -136,11 +141,11 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool) -> View:
         program=snapshot.program,
         state=state,
         tone=TONES[snapshot.state],
-        position=_position(snapshot, readout, with_c),
+        position=_position(snapshot, readout, with_c, metric),
         tool=f"T{modal.tool}",
         secondary=f"D{modal.secondary}",
-        feed=_feed(snapshot),
-        spindle=_spindle(snapshot),
+        feed=_feed(snapshot, metric),
+        spindle=_spindle(snapshot, metric),
         modes=modes_of(snapshot),
         lamps=lamps_of(snapshot),
         parts=str(snapshot.parts),
@@ -168,8 +173,8 @@ def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
     return (x - snapshot.offset[0], z - snapshot.offset[1], *rest)
 
 
-def _position(snapshot: Snapshot, readout: Readout, with_c: bool) -> PositionView:
-    metric, diameter = snapshot.modal.metric, snapshot.modal.diameter
+def _position(snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool) -> PositionView:
+    diameter = snapshot.modal.diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
     mark = "Ø" if diameter else "R"
@@ -180,10 +185,16 @@ def _position(snapshot: Snapshot, readout: Readout, with_c: bool) -> PositionVie
     return PositionView(
         readout=readout,
         beside=beside,
-        unit="MM" if metric else "INCH",
+        unit=_unit(metric, snapshot.modal.metric),
         x_words="X IS A DIAMETER" if diameter else "X IS A RADIUS",
         axes=tuple(rows if with_c else rows[:2]),
     )
+
+
+def _unit(metric: bool, control: bool) -> str:
+    """The unit of the figures; where the control is in the other one, that is said beside it."""
+    names = ("INCH", "MM")
+    return names[metric] if metric == control else f"{names[metric]}  ·  CONTROL IN {names[control]}"
 
 
 def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> list[str]:
@@ -197,9 +208,9 @@ def _doubled(name: str, value: float, diameter: bool) -> float:
     return 2 * value if name == "X" and diameter else value
 
 
-def _feed(snapshot: Snapshot) -> FeedView:
+def _feed(snapshot: Snapshot, metric: bool) -> FeedView:
     modal = snapshot.modal
-    metric, per_rev = modal.metric, modal.per_rev and not snapshot.rapid
+    per_rev = modal.per_rev and not snapshot.rapid
     turns = abs(snapshot.rpm_actual) / 60
     if per_rev:
         speed = snapshot.velocity / turns if turns > TURNING / 60 else math.nan
@@ -217,7 +228,7 @@ def _feed(snapshot: Snapshot) -> FeedView:
     )
 
 
-def _spindle(snapshot: Snapshot) -> SpindleView:
+def _spindle(snapshot: Snapshot, metric: bool) -> SpindleView:
     modal = snapshot.modal
     radius = snapshot.actual[0] - snapshot.offset[0]
     surface = 2 * math.pi * radius * snapshot.rpm_actual / 60
@@ -227,8 +238,8 @@ def _spindle(snapshot: Snapshot) -> SpindleView:
         direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),
         actual=formats.rpm(snapshot.rpm_actual),
-        surface=formats.surface_speed(surface, modal.metric),
-        surface_label="M/MIN" if modal.metric else "SFM",
+        surface=formats.surface_speed(surface, metric),
+        surface_label="M/MIN" if metric else "SFM",
         override=snapshot.spindle_override,
         auto=snapshot.spindle_auto,
     )

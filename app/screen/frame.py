@@ -56,6 +56,7 @@ class Frame(QWidget):
         self.page: Page = self.automatic
         self.notice = Notice(look, self)
         self.log = AlarmList(look, self)
+        self._docked = True
         self._front()
 
     # --- pages ---------------------------------------------------------------------------------------
@@ -136,13 +137,16 @@ class Frame(QWidget):
         width, height = self.width(), self.height()
         self.look.resize(unit(width, height))
         large = self.page is self.automatic
-        with_dock = self.dock is not None
+        with_dock = self.dock is not None and self.desk.settings.now.dock
         at, low = places(width, height, with_dock), low_places(width, height, with_dock)
+        self._docked = with_dock
         over = at.path if large else low.work
         self._stand_readouts(at, large)
         _stand(self.head, low.head)
         self.head.setVisible(not large)
         if self.dock is not None:
+            self.dock.let_go()
+            self.dock.setVisible(with_dock)
             _stand(self.dock, at.dock)
         _stand(self.title, at.title)
         _stand(self.strip, at.strip if large else low.strip)
@@ -169,6 +173,8 @@ class Frame(QWidget):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
+        if self.dock is not None and self._docked is not self.desk.settings.now.dock:
+            self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self._lamps(snapshot, view)
         self.strip.show_lamps(lamps, frozenset(lamp.key for lamp in lamps if self._is_text(lamp.key)))
@@ -210,7 +216,12 @@ class Frame(QWidget):
 
     def _times(self, snapshot: Snapshot, view: View, loaded: Loaded) -> tuple[tuple[str, str], ...]:
         left = formats.duration(self.desk.time_left(snapshot, loaded))
-        return (("PARTS", view.parts), ("CYCLE", view.cycle), ("LEFT", left), ("LAST", view.last_cycle))
+        return (
+            ("PARTS", self.desk.counter.words),
+            ("CYCLE", view.cycle),
+            ("LEFT", left),
+            ("LAST", view.last_cycle),
+        )
 
     def _lamps(self, snapshot: Snapshot, view: View) -> tuple[Lamp, ...]:
         on = snapshot.state not in {State.ESTOP, State.DISABLED}

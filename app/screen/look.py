@@ -9,6 +9,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QFontMetricsF, QPainter, QPalette, QPen
 from PySide6.QtWidgets import QApplication
 
+from app.desk.words import tr
 from app.screen.theme import Palette
 
 # B612 has figures of one width, and an O that cannot be taken for a 0. (In B612 Mono both are alike, and its
@@ -77,7 +78,7 @@ class Look:
         Never so small that it cannot be read: text that is too long even then is elided where it is put.
         """
         font = self.font(size, bold=bold)
-        wide = QFontMetricsF(font).horizontalAdvance(text)
+        wide = QFontMetricsF(font).horizontalAdvance(tr(text))
         if wide <= width or wide <= 0:
             return font
         smaller = QFont(font)
@@ -86,7 +87,15 @@ class Look:
 
 
 def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of text, its capitals centred on the middle of ``rect``; elided when it is too long."""
+    """Draw one line of our own text in the operator's language; see ``put_raw``."""
+    put_raw(painter, rect, flags, tr(text))
+
+
+def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
+    """Draw one line of anybody's text as it is: program lines, comments, names, what is being typed.
+
+    Its capitals are centred on the middle of ``rect``; it is elided when it is too long.
+    """
     metrics = QFontMetricsF(painter.font())
     if metrics.horizontalAdvance(text) > rect.width() + 1:
         text = metrics.elidedText(text, Qt.TextElideMode.ElideRight, rect.width())

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, MENU, SECCMP, TOOLS
+from app.desk.pages import EDITOR, MENU, SECCMP, SPECIAL, TOOLS
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
@@ -24,9 +24,19 @@ def _editor(host: Host, parent: QWidget) -> Page:
     return EditorPage(host, editor, parent)
 
 
+def _special(host: Host, parent: QWidget) -> Page:
+    from app.screen.special.page import SpecialPage
+
+    model = host.desk.special
+    if model is None:
+        raise RuntimeError("the desk was put together without special functions")
+    return SpecialPage(host, model, parent)
+
+
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
+    SPECIAL: _special,
     SECCMP: SeccmpPage,
     TOOLS: ToolsPage,
 }

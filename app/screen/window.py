@@ -12,9 +12,10 @@ from PySide6.QtWidgets import QWidget
 from app.desk.desk import UNDER_WAY, Desk
 from app.screen.frame import Frame
 from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
+from app.screen.language import speak_in
 from app.screen.layout import LEAST
 from app.screen.look import Look, dress
-from app.screen.theme import DARK, LIGHT
+from app.screen.theme import PALETTES
 
 FRAME_MS = 16  # at most 60 pictures a second
 
@@ -31,6 +32,7 @@ class MainWindow(QWidget):
         self._closed = closed
         self.look = look
         self.frame: Frame | None = None
+        self._language = "en"
         self._keys: dict[str, Callable[[], None]] = {}
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -53,6 +55,7 @@ class MainWindow(QWidget):
         """Once a frame."""
         if self.frame is not None:
             self.frame.refresh()
+            self._wear(self.frame)
 
     def press(self, key: str) -> None:
         """Do what a key does; fingers on the screen come here too."""
@@ -84,11 +87,20 @@ class MainWindow(QWidget):
 
     def other_theme(self) -> None:
         """Dark to light and back, for a shop with the doors open."""
-        wanted = LIGHT if self.look.palette.name == DARK.name else DARK
-        self.look.repaint(wanted)
-        dress(wanted)
         if self.frame is not None:
-            self.frame.dress()
+            self.frame.desk.choose_setting("theme", self.frame.desk.settings.following("theme"))
+
+    def _wear(self, frame: Frame) -> None:
+        """The colours and the language that are chosen now."""
+        settings = frame.desk.settings.now
+        if settings.language != self._language:
+            self._language = settings.language
+            speak_in(settings.language)
+            frame.dress()
+        if settings.theme != self.look.palette.name:
+            self.look.repaint(PALETTES[settings.theme])
+            dress(self.look.palette)
+            frame.dress()
 
     def _escape(self) -> None:
         if self.frame is not None and not self.frame.escape():

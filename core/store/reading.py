@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sqlite3
 import threading
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from core.store import database, offsets, programs, records
+from core.store import database, offsets, programs, records, runs
 from core.store.errors import StoreError
-from core.store.rows import Change, EventRow, Kind, ProgramRow, SecondaryRow, ToolRow, VersionRow
+from core.store.rows import Change, EventRow, Kind, ProgramRow, RunRow, SecondaryRow, ToolRow, VersionRow
 
 
 class StoreReader:
@@ -62,10 +62,18 @@ class StoreReader:
         with self.read() as connection:
             return programs.load(connection, name, version)
 
-    def events(self, search: str = "", limit: int = 100) -> tuple[EventRow, ...]:
-        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters."""
+    def events(self, search: str = "", limit: int = 100, kinds: Collection[str] = ()) -> tuple[EventRow, ...]:
+        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters.
+
+        With ``kinds`` only events of these.
+        """
         with self.read() as connection:
-            return records.events(connection, search, limit)
+            return records.events(connection, search, limit, kinds)
+
+    def runs(self) -> tuple[RunRow, ...]:
+        """What each program has done."""
+        with self.read() as connection:
+            return runs.all_of(connection)
 
     def parts(self, program: str) -> int:
         """Parts of this program that were counted."""

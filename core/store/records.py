@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from core.store.errors import StoreError
 from core.store.rows import EventRow
@@ -17,13 +17,16 @@ def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> int:
     return len(rows)
 
 
-def events(connection: sqlite3.Connection, search: str, limit: int) -> tuple[EventRow, ...]:
-    """The last events whose kind or text holds ``search``, newest first."""
+def events(
+    connection: sqlite3.Connection, search: str, limit: int, kinds: Collection[str] = ()
+) -> tuple[EventRow, ...]:
+    """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
     rows = connection.execute(
         "SELECT at, kind, text, line FROM events"
-        " WHERE ? = '' OR instr(lower(text), lower(?)) OR instr(lower(kind), lower(?))"
-        " ORDER BY id DESC LIMIT ?",
-        (search, search, search, limit),
+        " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
+        " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
+        " ORDER BY id DESC LIMIT ?3",
+        (search, json.dumps(sorted(kinds)), limit),
     )
     return tuple(EventRow(*row) for row in rows)
 

@@ -98,6 +98,24 @@ class EventRow(NamedTuple):
     line: int = 0
 
 
+class RunRow(NamedTuple):
+    """What a program has done: parts counted, last run and its outcome, cycles since ever, times in seconds.
+
+    ``proof`` is what proving found last, ``planned`` the cycle time it reckoned with; None: never.
+    """
+
+    program: str
+    parts: int = 0
+    started: str | None = None
+    outcome: str = ""
+    cycles: int = 0
+    best: float | None = None
+    latest: float | None = None
+    proved: str | None = None
+    proof: str = ""
+    planned: float | None = None
+
+
 def inches(mm: float) -> float:
     """Millimetres as inches with ten places: what was entered in inches comes back as it was entered."""
     return round(mm / MM_PER_INCH, 10)

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from core.store import offsets, programs, records, toolset
+from core.store import offsets, programs, records, runs, toolset
 from core.store.errors import StoreError
 from core.store.offsets import Reason
 from core.store.opening import Opened, open_to_read, open_to_write
@@ -128,6 +128,26 @@ class Store(StoreReader):
     def reset_parts(self, program: str) -> Future[None]:
         """The part count of this program to nought."""
         return self.write(lambda c: programs.reset_parts(c, program))
+
+    def run_started(self, program: str) -> Future[None]:
+        """A run of this program begins now."""
+        return self.write(lambda c: runs.started(c, program))
+
+    def run_ended(self, program: str, outcome: str) -> Future[None]:
+        """How it ended."""
+        return self.write(lambda c: runs.ended(c, program, outcome))
+
+    def cycle_finished(self, program: str, seconds: float) -> Future[None]:
+        """One whole cycle of this program and its time."""
+        return self.write(lambda c: runs.finished(c, program, seconds))
+
+    def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
+        """What proving found, and the cycle time it reckons with."""
+        return self.write(lambda c: runs.proved(c, program, result, planned))
+
+    def rename_program(self, old: str, new: str) -> Future[None]:
+        """Versions, part count and record go with a program that gets another name."""
+        return self.write(lambda c: runs.renamed(c, old, new))
 
     def set_setting(self, key: str, value: object) -> Future[None]:
         """Keeps anything JSON can hold; None forgets it."""

@@ -194,7 +194,7 @@ def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine)
     assert desk.prompt(snapshot, loaded) == "DRIVES ARE OFF: PRESS D FOR DRIVES ON"
 
 
-@pytest.mark.parametrize("key", ["F6", "F10"])
+@pytest.mark.parametrize("key", ["F6"])
 def test_pages_to_come_are_announced(desk: Desk, key: str) -> None:
     desk.later(key)
     assert desk.notice.endswith("WITH A LATER VERSION")

@@ -11,10 +11,12 @@ from core.executor.commands import (
     EnableDrives,
     FeedHold,
     FeedOverride,
+    ForceOutput,
     GiveProof,
     LoadJob,
     Reset,
     SetSwitch,
+    SpindleLimit,
 )
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, Snapshot, State
@@ -61,6 +63,11 @@ class FakeMachine:
                 self.proof = proof
             case SetSwitch(name, on):
                 self.now = replace(self.now, **{name: on})
+            case SpindleLimit(rpm):
+                self.now = replace(self.now, spindle_limit=rpm or 0.0)
+            case ForceOutput(name, on):
+                outputs = self.now.outputs | {name} if on else self.now.outputs - {name}
+                self.now = replace(self.now, outputs=outputs)
             case FeedOverride(fraction):
                 self.now = replace(self.now, feed_override=fraction)
             case CycleStart() | FeedHold() | Reset() | EnableDrives():

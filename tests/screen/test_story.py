@@ -224,7 +224,7 @@ def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Ha
     assert hands.page.path.view == before
 
 
-@pytest.mark.parametrize("key", [Key.Key_F6, Key.Key_F10])
+@pytest.mark.parametrize("key", [Key.Key_F6])
 def test_pages_to_come_say_so(hands: Hands, key: Key) -> None:
     hands.key(key)
     assert hands.prompt().endswith("WITH A LATER VERSION")

@@ -1,0 +1,57 @@
+"""The special functions, the list of programs and the settings of a desk: put together and given to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from app.desk.desk import Desk
+from app.desk.editing.worker import Worker
+from app.desk.files.record import RunRecord
+from app.desk.home import home
+from app.desk.keep import Keep
+from app.desk.settings import SettingsBook
+from app.desk.special.counter import PartCounter
+from app.desk.special.drives import DrivesSection
+from app.desk.special.events import EventsSection
+from app.desk.special.keeping import KeepingSection
+from app.desk.special.parts import PartsSection
+from app.desk.special.preferences import PreferencesSection
+from app.desk.special.sheet import Section
+from app.desk.special.signals import SignalsSection
+from app.desk.special.special import SpecialDesk
+from app.desk.special.speed import SpeedSection
+from core.machine.model import Machine
+
+MakeSection = Callable[[Desk, Machine, Keep, Worker], Section]
+
+
+def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Worker) -> Section:
+    section = KeepingSection(desk, keep, worker, home() / "backups")
+
+    def restored() -> None:
+        desk.settings.reload()
+        desk.counter.reload()
+
+    section.restored = restored
+    return section
+
+
+# One line for each special function, in the order of the list; one whose hardware is not there has none.
+ITEMS: tuple[MakeSection, ...] = (
+    lambda desk, machine, _keep, _worker: SpeedSection(desk, machine.spindle),
+    lambda desk, _machine, _keep, _worker: PartsSection(desk),
+    lambda desk, machine, _keep, _worker: SignalsSection(desk, machine),
+    lambda desk, machine, _keep, _worker: DrivesSection(desk, machine),
+    lambda desk, _machine, keep, worker: EventsSection(desk, keep, worker),
+    _keeping,
+    lambda desk, _machine, _keep, _worker: PreferencesSection(desk),
+)
+
+
+def furnish(desk: Desk, machine: Machine, keep: Keep) -> None:
+    """Give the desk what it remembers, and the pages that show it."""
+    desk.settings = SettingsBook(keep)
+    desk.counter = PartCounter(keep)
+    desk.record = RunRecord(keep)
+    worker = Worker()
+    desk.special = SpecialDesk([make(desk, machine, keep, worker) for make in ITEMS], worker)

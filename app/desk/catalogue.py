@@ -1,0 +1,78 @@
+"""A catalogue of texts: whole sentences, and sentences with values in them. No Qt.
+
+A template is a sentence with holes: ``LINE %1`` or ``LINE {line}``. A text that is made of it is found again
+by what stands between the holes; what stands in them is translated too, when it is in the catalogue.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+
+Find = Callable[[str], str]  # the translation of a whole text; empty: it has none
+
+HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
+BETWEEN = "  ·  "  # parts of a title are texts of their own
+_WORD = re.compile(r"[^\W\d_]{2}")
+_DEEPEST = 3
+
+
+class _Template:
+    """One sentence with holes, in both languages."""
+
+    def __init__(self, english: str, other: str) -> None:
+        pieces = HOLE.split(english)
+        self.head, self.tail = pieces[0], pieces[-1]
+        self.weight = sum(map(len, pieces))
+        self._holes = HOLE.findall(english)
+        self._other = other
+        self._pattern: re.Pattern[str] | None = None
+        self._pieces = pieces
+
+    def values(self, text: str) -> dict[str, str] | None:
+        """What stands in the holes; None when the text was not made of this."""
+        if not (text.startswith(self.head) and text.endswith(self.tail)):
+            return None
+        if self._pattern is None:
+            self._pattern = re.compile("(.+?)".join(map(re.escape, self._pieces)), re.DOTALL)
+        found = self._pattern.fullmatch(text)
+        return dict(zip(self._holes, found.groups(), strict=True)) if found else None
+
+    def made(self, values: dict[str, str]) -> str:
+        """The other language's sentence with these values."""
+        return HOLE.sub(lambda hole: values.get(hole.group(), hole.group()), self._other)
+
+
+class Catalogue:
+    """``find`` answers whole texts, ``templates`` are the English ones with holes."""
+
+    def __init__(self, find: Find, templates: Iterable[str]) -> None:
+        self._find = find
+        found = [_Template(text, other) for text in templates if (other := find(text))]
+        self._templates = sorted(found, key=lambda template: -template.weight)
+        self.translate = lru_cache(8192)(self._translated)
+
+    def _translated(self, text: str) -> str:
+        return self._look_up(text, 0) or text
+
+    def _look_up(self, text: str, depth: int) -> str:
+        """Empty when nothing of it is known."""
+        if depth > _DEEPEST or not _WORD.search(text):
+            return ""
+        return self._find(text) or self._joined(text, depth) or self._made(text, depth)
+
+    def _joined(self, text: str, depth: int) -> str:
+        if BETWEEN not in text:
+            return ""
+        parts = [self._look_up(part, depth + 1) or part for part in text.split(BETWEEN)]
+        joined = BETWEEN.join(parts)
+        return joined if joined != text else ""
+
+    def _made(self, text: str, depth: int) -> str:
+        for template in self._templates:
+            values = template.values(text)
+            if values is not None:
+                known = {hole: self._look_up(v, depth + 1) or v for hole, v in values.items()}
+                return template.made(known)
+        return ""

@@ -1,0 +1,77 @@
+"""What each program does, from the snapshots: when it ran, how that ended, cycle times, proof."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk import prompts
+from app.desk.keep import Keep, NothingKept
+from app.desk.session import Loaded, Phase
+from core.executor.snapshot import Snapshot, State
+from core.store.errors import StoreError
+
+COMPLETE, GIVEN_UP, ESTOP = "COMPLETE", "GIVEN UP", "E-STOP"
+_RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompts.INTERRUPTED
+_SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
+
+
+@dataclass(slots=True)
+class RunRecord:
+    """Looks at every snapshot; posts what has happened to the store and never waits for it."""
+
+    keep: Keep = field(default_factory=NothingKept)
+    running: str = ""  # the program under way
+    _parts: int | None = None
+    _loaded: Loaded | None = None
+
+    def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """One frame. Where the store does not take it the desk says so by itself (``Desk.unkept``)."""
+        try:
+            self._run(snapshot)
+            self._proof(loaded)
+        except StoreError:
+            self.running = ""
+
+    def _run(self, snapshot: Snapshot) -> None:
+        parts, self._parts = self._parts, snapshot.parts
+        name = Path(snapshot.program).name
+        if parts is not None and snapshot.parts > parts and name:
+            self.keep.cycle_finished(name, snapshot.last_cycle)
+            if not self.running:
+                self.keep.run_started(name)
+            self._end(name, COMPLETE)
+        under_way = snapshot.state in _RUNNING and snapshot.block > 0
+        if under_way and not self.running and name:
+            self.running = name
+            self.keep.run_started(name)
+        elif self.running and snapshot.state not in _RUNNING:
+            self._end(self.running, _outcome(snapshot))
+
+    def _end(self, name: str, outcome: str) -> None:
+        self.running = ""
+        self.keep.run_ended(name, outcome)
+
+    def _proof(self, loaded: Loaded) -> None:
+        if loaded is self._loaded:
+            return
+        self._loaded = loaded
+        if loaded.phase not in _SETTLED or loaded.path is None:
+            return
+        errors = len(loaded.errors)
+        if loaded.phase is Phase.UNREADABLE:
+            self.keep.program_proved(loaded.path.name, "UNREADABLE", None)
+        elif loaded.phase is Phase.REFUSED:
+            first = loaded.errors[0].message if errors else ""
+            self.keep.program_proved(loaded.path.name, f"{max(errors, 1)} ERRORS: {first}", None)
+        else:
+            planned = loaded.proof.cycle_time if loaded.proof else None
+            self.keep.program_proved(loaded.path.name, "PROVED", planned)
+
+
+def _outcome(snapshot: Snapshot) -> str:
+    if snapshot.state is State.ESTOP:
+        return ESTOP
+    if snapshot.state is State.FAULT and snapshot.alarms:
+        return f"ALARM {snapshot.alarms[-1].number}"
+    return GIVEN_UP

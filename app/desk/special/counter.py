@@ -1,0 +1,96 @@
+"""How many parts of the program on the desk are made, and how many shall be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.keep import Keep, NothingKept
+from app.desk.words import tr
+from core.executor.commands import Command, SetSwitch
+from core.executor.snapshot import Snapshot, State
+from core.store.errors import StoreError
+
+MOST = 9_999_999
+_RUNNING = frozenset({State.RUN, State.WAIT})
+
+
+@dataclass(slots=True)
+class PartCounter:
+    """One count for each program, kept with its target; 0 is no target.
+
+    In the cycle that makes the last part Cycle Repeat is switched off, so that the machine stops by itself.
+    """
+
+    keep: Keep = field(default_factory=NothingKept)
+    program: str = ""
+    count: int = 0
+    target: int = 0
+    _seen: int | None = None
+    _last_told: int = -1
+
+    @property
+    def words(self) -> str:
+        """``12`` or ``12/100``."""
+        return f"{self.count}/{self.target}" if self.target else str(self.count)
+
+    @property
+    def reached(self) -> bool:
+        """Whether all the parts that were asked for are made."""
+        return 0 < self.target <= self.count
+
+    def see(self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]) -> None:
+        """One frame: another program, another part, the last part."""
+        name = Path(snapshot.program).name
+        if name != self.program:
+            self._take_up(name)
+            self._seen = snapshot.parts
+        if self._seen is not None and snapshot.parts > self._seen:
+            self.count += snapshot.parts - self._seen
+            if self.reached:
+                say(
+                    tr("TARGET REACHED: {count} OF {target} PARTS").format(
+                        count=self.count, target=self.target
+                    )
+                )
+        self._seen = snapshot.parts
+        self._stop_at(snapshot, post, say)
+
+    def _stop_at(
+        self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
+    ) -> None:
+        last = self.target > 0 and self.count + 1 >= self.target
+        if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._last_told != self.count:
+            self._last_told = self.count
+            post(SetSwitch("cycle_repeat", False))
+            say("THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF")
+
+    def _take_up(self, name: str) -> None:
+        self.program, self.count, self.target, self._last_told = name, 0, 0, -1
+        if not name:
+            return
+        try:
+            self.count = self.keep.parts(name)
+            kept = self.keep.setting(_key(name))
+        except StoreError:
+            return  # the desk says by itself that nothing is kept
+        self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0
+
+    def reload(self) -> None:
+        """Read count and target again, after a restore."""
+        self._take_up(self.program)
+
+    def aim(self, target: int) -> None:
+        """So many parts, 0: no target. Raises StoreError when it is not kept."""
+        self.target, self._last_told = target, -1
+        self.keep.keep_setting(_key(self.program), target or None)
+
+    def reset(self) -> None:
+        """The count to nought. Raises StoreError when it is not kept."""
+        self.count, self._last_told = 0, -1
+        self.keep.reset_parts(self.program)
+
+
+def _key(program: str) -> str:
+    return f"target:{program}"

@@ -1,0 +1,114 @@
+"""What every special function shows and takes: a table, perhaps a question under it, and its own keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from app.desk.desk import Desk
+from app.desk.view import Tone
+from core.executor.snapshot import Snapshot
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of a table. ``lit`` draws its lamp, filled or hollow; None: it has none."""
+
+    cells: tuple[str, ...]
+    lit: bool | None = None
+    tone: Tone = Tone.READY
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table with a head line; ``shares`` divide its width, ``marked`` is the row keys act on, -1: none.
+
+    ``question`` and ``text`` are the entry below it; cells of the columns ``raw`` are names and texts of
+    others, which nobody translates.
+    """
+
+    title: str
+    heads: tuple[str, ...]
+    shares: tuple[float, ...]
+    rows: tuple[Row, ...]
+    marked: int = -1
+    question: str = ""
+    text: str = ""
+    notes: tuple[str, ...] = ()
+    raw: frozenset[int] = frozenset()
+    figures: frozenset[int] = frozenset()  # columns that stand at the right, as figures do
+
+
+class Key(NamedTuple):
+    """A function key of a section: its label of up to eight characters, and what it does."""
+
+    label: str
+    action: Callable[[], None]
+
+
+class Section:
+    """One special function. Nothing here waits; what cannot be done is said by ``desk.say``."""
+
+    name: ClassVar[str]
+    use: ClassVar[str]
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.marked = 0
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """The table of this instant."""
+        raise NotImplementedError
+
+    def keys(self) -> Mapping[str, Key]:
+        """Its function keys, F2…F10 but for F7."""
+        return {}
+
+    def typed(self, key: str) -> bool:
+        """A typed key; False leaves it to the window."""
+        return self.moves(key)
+
+    def takes(self, _key: str) -> bool:
+        """Whether a character is text now."""
+        return False
+
+    def prompt(self) -> str:
+        """What stands on the prompt line."""
+        return "ESC GOES BACK TO THE LIST"
+
+    def escape(self) -> bool:
+        """Close what is open in it; False when nothing was."""
+        return False
+
+    def opened(self) -> None:
+        """It comes up."""
+
+    def left(self) -> None:
+        """It goes: nothing stays half entered or half asked."""
+
+    def choose(self, row: int) -> None:
+        """A finger on a row."""
+        self.marked = row
+
+    @property
+    def count(self) -> int:
+        """How many rows can be marked."""
+        return 0
+
+    def moves(self, key: str) -> bool:
+        """Take the keys that move the mark."""
+        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
+        if key not in steps or not self.count:
+            return False
+        self.desk.clear()
+        self.marked = max(0, min(self.count - 1, self.marked + steps[key]))
+        return True
+
+    def sure(self, question: str) -> bool:
+        """Whether this is the second press; the first one asks. Any other answer takes the question back."""
+        if self.desk.notice == question:
+            self.desk.clear()
+            return True
+        self.desk.say(question)
+        return False

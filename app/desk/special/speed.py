@@ -1,0 +1,111 @@
+"""The maximum spindle speed until restart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.desk import formats
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.special.entry import Entry
+from app.desk.special.sheet import Key, Row, Section, Sheet
+from app.desk.words import tr
+from core.executor.commands import SpindleLimit
+from core.executor.snapshot import Snapshot
+from core.machine.model import SpindleModel
+
+LIFT = "PRESS F4 ONCE MORE TO LIFT THE LIMIT, ESC TO KEEP IT"
+
+
+class SpeedSection(Section):
+    """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
+
+    name = "MAXIMUM SPINDLE SPEED"
+    use = "a limit until the control is started again"
+
+    def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
+        super().__init__(desk)
+        self.spindle = spindle
+        self.entry = Entry()
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """The machine's speed, the limit, and what turns now."""
+        limit = snapshot.spindle_limit
+        rows = (
+            Row(("MACHINE'S OWN MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
+            Row(
+                ("LIMIT IN FORCE", formats.rpm(limit) if limit else "NONE", "rpm" if limit else ""),
+                bool(limit),
+            ),
+            Row(("COMMANDED NOW", formats.rpm(snapshot.rpm_command), "rpm")),
+            Row(("MEASURED NOW", formats.rpm(snapshot.rpm_actual), "rpm")),
+        )
+        return Sheet(
+            "MAXIMUM SPINDLE SPEED",
+            ("", "", ""),
+            (0.55, 0.3, 0.15),
+            rows,
+            question="MAXIMUM SPINDLE SPEED?",
+            text=self.entry.text,
+            notes=(
+                "Programs that ask for more turn at the limit.",
+                "It acts at once, also while a program runs.",
+            ),
+            figures=frozenset({1}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """F4 lifts the limit."""
+        return {"F4": Key("NO LIMIT", self.lift)}
+
+    def takes(self, key: str) -> bool:
+        """Figures and signs."""
+        return self.entry.takes(key)
+
+    def typed(self, key: str) -> bool:
+        """Figures, then Return."""
+        if key == "Enter":
+            self._enter()
+            return True
+        if self.entry.type(key):
+            self.desk.clear()
+            return True
+        return False
+
+    def lift(self) -> None:
+        """The machine's own maximum again; asked once, because something may be in the chuck."""
+        if not self.desk.snapshot().spindle_limit:
+            self.desk.say("NO LIMIT IS IN FORCE")
+        elif self.sure(LIFT):
+            self.desk.post(SpindleLimit(None))
+
+    def _enter(self) -> None:
+        try:
+            rpm = value_of(self.entry.text)
+            self._check(rpm)
+        except EntryError as error:
+            self.desk.say(f"REFUSED: {error}")
+            return
+        self.desk.post(SpindleLimit(rpm))
+        self.entry.text = ""
+        self.desk.say(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
+
+    def _check(self, rpm: float) -> None:
+        low, high = self.spindle.rpm_min, self.spindle.rpm_max
+        if not low <= rpm <= high:
+            raise EntryError(
+                f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
+            )
+
+    def prompt(self) -> str:
+        """How to set it."""
+        return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"
+
+    def escape(self) -> bool:
+        """An entry that was begun."""
+        begun, self.entry.text = bool(self.entry.text), ""
+        return begun
+
+    def left(self) -> None:
+        """Nothing stays typed."""
+        self.entry.text = ""

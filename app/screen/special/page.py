@@ -1,0 +1,115 @@
+"""F10, the special functions: the list at the left, the one that is chosen at the right."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.session import Loaded
+from app.desk.special.special import SpecialDesk
+from app.desk.view import View
+from app.screen.offsets.keypad import KeyPad
+from app.screen.pages import Doings, Host, Page
+from app.screen.special.items import ItemList
+from app.screen.special.table import SheetPanel
+from core.executor.snapshot import Snapshot
+
+LIST, PAD = 34.0, 24.0  # units: widths
+
+
+class SpecialPage(Page):
+    """The models decide; this shows them and hands the keys on."""
+
+    NAME = pages.SPECIAL
+
+    def __init__(self, host: Host, model: SpecialDesk, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.items = ItemList(self.look, model, self._enter, self)
+        self.table = SheetPanel(self.look, self._chosen, self)
+        self.pad = KeyPad(self.look, self._touched, clears=False, parent=self)
+
+    def _enter(self, number: int) -> None:
+        self.model.enter(number)
+
+    def _chosen(self, row: int) -> None:
+        self.model.inside = True
+        self.model.section.choose(row)
+
+    def _touched(self, key: str) -> None:
+        self.model.inside = True
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.model.typed(key)
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the function that is shown, beside the page's own."""
+        own = {"F1": "MENU", "F7": "ALARMS"}
+        own.update((name, key.label) for name, key in self.model.section.keys().items())
+        return tuple(own.get(f"F{number}", "") for number in range(1, 11))
+
+    def doings(self) -> Doings:
+        """The keys of the function that is shown; pressing one goes into it."""
+        keys = self.model.section.keys()
+        return {name: partial(self._do, name) for name in keys}
+
+    def _do(self, name: str) -> None:
+        self.model.inside = True
+        self.model.section.keys()[name].action()
+
+    def typed(self, key: str) -> bool:
+        """To the list, or to what is open."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt()
+
+    def opened(self) -> None:
+        """With the list."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Nothing stays half entered or half asked."""
+        self.desk.clear()
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """One step back, and from the list to the Automatic page."""
+        if not self.model.escape():
+            self.host.go(pages.AUTOMATIC)
+        return True
+
+    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """The table of this snapshot."""
+        self.model.look()
+        sheet = self.model.section.sheet(snapshot)
+        self.items.show_items()
+        self.table.show_sheet(sheet)
+        wants_pad = (
+            bool(sheet.question) and self.model.section.takes("1") and not self.model.section.takes("a")
+        )
+        if wants_pad is self.pad.isHidden():
+            self.pad.setVisible(wants_pad)
+            self._lay_out()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """List, table and pad side by side."""
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(LIST * u)
+        pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
+        self.items.setGeometry(0, 0, left, self.height())
+        self.table.setGeometry(left + gap, 0, self.width() - left - gap - pad, self.height())
+        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())

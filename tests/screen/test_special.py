@@ -1,0 +1,299 @@
+"""F10 by keys alone: spindle limit, parts counter, outputs, log, settings; and everything that is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.desk import pages
+from app.desk.special.keeping import BARRED
+from app.desk.special.signals import NOT_NOW
+from app.screen.look import Look
+from app.screen.special.page import SpecialPage
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit
+from core.executor.snapshot import Alarm, Event, State
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key
+
+
+@pytest.fixture
+def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    journal = Journal.at_home()
+    yield journal
+    journal.close()
+
+
+@pytest.fixture
+def hands(qtbot: QtBot, machine: FakeMachine, journal: Journal) -> Iterator[Hands]:
+    """An operator in front of a desk that keeps what it is told."""
+    desk = desk_on(machine, keep=journal)
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield Hands(qtbot, window, desk, machine)
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()
+
+
+def open_function(hands: Hands, number: int) -> SpecialPage:
+    hands.key(Key.Key_F10)
+    hands.type(str(number))
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    hands.sees(lambda: page.model.inside and page.table.sheet is not None)
+    return page
+
+
+def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
+    return page.table.sheet.rows[row].cells
+
+
+def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
+    hands.key(Key.Key_F10)
+    assert hands.frame.title.page == pages.SPECIAL
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    hands.key(Key.Key_Down)
+    assert page.model.section.name == "PARTS COUNTER"
+    hands.key(Key.Key_Return)
+    assert page.model.inside
+    hands.key(Key.Key_Escape)
+    assert not page.model.inside
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is hands.page
+
+
+def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
+    page = open_function(hands, 1)
+    hands.type("1000+250")
+    hands.key(Key.Key_Return)
+    assert SpindleLimit(1250.0) in hands.machine.posted
+    hands.sees(lambda: cells(page, 1)[1] == "1250")
+    hands.key(Key.Key_F4)
+    assert hands.prompt().startswith("PRESS F4 ONCE MORE")
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: cells(page, 1)[1] == "NONE")
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("9000", "REFUSED: 9000 rpm is not between 50 and 3500 rpm"),
+        ("0", "REFUSED: 0 rpm is not between"),
+        ("", "REFUSED: nothing is entered"),
+        ("12,5", "REFUSED: , in 12,5 is no number"),
+    ],
+)
+def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: str, why: str) -> None:
+    open_function(hands, 1)
+    hands.type(typed)
+    hands.key(Key.Key_Return)
+    assert hands.prompt().startswith(why)
+    assert not any(isinstance(command, SpindleLimit) for command in hands.machine.posted)
+
+
+def test_lifting_no_limit_says_so(hands: Hands) -> None:
+    open_function(hands, 1)
+    hands.key(Key.Key_F4)
+    assert hands.prompt() == "NO LIMIT IS IN FORCE"
+
+
+def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal) -> None:
+    hands.load("pin")
+    page = open_function(hands, 2)
+    hands.type("2")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: cells(page, 1) == ("STOP AT", "2"))
+    hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, state=State.WAIT)
+    hands.sees(lambda: SetSwitch("cycle_repeat", False) in hands.machine.posted)
+    assert hands.prompt().startswith("THE LAST PART OF THE TARGET")
+    hands.machine.now = replace(hands.machine.now, parts=2, state=State.IDLE)
+    hands.sees(lambda: hands.prompt() == "TARGET REACHED: 2 OF 2 PARTS")
+    assert hands.desk.counter.words == "2/2"
+    hands.key(Key.Key_F4)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: hands.desk.counter.words == "0/2")
+
+
+def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
+    open_function(hands, 2)
+    hands.type("5")
+    hands.key(Key.Key_Return)
+    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+    hands.key(Key.Key_F4)
+    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+
+
+@pytest.mark.parametrize("typed", ["1.5", "-3", "99999999"])
+def test_no_number_of_parts(hands: Hands, typed: str) -> None:
+    hands.load("pin")
+    open_function(hands, 2)
+    hands.type(typed)
+    hands.key(Key.Key_Return)
+    assert "is no number of parts" in hands.prompt()
+
+
+def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
+    for event in (Event(0.0, "load", "pin.nc"), *(Event(0.0, "part", "part"),) * 3):
+        journal.hear(event)
+    hands.sees(lambda: journal.parts("pin.nc") == 3)
+    hands.load("pin")
+    open_function(hands, 2)
+    hands.sees(lambda: hands.desk.counter.count == 3)
+    hands.type("2")
+    hands.key(Key.Key_Return)
+    assert hands.prompt() == "REFUSED: 3 PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT"
+
+
+def test_an_output_is_switched_after_asking(hands: Hands) -> None:
+    page = open_function(hands, 3)
+    assert cells(page, 0) == ("coolant", "OUT-1", "OFF", "M08 M09")
+    hands.key(Key.Key_Return)
+    assert hands.prompt() == "PRESS RETURN ONCE MORE TO SWITCH coolant ON, ESC TO LEAVE IT OFF"
+    hands.key(Key.Key_Escape)
+    hands.key(Key.Key_Return)
+    assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
+    hands.key(Key.Key_Return)
+    assert ForceOutput("coolant", True) in hands.machine.posted
+    hands.sees(lambda: cells(page, 0)[2] == "ON")
+
+
+def test_moving_the_mark_takes_the_question_back(hands: Hands) -> None:
+    open_function(hands, 3)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert "collet" in hands.prompt()
+    assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.JOG, State.FAULT, State.ESTOP])
+def test_no_output_is_switched_while_something_is_under_way(hands: Hands, state: State) -> None:
+    open_function(hands, 3)
+    hands.machine.now = replace(hands.machine.now, state=state)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Return)
+    assert hands.desk.notice == NOT_NOW
+    assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
+
+
+def test_inputs_and_lamps_are_seen_and_not_switched(hands: Hands) -> None:
+    page = open_function(hands, 3)
+    hands.machine.now = replace(hands.machine.now, inputs=frozenset({"TB2-5"}))
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: ("TB2-5", "TB2-5", "ON", "M91 M92") in [row.cells for row in page.table.sheet.rows])
+    hands.key(Key.Key_Return)
+    assert hands.prompt() == "ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM"
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: page.table.sheet.title == "MACHINE LAMPS")
+
+
+def test_a_drive_shows_its_fault(hands: Hands) -> None:
+    page = open_function(hands, 4)
+    hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "Z is 2.1 off its setpoint", "free it"))
+    hands.sees(lambda: cells(page, 1)[7] == "102")
+    assert [cells(page, row)[0] for row in range(4)] == ["X", "Z", "C", "S"]
+    assert (cells(page, 0)[1], cells(page, 0)[7]) == ("OFF", "—")
+
+
+def test_the_log_is_searched_and_filtered(hands: Hands, journal: Journal) -> None:
+    for kind, text in (("start", "pin.nc"), ("alarm", "FOLLOWING ERROR: Z"), ("switch", "single block on")):
+        journal.hear(Event(0.0, kind, text))
+    page = open_function(hands, 5)
+    hands.sees(lambda: len(page.table.sheet.rows) == 3)
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows] == ["alarm"])
+    for _ in range(3):
+        hands.key(Key.Key_F5)
+    hands.key(Key.Key_F4)
+    hands.type("BLOCK h")
+    hands.sees(lambda: page.table.sheet.rows == ())
+    assert page.takes("h")
+    hands.key(Key.Key_Backspace)
+    hands.key(Key.Key_Backspace)
+    hands.sees(lambda: [row.cells[2] for row in page.table.sheet.rows] == ["single block on"])
+    hands.key(Key.Key_Escape)
+    hands.sees(lambda: len(page.table.sheet.rows) == 3)
+    assert not page.takes("h")
+
+
+def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
+    hands.desk.book = journal.book()
+    store = hands.desk.book.store
+    assert store is not None
+    store.set_setting("mark", "before").result(5)
+    page = open_function(hands, 6)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
+    hands.sees(lambda: len(page.table.sheet.rows) >= 2)
+    store.set_setting("mark", "after").result(5)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert hands.prompt().startswith("PRESS RETURN ONCE MORE TO RESTORE")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.prompt().startswith("RESTORED"))
+    assert journal.setting("mark") == "before"
+    assert hands.desk.book.store is not store
+    journal.hear(Event(0.0, "start", "after the restore"))
+    hands.sees(lambda: [e.text for e in journal.events("after the", (), 9)] == ["after the restore"])
+
+
+def test_nothing_is_restored_under_way(hands: Hands) -> None:
+    page = open_function(hands, 6)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 2 and not page.model.worker.busy)
+    hands.machine.now = replace(hands.machine.now, state=State.HOLD)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert hands.desk.notice == BARRED
+
+
+def test_settings_act_at_once_and_are_kept(hands: Hands, journal: Journal) -> None:
+    page = open_function(hands, 7)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.frame.head.view is not None and "MM" in hands.frame.head.view.position.unit)
+    assert cells(page, 0)[1] == "MM"
+    for _ in range(3):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: hands.window.look.palette.name == "light")
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert hands.frame.dock is not None
+    hands.sees(lambda: hands.frame.dock is not None and hands.frame.dock.isHidden())
+    wanted = {"units": "MM", "theme": "light", "dock": False, "language": "en", "readout": "POSITION"}
+    hands.sees(lambda: journal.setting("screen") == wanted)
+
+
+def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
+    open_function(hands, 7)
+    hands.key(Key.Key_E)
+    for _ in range(4):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert hands.desk.notice.startswith("RELEASE THE E-STOP OF THE STATION")
+    assert hands.desk.settings.now.dock
+
+
+def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
+    open_function(hands, 1)
+    hands.type("12")
+    hands.key(Key.Key_E)
+    hands.sees_state(State.ESTOP)
