@@ -57,6 +57,12 @@ class Picture(Trail):
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
+    def blocks_of_line(self, line: int) -> list[tuple[int, int]]:
+        """All blocks of a source line, as ranges of numbers from 1 with the last one in them."""
+        there = np.flatnonzero(self.line == line) + 1
+        parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
+        return [(int(part[0]), int(part[-1])) for part in parts]
+
     def line_of_block(self, block: int) -> int:
         """The source line of a block, both from 1; 0 for no block."""
         return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from app.screen.path.panes import Panes
     from app.screen.path.plot import Frame
 
+COLUMN = 6.4  # units at the right of a view that are the buttons'
 Picked = Callable[[int], None]
 
 
@@ -74,6 +75,11 @@ class PathView(Panel):
     def picture(self) -> Picture | None:
         """What is shown."""
         return self._set.picture if self._set is not None else None
+
+    @property
+    def drawn(self) -> bool:
+        """Whether there is anything to look at."""
+        return self.picture is not None and len(self.picture.z) > 0
 
     @property
     def in_mm(self) -> bool:
@@ -124,14 +130,17 @@ class PathView(Panel):
             self._set = Panes(self.look, self.keeps)
         if picture is self._set.picture and before is self._set.before:
             return
-        self.measure(on=False)
         self._tip = self._tip._replace(block=0)
         self._set.show(picture, before)
+        if self.ruler is not None and self.ruler.pane in self._set.now:
+            self.ruler.renew()
+        else:
+            self.measure(on=False)
         self._lay_out()
 
     def _lay_out(self) -> None:
         if self._set is not None:
-            self._set.lay(self.room())
+            self._set.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
             self._stand()
         self.update()
 
@@ -199,7 +208,7 @@ class PathView(Panel):
     def measure(self, *, on: bool | None = None) -> None:
         """Begin or end measuring, in the last pane; None: the other way round."""
         wanted = (self.ruler is None) if on is None else on
-        if wanted and self.view is not None:
+        if wanted and self.drawn and self.view is not None:
             self._measure_in(self.panes[-1])
             self.setFocus()
         elif not wanted and self.ruler is not None:
@@ -280,7 +289,7 @@ class PathView(Panel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def room(self) -> QRectF:
-        """What the panes share."""
+        """The view within its frame; the panes share what the column of buttons leaves of it."""
         u = self.look.u
         return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -0.2 * u).toRect().toRectF()
 

@@ -23,6 +23,7 @@ class Mode(StrEnum):
     NAME = "name"
     HISTORY = "history"
     OFFER = "offer"
+    LOOK = "look"  # at the path: the keyboard measures in it
 
 
 class Doing(NamedTuple):
@@ -32,7 +33,12 @@ class Doing(NamedTuple):
     act: Callable[[], None]
 
 
-PROMPTS = {Mode.FIND: words.FINDING, Mode.GO_TO: words.GOING, Mode.HISTORY: words.CHOOSING}
+PROMPTS = {
+    Mode.FIND: words.FINDING,
+    Mode.GO_TO: words.GOING,
+    Mode.HISTORY: words.CHOOSING,
+    Mode.LOOK: words.LOOKING,
+}
 """What the prompt line says while nothing else is to be said."""
 
 
@@ -42,6 +48,8 @@ def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
         return _finding(page)
     if mode is Mode.HISTORY:
         return _history(page)
+    if mode is Mode.LOOK:
+        return _looking(page)
     if mode is Mode.OFFER:
         return {1: Doing("CREATE", page.editor.create), 10: Doing("ABORT", page.editor.abort)}
     if mode is Mode.TEXT:
@@ -88,5 +96,19 @@ def _history(page: EditorPage) -> dict[int, Doing]:
         5: Doing("OLDER", lambda: history.mark(history.marked + 1)),
         6: Doing("UP", lambda: versions.look_at(-versions.lines)),
         7: Doing("DOWN", lambda: versions.look_at(versions.lines)),
+        10: Doing("BACK", page.back),
+    }
+
+
+def _looking(page: EditorPage) -> dict[int, Doing]:
+    path = page.path
+    return {
+        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
+        2: Doing("HOLD", page.hold_point),
+        3: Doing("TO LINE", page.line_of_path),
+        4: Doing("VIEW", path.next_view),
+        5: Doing("FIT", path.fit),
+        6: Doing("NEARER", partial(path.zoom, 1)),
+        7: Doing("FARTHER", partial(path.zoom, -1)),
         10: Doing("BACK", page.back),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
@@ -21,7 +22,7 @@ ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
 def action_of(page: EditorPage, event: QKeyEvent) -> Callable[[], None] | None:
     """What a key does; None when it means nothing here."""
     if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-        return _chords(page).get(event.key())
+        return {**_chords(page), **_panning(page)}.get(event.key())
     if page.mode in ASKING:
         back = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         return _asking(page, back=back and page.mode is Mode.FIND).get(event.key())
@@ -36,7 +37,16 @@ def _chords(page: EditorPage) -> Actions:
         Key.Key_F: page.ask_text,
         Key.Key_H: page.ask_text,
         Key.Key_G: page.ask_line,
+        Key.Key_M: page.look_at_path,
     }
+
+
+def _panning(page: EditorPage) -> Actions:
+    """Ctrl with arrows moves the picture, where they do not move the cursor by words."""
+    if page.mode is not Mode.LOOK:
+        return {}
+    ways = {Key.Key_Left: (-1, 0), Key.Key_Right: (1, 0), Key.Key_Up: (0, -1), Key.Key_Down: (0, 1)}
+    return {key: partial(page.path.pan, *way) for key, way in ways.items()}
 
 
 def _asking(page: EditorPage, *, back: bool) -> Actions:

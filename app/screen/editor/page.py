@@ -5,6 +5,8 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
+from functools import partial
+
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
@@ -45,7 +47,7 @@ class EditorPage(Page):
         self._moving = False
         self.head = HeadLine(look, self)
         self.field = TextField(look, self)
-        self.path = EditedPath(look, self)
+        self.path = EditedPath(look, self.go_to, self)
         self.findings = FindingList(look, self.go_to, self)
         self.history = History(editor.bench.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
@@ -79,7 +81,11 @@ class EditorPage(Page):
 
     def doings(self) -> Doings:
         """The function keys of the moment."""
-        return {f"F{number}": doing.act for number, doing in self._doings().items()}
+        found = {f"F{number}": doing.act for number, doing in self._doings().items()}
+        if self._mode is Mode.LOOK:
+            found |= {"Zoom in": partial(self.path.zoom, 1), "Zoom out": partial(self.path.zoom, -1)}
+            found |= {"Measure": self.back, "View": self.path.next_view}
+        return found
 
     def escape(self) -> bool:
         """A question is taken back, else the answer of the last key."""
@@ -128,6 +134,8 @@ class EditorPage(Page):
         self.path.show_picture(findings.picture)
         self.path.follow(line)
         self.path.advance()
+        if self._mode is Mode.LOOK and self.path.ruler is None:
+            self.back()
         self.versions.refresh()
 
     def _follow_stage(self) -> None:
@@ -161,6 +169,7 @@ class EditorPage(Page):
             self.ask.ask("SAVE AS", entry=self.editor.name)
         else:
             self.ask.hide()
+        self.path.measure(on=mode is Mode.LOOK)
         self.versions.setVisible(mode is Mode.HISTORY)
         for part in (self.field, self.path, self.findings):
             part.setVisible(mode is not Mode.OFFER)  # what was edited last is not the file that is offered
@@ -181,6 +190,23 @@ class EditorPage(Page):
         """Go to a line."""
         self._enter(Mode.GO_TO)
 
+    def look_at_path(self) -> None:
+        """The keyboard to the path: to measure, and to find the line of what is drawn there."""
+        if not self.path.drawn:
+            self.editor.notice = words.NO_PATH
+        else:
+            self._enter(Mode.LOOK)
+
+    def hold_point(self) -> None:
+        """Measure from where the cross stands."""
+        if self.path.ruler is not None:
+            self.path.ruler.hold()
+            self.path.update()
+
+    def line_of_path(self) -> None:
+        """The cursor to the line whose path the cross stands on."""
+        self.editor.notice = self.path.line_here()
+
     def show_history(self) -> None:
         """The versions."""
         self._enter(Mode.HISTORY)
@@ -192,6 +218,8 @@ class EditorPage(Page):
 
     def go_to(self, line: int, column: int = 0) -> None:
         """The cursor to a place of the program."""
+        if self._mode is Mode.LOOK:
+            self._enter(Mode.TEXT)
         self.field.go_to(max(1, line), column)
         self.field.setFocus()
 

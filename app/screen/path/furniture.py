@@ -58,7 +58,7 @@ def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[E
     metrics = QFontMetricsF(painter.font())
     for word, pen in entries:
         wide = metrics.horizontalAdvance(word) + 0.4 * u
-        if x + 3.6 * u + wide > room.right():
+        if x + 3.6 * u + wide > room.right() - 0.2 * room.width() - 6 * u:
             return
         painter.setPen(pen)
         painter.drawLine(QPointF(x, y + u), QPointF(x + 3 * u, y + u))
@@ -70,7 +70,7 @@ def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[E
 def draw_scale(painter: QPainter, look: Look, room: QRectF, frame: Frame, metric: bool) -> None:
     """A round length at the lower right of a pane, in the unit in force."""
     u = look.u
-    mm, text = scale_length(min(14 * u, 0.3 * room.width()) / frame.scale, metric)
+    mm, text = scale_length(min(14 * u, 0.2 * room.width()) / frame.scale, metric)
     wide = mm * frame.scale
     right, y = room.right() - 1.4 * u, room.bottom() - 1.0 * u
     painter.setPen(look.pen("soft", 0.16))

@@ -77,6 +77,15 @@ class Measure:
         """Hold nothing."""
         self.first = self.second = None
 
+    def block(self) -> int:
+        """The block on whose line the cross stands, or that ends there; 0: it stands on none."""
+        pane = self.pane
+        return pane.block_at(pane.room.topLeft() + pane.spot(*self.cursor[:2]))
+
+    def renew(self) -> None:
+        """The pane shows another path now; what is held stays where it is."""
+        self._features = Features(self.pane.trail)
+
     def _jump(self, way: tuple[int, int]) -> None:
         self._features.look(self.pane.sight())
         self._go(self._features.towards(self.cursor.z, self.cursor.x, way))

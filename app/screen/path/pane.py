@@ -19,6 +19,7 @@ ZOOM_STEP = 1.25
 PAN_STEP = 0.1  # of the width
 PICK = 1.6  # units: how near a finger must come to a line to mean it
 MARGIN = 2.8  # units round what is fitted
+RING = 6.0  # units round a face: the circle of the part and its angles stand there
 MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
 
 Place = tuple[float, float]
@@ -35,7 +36,7 @@ class Pane:
         self.frame: Frame | None = None
         self._layers: Layers | None = None
         self._block, self._place = 0, (0.0, 0.0)
-        self._marked: list[tuple[int, int]] = []  # ranges of points
+        self.marked: list[tuple[int, int]] = []  # ranges of points
 
     # --- what is seen --------------------------------------------------------------------------------
 
@@ -47,7 +48,7 @@ class Pane:
 
     def take(self, trail: Trail, before: Trail | None) -> None:
         """Another path in the same place; what is looked at stays if it was chosen by hand."""
-        self.trail, self.before, self._block, self._marked = trail, before, 0, []
+        self.trail, self.before, self._block, self.marked = trail, before, 0, []
         if self.by_hand and self.frame is not None:
             self._look_at(self.frame)
         else:
@@ -62,7 +63,7 @@ class Pane:
             low, high = map(min, bounds, before.bounds), map(max, bounds, before.bounds)
             (z0, _, x0, _), (_, z1, _, x1) = tuple(low), tuple(high)
             bounds = (z0, z1, x0, x1)
-        margin = MARGIN * self.look.u
+        margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
         self._look_at(fit(bounds, int(self.room.width()), int(self.room.height()), margin))
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
@@ -166,7 +167,7 @@ class Pane:
         """Draw these blocks thick: ranges of numbers from 1, the last one in them."""
         first = self.trail.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
-        self._marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
+        self.marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
 
     def advance(self) -> bool:
         """Draw on for a few milliseconds at most; whether there is anything new."""
@@ -194,7 +195,7 @@ class Pane:
     def _draw_marked(self, painter: QPainter, frame: Frame) -> None:
         pens = Ink.MARKED.pens(self.look)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for start, end in self._marked:
+        for start, end in self.marked:
             for run in runs(self.trail, frame, start, end):
                 painter.setPen(pens[run.stroke])
                 stroke_run(painter, run)

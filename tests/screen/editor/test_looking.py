@@ -1,0 +1,136 @@
+"""From the text to the path and back: what a line draws is marked, what is touched names its line."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from tests.screen.editor.writer import Writer
+
+Key = Qt.Key
+CTRL = Qt.KeyboardModifier.ControlModifier
+# Lines 5 and 6 cut; line 6 is a taper of 1 in along Z that grows by .5 in radius.
+PART = "G90G94G72F100\nM03S1000\nT1\nX.5Z.1\nF5Z-1\nX1.5Z-2\nM05\nF200X3\nM30"
+
+
+@pytest.fixture
+def drawn(writer: Writer) -> Writer:
+    """In front of a program that is proved and drawn."""
+    writer.new("looked")
+    writer.write(PART)
+    writer.sees(lambda: writer.proved() and writer.editor.path.view is not None)
+    return writer
+
+
+def inch(z: float, diameter: float) -> tuple[float, float]:
+    return z * 25.4, diameter * 12.7
+
+
+def touch(writer: Writer, z: float, diameter: float) -> None:
+    """A finger on the path."""
+    path = writer.editor.path
+    pane = path.panes[0]
+    at = (pane.room.topLeft() + pane.spot(*inch(z, diameter))).toPoint()
+    QTest.mouseClick(path, Qt.MouseButton.LeftButton, pos=at + QPoint(1, 2))
+
+
+def test_touching_the_path_leads_to_its_line(drawn: Writer) -> None:
+    touch(drawn, -0.5, 0.5)
+    assert drawn.editor.field.line == 5
+    touch(drawn, -1.5, 1.0)
+    assert drawn.editor.field.line == 6
+    assert drawn.editor.field.hasFocus()
+
+
+def test_touching_nothing_leads_nowhere(drawn: Writer) -> None:
+    line = drawn.editor.field.line
+    touch(drawn, -1.0, -1.4)
+    assert drawn.editor.field.line == line
+
+
+def test_what_the_line_of_the_cursor_draws_is_marked(drawn: Writer) -> None:
+    drawn.editor.go_to(6)
+    picture = drawn.editor.path.picture
+    assert picture is not None
+    drawn.sees(lambda: drawn.editor.path.tip.block == picture.block_of_line(6))
+    ((start, end),) = drawn.editor.path.panes[0].marked
+    points = [(picture.z[k], picture.x[k]) for k in range(start - 1, end)]
+    assert points == [pytest.approx(inch(-1, 0.5)), pytest.approx(inch(-2, 1.5))]
+
+
+def test_a_line_without_moves_marks_nothing(drawn: Writer) -> None:
+    drawn.editor.go_to(2)
+    drawn.sees(lambda: not any(len(range(*part)) for part in drawn.editor.path.panes[0].marked))
+
+
+def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
+    drawn.key(Key.Key_M, CTRL)
+    path = drawn.editor.path
+    assert path.ruler is not None
+    assert path.hasFocus()
+    while path.ruler.cursor[:2] != pytest.approx(inch(-1, 0.5)):
+        drawn.key(Key.Key_Tab)
+    drawn.key(Key.Key_Return)
+    drawn.key(Key.Key_Tab)
+    rows = dict(path.ruler.rows(path.in_mm))
+    assert rows["ΔX Ø"] == "1.00000"
+    assert rows["ΔX R"] == "0.50000"
+    assert rows["ΔZ"] == "−1.00000"
+    assert rows["DISTANCE"] == "1.11803"  # the root of 1.25
+    assert rows["ANGLE TO Z"] == "26.57°"  # its tangent is a half
+    drawn.sees(lambda: drawn.prompt().startswith("ARROWS"))
+
+
+def test_from_the_cross_to_the_line(drawn: Writer) -> None:
+    drawn.editor.go_to(1)
+    drawn.key(Key.Key_M, CTRL)
+    path = drawn.editor.path
+    assert path.ruler is not None
+    while path.ruler.cursor[:2] != pytest.approx(inch(-2, 1.5)):
+        drawn.key(Key.Key_Tab)
+    drawn.key(Key.Key_F3)
+    assert drawn.editor.field.line == 6
+    assert drawn.editor.field.hasFocus()
+    assert path.ruler is None
+
+
+def test_a_cross_beside_the_path_names_no_line(drawn: Writer) -> None:
+    drawn.key(Key.Key_M, CTRL)
+    ruler = drawn.editor.path.ruler
+    assert ruler is not None
+    for _ in range(40):
+        QTest.keyClick(drawn.editor.path, Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
+    drawn.key(Key.Key_F3)
+    drawn.sees(lambda: drawn.prompt().startswith("THE CROSS STANDS ON NO LINE"))
+
+
+def test_esc_goes_back_to_the_text(drawn: Writer) -> None:
+    drawn.key(Key.Key_M, CTRL)
+    before = drawn.text()
+    drawn.type("xz")  # no letter writes while one looks
+    drawn.key(Key.Key_Escape)
+    assert drawn.editor.field.hasFocus()
+    assert drawn.editor.path.ruler is None
+    assert drawn.text() == before
+
+
+def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
+    drawn.key(Key.Key_M, CTRL)
+    before = drawn.editor.path.view
+    drawn.key(Key.Key_Z)
+    nearer = drawn.editor.path.view
+    assert before is not None
+    assert nearer is not None
+    assert nearer.scale > before.scale
+    drawn.key(Key.Key_Right, CTRL)
+    assert drawn.editor.path.view != nearer
+    drawn.key(Key.Key_F5)
+    assert drawn.editor.path.view == before
+
+
+def test_without_a_path_there_is_nothing_to_look_at(writer: Writer) -> None:
+    writer.new("empty")
+    writer.key(Key.Key_M, CTRL)
+    writer.sees(lambda: "WRITE A MOVE" in writer.prompt())
+    assert writer.editor.path.ruler is None
