@@ -5,6 +5,14 @@ from __future__ import annotations
 from importlib.resources import files
 
 
+def machine_names() -> frozenset[str]:
+    """The names of the shipped machine files, without their ending."""
+    folder = files(__name__).joinpath("machines")
+    return frozenset(
+        each.name.removesuffix(".toml") for each in folder.iterdir() if each.name.endswith(".toml")
+    )
+
+
 def machine_file(name: str) -> str:
     """The text of a shipped machine file, such as ``gt75.toml``. Raises FileNotFoundError."""
     return files(__name__).joinpath("machines", name).read_text(encoding="utf-8")

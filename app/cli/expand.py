@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import EXIT_ERRORS, EXIT_OK
-from app.cli.options import add_program_options, circumstances, read_source
+from app.cli.options import add_ideal_option, add_program_options, circumstances, read_source
 from app.cli.progress import Progress
+from core.language.dialect import Dialect
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
@@ -25,17 +27,18 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("expand", help="show the elementary blocks that would be executed")
     parser.add_argument("file", metavar="FILE")
     add_program_options(parser)
+    add_ideal_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the blocks in the order of execution; diagnostics go to stderr, 1 when there are errors."""
-    from app.cli.shown import block_json
     from core.proving.timeline import Timeline, timed_blocks
 
     path = Path(args.file)
     around = circumstances(args)
     source = read_source(path, args)
-    timeline = Timeline.of(source, around.setup, around.machine)
+    timeline = Timeline.of(source, around.setup, around.machine, ideal=args.ideal)
+    block_json = _json_of(source.dialect)
     if not args.json:
         sys.stdout.write(_HEAD)
     with Progress(f"expanding {path.name}") as progress:
@@ -47,6 +50,17 @@ def run(args: argparse.Namespace) -> int:
             sys.stdout.write(shown)
             progress.reach(block.n)
     return report_diagnostics(path, timeline)
+
+
+def _json_of(dialect: Dialect) -> Callable[[Block, str, float, float], dict[str, object]]:
+    """What makes a block's object: OmniTurn counts in inches, the others in mm."""
+    if dialect is Dialect.SINUMERIK:
+        from app.cli import shown_sinumerik
+
+        return shown_sinumerik.block_json
+    from app.cli import shown
+
+    return shown.block_json
 
 
 def report_diagnostics(path: Path, timeline: Timeline) -> int:

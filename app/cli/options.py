@@ -35,6 +35,11 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 
 
+def add_ideal_option(parser: argparse.ArgumentParser) -> None:
+    """Times by feeds and limits of speed alone."""
+    parser.add_argument("--ideal", action="store_true", help="times without accelerations and waits")
+
+
 @dataclass(frozen=True, slots=True)
 class Circumstances:
     """Machine and setup of one command call."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
-from app.cli.options import Circumstances, add_program_options, circumstances, read_source
+from app.cli.options import Circumstances, add_ideal_option, add_program_options, circumstances, read_source
 from app.cli.progress import Progress
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("prove", help="prove programs: errors, limits, cycle time; nothing moves")
     parser.add_argument("files", nargs="+", metavar="FILE")
     add_program_options(parser)
+    add_ideal_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -45,7 +46,7 @@ def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Repor
 
     source = read_source(path, args)
     with Progress(f"proving {path.name}") as progress:
-        report = prove(source, around.setup, around.machine, progress.reach)
+        report = prove(source, around.setup, around.machine, progress.reach, ideal=args.ideal)
     if args.json:
         sys.stdout.write(json.dumps(report_json(str(path), report)) + "\n")
     else:
@@ -55,10 +56,15 @@ def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Repor
 
 def _sheet(path: Path, report: Report) -> str:
     """The proof as a person reads it."""
-    from app.cli.shown import inches, per_minute
+    from app.cli.shown import MM_PER_INCH, inches, millimetres, per_minute
+    from core.language.dialect import Dialect
+
+    inch = report.dialect is Dialect.OMNITURN
+    length, unit, scale = (inches, "in", 1.0) if inch else (millimetres, "mm", MM_PER_INCH)
 
     findings = "".join(f"{d.shown(str(path))}\n" for d in report.diagnostics)
     times, reach = report.times, report.reach
+    slow, fast = (per_minute(speed) * scale for speed in reach.feed)
     tools = " ".join(f"T{n}" for n in report.tools) or "no tool"
     count = len(report.errors)
     verdict = f"{count} error{'s' * (count > 1)}: will not run" if count else "proved"
@@ -66,9 +72,10 @@ def _sheet(path: Path, report: Report) -> str:
         f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
         f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"
         f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
-        f"  path {inches(report.cutting_length):.4f} in cutting, {inches(report.rapid_length):.4f} in rapid\n"
-        f"  X radius {inches(reach.x[0]):.5f} … {inches(reach.x[1]):.5f}"
-        f"   Z {inches(reach.z[0]):.5f} … {inches(reach.z[1]):.5f} in\n"
+        f"  path {length(report.cutting_length):.4f} {unit} cutting,"
+        f" {length(report.rapid_length):.4f} {unit} rapid\n"
+        f"  X radius {length(reach.x[0]):.5f} … {length(reach.x[1]):.5f}"
+        f"   Z {length(reach.z[0]):.5f} … {length(reach.z[1]):.5f} {unit}\n"
         f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
-        f"   feed {per_minute(reach.feed[0]):.3f} … {per_minute(reach.feed[1]):.3f} in/min\n"
+        f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"
     )

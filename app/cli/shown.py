@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from core.language.dialect import Dialect
+
 if TYPE_CHECKING:
     from core.interpreter.blocks import Block
     from core.language.diagnostics import Diagnostic
-    from core.proving.report import Range, Report
+    from core.proving.report import Report
 
 MM_PER_INCH = 25.4
 
@@ -20,6 +22,11 @@ Json = dict[str, object]
 def inches(mm: float) -> float:
     """Inches of a length, to a billionth, so that the binary noise of the conversion does not show."""
     return round(mm / MM_PER_INCH, 9) + 0.0  # + 0.0 makes -0.0 a plain zero
+
+
+def millimetres(mm: float) -> float:
+    """A length as it is, to a billionth."""
+    return round(mm, 9) + 0.0
 
 
 def per_minute(mm_s: float) -> float:
@@ -49,17 +56,18 @@ def diagnostic_json(diagnostic: Diagnostic) -> Json:
     }
 
 
-def _range(values: Range) -> list[float]:
-    return [inches(values[0]), inches(values[1])]
-
-
 def report_json(file: str, report: Report) -> Json:
-    """A proof with the keys and units of interfaces.md; ``stock`` is null until removal is computed."""
+    """A proof with the keys and units of interfaces.md; ``stock`` is null until removal is computed.
+
+    Lengths are inches for OmniTurn programs, mm for the others.
+    """
     reach, times = report.reach, report.times
+    inch = report.dialect is Dialect.OMNITURN
+    length = inches if inch else millimetres
     return {
         "file": file,
-        "dialect": "omniturn",
-        "units": "mm" if report.metric else "inch",
+        "dialect": str(report.dialect),
+        "units": "inch" if inch and not report.metric else "mm",
         "blocks": report.blocks,
         "elementary": report.elementary,
         "diagnostics": [diagnostic_json(d) for d in report.diagnostics],
@@ -68,20 +76,20 @@ def report_json(file: str, report: Report) -> Json:
         "rapid_time_s": seconds(times.rapid),
         "dwell_time_s": seconds(times.dwell),
         "wait_time_s": seconds(times.wait),
-        "cutting_length": inches(report.cutting_length),
-        "rapid_length": inches(report.rapid_length),
+        "cutting_length": length(report.cutting_length),
+        "rapid_length": length(report.rapid_length),
         "tools": list(report.tools),
         "limits": {
-            "x": _range(reach.x),
-            "z": _range(reach.z),
+            "x": [length(x) for x in reach.x],
+            "z": [length(z) for z in reach.z],
             "c": [degrees(reach.c[0]), degrees(reach.c[1])],
             "rpm": [round(rpm, 3) for rpm in reach.rpm],
             "feed_ipm": [per_minute(speed) for speed in reach.feed],
         },
         "stock": None,
         "final": {
-            "x": inches(report.final[0]),
-            "z": inches(report.final[1]),
+            "x": length(report.final[0]),
+            "z": length(report.final[1]),
             "c": degrees(report.final[2]),
         },
     }

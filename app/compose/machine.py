@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import resources
 from app.cli.errors import CommandError
 from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
 
@@ -14,10 +15,15 @@ if TYPE_CHECKING:
 
 
 def read_machine(path: str | None) -> Machine:
-    """The machine that a file describes, or the shipped lathe; raises CommandError naming every mistake."""
-    from core.machine.load import MachineFileError, load_machine
+    """The machine that a file describes, one that is shipped by its name, or the shipped lathe.
+
+    Raises CommandError naming every mistake.
+    """
+    from core.machine.load import MachineFileError, load_machine, shipped_machine
 
     try:
+        if path and path in resources.machine_names() and not Path(path).exists():
+            return shipped_machine(path)
         return load_machine(Path(path) if path else None)
     except MachineFileError as error:
         raise CommandError(str(error)) from error
@@ -39,6 +45,9 @@ def control_limits(machine: Machine) -> ControlLimits:
         c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
         c_accel=c_axis.amax,
         c_step=c_axis.count,
+        c_modulo=machine.c_modulo,
+        spindle_controlled=machine.spindle.controlled,
+        speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
     )
 
 

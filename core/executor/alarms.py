@@ -55,6 +55,13 @@ _CATALOGUE = {
     "spindle-still": _Entry(
         204, _STOP, "feed per revolution with a still spindle", "no M03 or M04", "start the spindle first"
     ),
+    "c-is-spindle": _Entry(
+        206,
+        _STOP,
+        "C moves while the spindle turns",
+        "on this machine the spindle is C",
+        "stop it with M05 first",
+    ),
     "thread-lost": _Entry(
         205, _STOP, "spindle lost in a thread", "speed fell during a pass; X was drawn back", "check the part"
     ),

@@ -10,11 +10,15 @@ _ROUNDING = 1e-6  # mm
 
 
 def check_block(block: Block, machine: Machine) -> None:
-    """Raises TroubleError for a move out of the travel, or fed by the turns of a spindle that stands."""
+    """Raises TroubleError for a move out of the travel, one fed by the turns of a spindle that stands, and
+    one of C while the spindle that is C turns.
+    """
     if not block.moves:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
+    if block.c != block.c0 and block.modal.spindle and machine.c_enabled and not machine.c_own_drive:
+        raise TroubleError("c-is-spindle", f"line {block.line} moves C while the spindle turns", block.line)
     for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
         _check(block, axis, low, high)
 

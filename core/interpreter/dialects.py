@@ -79,8 +79,23 @@ def line_alone(source: Source, setup: Setup) -> Line:
     return Interpreter(read_single(source), setup)
 
 
+def _sinumerik(source: Source, setup: Setup) -> Interpretation:
+    if len(setup.start) != _LATHE_AXES:
+        why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
+        return Refused(why, "Choose the machine file of a lathe.")
+    if setup.begin is not None:
+        why = "A SINUMERIK program begins with its first block."
+        return Refused(why, "Start it from the beginning.")
+    from core.interpreter.sinumerik.run import Interpreter
+
+    return Interpreter(source, setup)
+
+
 # A language is loaded when a program of it is: the others cost nothing.
-_INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {Dialect.OMNITURN: _omniturn}
+_INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
+    Dialect.OMNITURN: _omniturn,
+    Dialect.SINUMERIK: _sinumerik,
+}
 KNOWN = frozenset(_INTERPRETERS)
 
 

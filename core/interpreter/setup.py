@@ -52,7 +52,6 @@ class ControlLimits:
     c_accel: float = 3600.0  # degrees/s²
     c_step: float = 0.02  # degrees
     c_modulo: bool = True  # SINUMERIK counts C 0..<360, else -360..+360
-    c_own_drive: bool = False  # C is no second use of the spindle, which may turn meanwhile
     spindle_controlled: bool = True  # S is obeyed, and the control knows the speed
     speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)  # of X, Z and C at most: mm/s, degrees/s
 

@@ -69,6 +69,8 @@ C_AXIS = (
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
     Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0),
     Field("absolute", _FLAG, default=False),
+    Field("modulo", _FLAG, default=True),  # SINUMERIK: 0..<360; false: -360..+360
+    Field("own_drive", _FLAG, default=False),  # false: the spindle is C, and cannot turn meanwhile
 )
 ROTARY_AXIS = (
     Field("travel", Kind.PAIR, Unit.DEGREES, -36000.0, 36000.0, default=(-math.inf, math.inf)),
@@ -90,6 +92,7 @@ SPINDLE = (
     Field("timeout_s", _NUMBER, Unit.SECONDS, 0.5, 60.0),
     Field("stop_below", _NUMBER, Unit.RPM, 0.5, 50.0),
     Field("encoder_ppr", _WHOLE, low=0, high=100000),
+    Field("controlled", _FLAG, default=True),  # false: it has one speed, and S none to set
     Field("driver", _CHOICE, choices=SPINDLE_DRIVERS, default="sim"),
 )
 COLLET = (

@@ -23,9 +23,11 @@ from core.machine.model import (
 )
 from core.machine.reader import Reading
 
-__all__ = ["MachineFileError", "load_machine", "parse_machine"]
+__all__ = ["MachineFileError", "load_machine", "parse_machine", "shipped_machine"]
 
 SHIPPED = "gt75.toml"
+_NONE = (-math.inf, math.inf)
+_ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
 
 
 def load_machine(path: Path | None = None) -> Machine:
@@ -47,6 +49,11 @@ def load_machine(path: Path | None = None) -> Machine:
             [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
         ) from error
     return parse_machine(text, str(path))
+
+
+def shipped_machine(name: str) -> Machine:
+    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
+    return parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
 
 
 def parse_machine(text: str, source: str) -> Machine:
@@ -95,6 +102,8 @@ def _machine(reading: Reading, hardware: HardwareReading, source: str) -> Machin
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),
         kind=reading.kind,
+        c_modulo=_of_c(reading, "modulo"),
+        c_own_drive=_of_c(reading, "own_drive"),
         hardware=hardware_of(hardware, _axis_names(reading), reading.outputs),
     )
 
@@ -107,6 +116,11 @@ def _axis_names(reading: Reading) -> tuple[str, ...]:
     )
 
 
+def _of_c(reading: Reading, key: str) -> bool:
+    """A flag of a lathe's C."""
+    return reading.kind == "lathe" and reading.values.flag(f"axis.C.{key}")
+
+
 def _axes(reading: Reading) -> tuple[Axis, ...]:
     return tuple(_axis(reading, name) for name in _axis_names(reading))
 
@@ -114,7 +128,8 @@ def _axes(reading: Reading) -> tuple[Axis, ...]:
 def _axis(reading: Reading, name: str) -> Axis:
     values, path = reading.values, f"axis.{name}"
     homed = values.has(f"{path}.home.order")
-    travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else (-math.inf, math.inf)
+    whole = _ONE_TURN if name == "C" and reading.kind == "lathe" and not _of_c(reading, "modulo") else _NONE
+    travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else whole
     return Axis(
         name=name,
         travel=travel if math.isfinite(travel[0]) else None,
@@ -144,6 +159,7 @@ def _spindle(reading: Reading) -> SpindleModel:
         timeout=values.number("spindle.timeout_s"),
         stop_below=values.number("spindle.stop_below"),
         encoder_ppr=int(values.number("spindle.encoder_ppr")),
+        controlled=values.flag("spindle.controlled"),
     )
 
 

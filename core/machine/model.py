@@ -39,6 +39,7 @@ class SpindleModel:
     timeout: float
     stop_below: float
     encoder_ppr: int
+    controlled: bool = True  # false: one speed, rpm_max, and no S
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +105,8 @@ class Machine:
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
     kind: str = "lathe"  # or "mill"
+    c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
+    c_own_drive: bool = False  # C is no second use of the spindle
     hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
 
     def axis(self, name: str) -> Axis:

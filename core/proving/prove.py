@@ -10,6 +10,7 @@ from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine
+from core.proving.interlock import c_findings
 from core.proving.report import Report, Times
 from core.proving.tally import Tally
 from core.proving.timeline import Moved, Rested, Timeline
@@ -19,10 +20,18 @@ MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the tr
 
 
 def prove(
-    source: Source, setup: Setup, machine: Machine, progress: Callable[[float], None] | None = None
+    source: Source,
+    setup: Setup,
+    machine: Machine,
+    progress: Callable[[float], None] | None = None,
+    *,
+    ideal: bool = False,
 ) -> Report:
-    """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed."""
-    timeline = Timeline.of(source, setup, machine)
+    """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed.
+
+    ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
+    """
+    timeline = Timeline.of(source, setup, machine, ideal=ideal)
     proof = _Proof(machine)
     for stretch in timeline.spans():
         proof.add(stretch)
@@ -59,7 +68,7 @@ class _Proof:
         if blocks:
             self.last = self._last_move = blocks[-1]
         if len(self._beyond) < MAX_FINDINGS:
-            for finding in travel_findings(blocks, self._machine):
+            for finding in (*travel_findings(blocks, self._machine), *c_findings(blocks, self._machine)):
                 self._beyond.setdefault((finding.line, finding.message[:1]), finding)
 
     def _rested(self, stretch: Rested) -> None:
@@ -80,6 +89,7 @@ class _Proof:
         end = self._last_move  # in its own frame: M30 takes the work shift away, and moves nothing
         return Report(
             name=source.name,
+            dialect=source.dialect,
             metric=bool(last and last.modal.metric),
             blocks=interpreter.source_blocks,
             elementary=self.elementary,
@@ -90,7 +100,7 @@ class _Proof:
             tools=tuple(sorted(interpreter.used_tools)),
             missing_tools=tuple(sorted(interpreter.missing_tools)),
             reach=tally.reach,
-            final=(end.x, end.z, end.c) if end else _lathe(timeline.start),
+            final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
             machine_final=end.machine_end if end else timeline.start,
         )
 
@@ -98,3 +108,8 @@ class _Proof:
 def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:
     """X, Z and C of a start in the machine's order."""
     return start[0], start[1], start[-1]
+
+
+def _shown_c(block: Block) -> float:
+    """C of the end as the program counts it."""
+    return block.c % 360.0 if block.modal.wraps_c else block.c

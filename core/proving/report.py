@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import Dialect
 
 Range = tuple[float, float]
 
@@ -40,6 +41,7 @@ class Report:
     """One program, proved. Figures cover what could be interpreted when there are errors."""
 
     name: str
+    dialect: Dialect
     metric: bool
     blocks: int
     elementary: int

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
@@ -18,6 +19,8 @@ from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.timeline import Chunk, ChunkPlanner
 from core.proving.forecast import SETTLING, THREAD_EARLY, SpindleForecast
+
+_AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
 
 
 class Moved(NamedTuple):
@@ -50,16 +53,22 @@ class Rested(NamedTuple):
 class Timeline:
     """One pass through a program, once. Constant memory: stretches are handed out as they are settled.
 
-    Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``.
+    Where the machine cannot do what a block asks, the pass ends with an error in ``diagnostics``. An
+    ``ideal`` machine needs no time to accelerate, to settle or to plan; its limits of speed are the same.
     """
 
-    def __init__(self, interpreter: Interpretation, setup: Setup, machine: Machine) -> None:
+    def __init__(
+        self, interpreter: Interpretation, setup: Setup, machine: Machine, *, ideal: bool = False
+    ) -> None:
         self.interpreter = interpreter
         self.spindle = SpindleForecast(machine)
         self.t = 0.0
         self.start = setup.start
         self._machine = machine
+        self._ideal = ideal
         limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
+        if ideal:
+            limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
         self._source = self.interpreter.blocks()
         self._back: Block | None = None  # the block that ended a motion and is still to come
@@ -68,9 +77,9 @@ class Timeline:
         self._refused: list[Diagnostic] = []
 
     @classmethod
-    def of(cls, source: Source, setup: Setup, machine: Machine) -> Timeline:
+    def of(cls, source: Source, setup: Setup, machine: Machine, *, ideal: bool = False) -> Timeline:
         """The timeline of a program's text."""
-        return cls(interpretation(source, setup), setup, machine)
+        return cls(interpretation(source, setup), setup, machine, ideal=ideal)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -101,7 +110,7 @@ class Timeline:
         """Everything up to the next block that does not move, as one motion from rest to rest."""
         if first.kind is not Kind.RAPID:
             yield from self._at_speed()
-        yield self._rest(self._machine.timing.commit)
+        yield self._rest(self._wait(self._machine.timing.commit))
         if first.kind is Kind.THREAD:
             yield self._index(first)
         start = self.t - self._planner.t
@@ -110,7 +119,7 @@ class Timeline:
                 yield self._moved(start, chunk)
             for chunk in self._planner.finish():
                 yield self._moved(start, chunk)
-            yield self._rest(SETTLING)
+            yield self._rest(self._wait(SETTLING))
         except MotionError as error:
             self._refuse(str(error))
 
@@ -162,7 +171,11 @@ class Timeline:
         """Before a feed the spindle must have been at speed for as long as the machine file says."""
         if self._speed_wanted:
             self._speed_wanted = False
-            yield self._rest(max(0.0, self.spindle.ready_at() - self.t))
+            yield self._rest(self._wait(max(0.0, self.spindle.ready_at() - self.t)))
+
+    def _wait(self, seconds: float) -> float:
+        """What a real machine waits for; an ideal one does not."""
+        return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> Rested:
         stretch = Rested(self.t, self.t + seconds, block)

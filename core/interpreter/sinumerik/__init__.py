@@ -1,0 +1,1 @@
+"""The SINUMERIK turning dialect made into elementary blocks, with C as the third axis."""

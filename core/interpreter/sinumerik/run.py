@@ -1,0 +1,208 @@
+"""The interpreter of SINUMERIK turning programs: text and circumstances → elementary blocks, one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+
+from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.blocks import Block
+from core.interpreter.count import MOST_BLOCKS, MOST_LINES
+from core.interpreter.log import Log
+from core.interpreter.modal import Modal
+from core.interpreter.setup import Setup
+from core.interpreter.sinumerik.arcs import arc
+from core.interpreter.sinumerik.corners import Corners, corner_of
+from core.interpreter.sinumerik.feeds import feed_words
+from core.interpreter.sinumerik.flow import Flow, ends_main
+from core.interpreter.sinumerik.moves import straight
+from core.interpreter.sinumerik.offsets import programmed_offset, settable_offset
+from core.interpreter.sinumerik.spindle import dwell, spindle_words
+from core.interpreter.sinumerik.state import State
+from core.interpreter.sinumerik.statement import Statement, statement
+from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.sinumerik.faults import refused
+from core.language.sinumerik.sections import HEADER
+from core.language.sinumerik.vocabulary import ARC
+from core.language.sinumerik.words import Line
+from core.language.source import Source
+
+# Codes of findings that follow from where the machine stands: after an error nobody knows where that is.
+_BY_POSITION = frozenset({"arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"})
+
+
+class Interpreter:
+    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    No block comes after an error, but the pass goes on to find the other errors.
+    """
+
+    def __init__(self, source: Source, setup: Setup) -> None:
+        self._source = source
+        self._log = Log()
+        self._state = State(setup, self._log)
+        self._corners = Corners(self._state, self._log)
+        self._flow = Flow(source)
+        self._stopped = False
+        self._count = 0
+
+    @cached_property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        return sum(
+            bool(line.split(";", 1)[0].strip()) and HEADER.fullmatch(line) is None
+            for line in self._source.lines
+        )
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All findings so far; grows while blocks are taken."""
+        return self._log.found
+
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
+
+    @property
+    def used_tools(self) -> list[int]:
+        """None: tools are no part of this subset."""
+        return []
+
+    @property
+    def missing_tools(self) -> list[int]:
+        """None."""
+        return []
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once."""
+        for block in self._pass():
+            if not self._stopped:
+                self._count += 1
+                block.n = self._count
+                yield block
+            elif to_first_error:
+                return
+
+    def _pass(self) -> Iterator[Block]:
+        left = MOST_LINES
+        while not self._log.full and (line := self._flow.next()) is not None:
+            left -= 1
+            if left < 0 or self._count >= MOST_BLOCKS:
+                self._too_much(line)
+                return
+            if line.skip is not None and self._state.setup.block_delete:
+                continue
+            if line.executable:
+                yield from self._line(line)
+        yield from self._ended()
+
+    def _line(self, line: Line) -> Iterator[Block]:
+        """The blocks of a line; an error is kept, and no block comes after it."""
+        for found in line.errors:
+            self._refuse(found)
+        if line.errors:
+            return
+        try:
+            if line.call:
+                self._flow.call(line)
+                return
+            made = statement(line)
+            ends = ends_main(made, called=self._flow.called)
+            yield from self._shaped(made)
+        except ProgramError as problem:
+            self._refuse(problem.diagnostic)
+            ends = False
+            if problem.diagnostic.code == "recursion":
+                self._flow.end()
+        self._steer(line, ends=ends)
+
+    def _steer(self, line: Line, *, ends: bool) -> None:
+        """M2, M17 and M30, behind everything else of their block."""
+        if ends:
+            self._flow.end()
+        elif self._flow.called and any(word.name == "M" and word.value == 17 for word in line.words):
+            self._flow.back()
+
+    def _shaped(self, made: Statement) -> Iterator[Block]:
+        """The blocks of a statement, with the corners cut that are known by now."""
+        number = made.line.number
+        place = self._flow.shown_line(number)
+        for block in self._blocks(made):
+            corner = corner_of(self._state, made, block) if block.moves else None
+            yield from self._corners.take(block if place == number else replace(block, line=place), corner)
+
+    def _blocks(self, made: Statement) -> Iterator[Block]:
+        """What a block does, in the order in which it does it: states, spindle, motion, stops."""
+        state = self._state
+        for word in made.sets:
+            state.r[int(word.name[1:])] = state.number(made, word)
+        if made.offset_key is not None:
+            programmed_offset(state, made)
+            return
+        self._modes(made)
+        feed_words(state, made)
+        if "dwell" in made.g:
+            yield dwell(state, made)
+            return
+        yield from spindle_words(state, made)
+        if made.axes or ARC & made.words.keys():
+            yield arc(state, made) if state.motion in {2, 3} else straight(state, made)
+        elif "suppression of offsets" in made.g:
+            text = "G53 acts in a block that moves an axis."
+            raise made.refuse(made.g["suppression of offsets"], "word-unused", text, "Add the axes.")
+        yield from self._stops(made)
+
+    def _modes(self, made: Statement) -> None:
+        """The codes that stay in force."""
+        state = self._state
+        modal = state.modal
+        state.motion = _chosen(made.code("motion"), state.motion)
+        state.plane = _chosen(made.code("plane"), state.plane)
+        metric, absolute = made.code("unit of length"), made.code("absolute or incremental")
+        if "DIAMON" in made.keys or "DIAMOF" in made.keys:
+            modal = modal._replace(diameter="DIAMON" in made.keys)
+        if metric is not None:
+            modal = modal._replace(metric=metric == 71)
+        if absolute is not None:
+            modal = modal._replace(absolute=absolute == 90)
+        if modal.rapid != (state.motion == 0):
+            modal = modal._replace(rapid=state.motion == 0)
+        state.adopt(modal)
+        settable_offset(state, made)
+
+    def _stops(self, made: Statement) -> Iterator[Block]:
+        """M0, M1, and the end."""
+        state, line = self._state, made.line
+        for code in (0, 1):
+            if code in made.m:
+                yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
+        if made.ends and not self._flow.called:
+            code = next(code for code in (2, 17, 30) if code in made.m)
+            yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
+
+    def _ended(self) -> Iterator[Block]:
+        """No line comes any more."""
+        try:
+            self._corners.end()
+        except ProgramError as problem:
+            self._refuse(problem.diagnostic)
+        yield from ()
+
+    def _refuse(self, found: Diagnostic) -> None:
+        """Keep the error; what follows from not knowing where the machine stands says nothing new."""
+        if not (self._stopped and found.code in _BY_POSITION):
+            self._log.add(self._flow.located(found))
+        self._stopped = True
+        self._corners.drop()
+
+    def _too_much(self, line: Line) -> None:
+        text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        self._refuse(
+            refused(line.number, 0, "too-many-blocks", line.block, text, "Lower the passes of the calls.")
+        )
+
+
+def _chosen(code: int | None, before: int) -> int:
+    return before if code is None else code

@@ -1,0 +1,218 @@
+"""Source text of one SINUMERIK block → words. What the grammar does not name is an error."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.diagnostics import Diagnostic
+from core.language.sinumerik import vocabulary as known
+from core.language.sinumerik.faults import SYNTAX, alarm, refused
+from core.language.sinumerik.words import LONGEST_LINE, Form, Line, Word
+
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+_NUMBER = re.compile(NUMBER)
+_HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
+_NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
+_ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
+_FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
+_R = re.compile(r"R([0-9]+)")
+_REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
+_PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
+_MOST_PASSES = 9999
+
+
+class _Value(NamedTuple):
+    """What stands behind = or in brackets, and where it ends."""
+
+    number: float | None
+    r: int | None
+    end: int
+
+
+def lex_line(number: int, text: str) -> Line:
+    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+    code, comment = _without_comment(text)
+    upper = "".join(sign.upper() if sign.isascii() else sign for sign in code)
+    head = _HEAD.match(upper)
+    assert head is not None  # every part of it may be missing
+    level, kind, count, label = head.groups()
+    block = f"{kind}{count}" if kind else label or f"in line {number}"
+    scanner = _Scanner(number, block, upper)
+    if len(text) > LONGEST_LINE:
+        scanner.refuse(1, f"the block has {len(text)} characters", f"{LONGEST_LINE} are the most; split it.")
+    else:
+        scanner.scan(head.end())
+    return Line(
+        number,
+        block,
+        tuple(scanner.words),
+        label or "",
+        None if level is None else int(level or 0),
+        scanner.call,
+        scanner.call_column,
+        scanner.passes,
+        comment,
+        code[head.end() :].strip(),
+        tuple(scanner.errors),
+    )
+
+
+def _without_comment(text: str) -> tuple[str, int]:
+    at = text.find(";")
+    return (text, 0) if at < 0 else (text[:at], at + 1)
+
+
+class _Scanner:
+    """Goes once through the code of a block; what it cannot read it reports and skips."""
+
+    def __init__(self, number: int, block: str, text: str) -> None:
+        self.words: list[Word] = []
+        self.errors: list[Diagnostic] = []
+        self.call, self.call_column, self.passes = "", 0, 1
+        self._number, self._block, self._text = number, block, text
+
+    def scan(self, at: int) -> None:
+        """All words from ``at`` on."""
+        text = self._text
+        while at < len(text):
+            if text[at].isspace():
+                at += 1
+            elif match := _ASSIGNED.match(text, at):
+                at = self._assigned(match)
+            elif match := _NAME.match(text, at):
+                at = self._named(match)
+            elif text[at].isalpha() and text[at].isascii():
+                at = self._letter(at)
+            else:
+                at = self._skip(at, f"{text[at]} is no word", "Take it out; a comment begins with ;")
+
+    def refuse(self, column: int, text: str, hint: str) -> None:
+        """A syntax alarm at this column."""
+        self.errors.append(alarm(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+
+    def _skip(self, at: int, text: str, hint: str) -> int:
+        self.refuse(at + 1, text, hint)
+        rest = _REST_OF_WORD.match(self._text, at)
+        return rest.end() if rest else at + 1
+
+    def _outside(self, at: int, end: int, name: str, why: str) -> int:
+        """A word of the language that this control does not execute."""
+        fault = refused(self._number, at + 1, "not-in-subset", self._block, f"{name}: {why}.", "Take it out.")
+        self.errors.append(fault)
+        rest = _REST_OF_WORD.match(self._text, end)
+        return rest.end() if rest and not self._text[end : end + 1].isspace() else end
+
+    def _letter(self, at: int) -> int:
+        """A letter and its number."""
+        text, letter = self._text, self._text[at]
+        if letter == "N" and text[at + 1 : at + 2].isdigit():
+            return self._skip(at, "the block number does not stand first", "Write it at the start.")
+        if letter not in known.LETTERS:
+            why = known.LETTERS_OUTSIDE.get(letter, "this control has no such word")
+            return self._outside(at, at + 1, letter, why)
+        match = _NUMBER.match(text, at + 1)
+        if match is None:
+            return self._skip(at, f"{letter} has no number", f"Write {letter} with a number, or {letter}=…")
+        return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
+
+    def _named(self, match: re.Match[str]) -> int:
+        """A key word, or the name of a subprogram, which stands alone in its block."""
+        name, at, end = match[0], match.start(), match.end()
+        if name in known.KEYS:
+            self.words.append(Word(name, None, at + 1, name))
+            return end
+        base = name.rstrip("0123456789")
+        if name in known.NAMES_OUTSIDE or base in known.NAMES_OUTSIDE:
+            return self._outside(at, end, name, "this control does not execute it")
+        if name in known.ASSIGNED or base in known.ASSIGNED - {"X", "Z", "C", "I", "K", "F", "S"}:
+            return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
+        if self.words or self.call or self._text[end : end + 1] == "(":
+            return self._skip(at, f"{name} is no word", "A subprogram's name stands alone in its block.")
+        return self._called(name, at, end)
+
+    def _called(self, name: str, at: int, end: int) -> int:
+        self.call, self.call_column = name, at + 1
+        passes = _PASSES.match(self._text, end)
+        if passes is None:
+            rest = self._text[end:]
+            if rest.strip():
+                self.refuse(end + 1, f"{rest.strip()} stands behind {name}", "A call stands alone.")
+            return len(self._text)
+        self.passes = int(passes[1][:9])
+        if not 1 <= self.passes <= _MOST_PASSES:
+            self.refuse(end + 1, f"P{passes[1]} is no number of passes", f"Write P1 to P{_MOST_PASSES}.")
+        if self._text[passes.end() :].strip():
+            self.refuse(passes.end() + 1, f"more stands behind {name}", "A call stands alone.")
+        return len(self._text)
+
+    def _assigned(self, match: re.Match[str]) -> int:
+        """A word with =."""
+        name, at, end = match[1], match.start(), match.end()
+        is_r = _R.fullmatch(name)
+        if is_r is None and name not in known.ASSIGNED:
+            why = known.LETTERS_OUTSIDE.get(name, "this control has no such word")
+            return self._outside(at, end, name, why)
+        if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
+            return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
+        form = Form.PLAIN
+        found = _FORM.match(self._text, end)
+        if found is not None and not _R.match(self._text, end):
+            return self._target(name, at, found)
+        value = self._value(end)
+        if value is None:
+            return self._skip(at, f"{name}= has no value", "Write a number or an R parameter.")
+        written = "".join(self._text[at : value.end].split())
+        return self._keep(Word(name, value.number, at + 1, written, form, value.r), value.end)
+
+    def _target(self, name: str, at: int, found: re.Match[str]) -> int:
+        """AC( ), IC( ), DC( ), ACP( ), ACN( )."""
+        form, bracket = found[1], found[2]
+        if form not in known.FORMS.get(name, frozenset()):
+            allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or an R parameter"
+            return self._skip(at, f"{form} is nothing that {name}= takes", f"It takes {allowed}.")
+        if bracket is None:
+            return self._skip(at, f"{form} lacks its brackets", f"Write {name}={form}(…).")
+        value = self._value(found.end())
+        if value is None:
+            return self._skip(at, f"{form} has no value in its brackets", f"Write {name}={form}(…).")
+        close = value.end
+        while self._text[close : close + 1].isspace():
+            close += 1
+        if self._text[close : close + 1] != ")":
+            return self._skip(at, f"the bracket of {form} is not closed", f"Write {name}={form}(…).")
+        written = "".join(self._text[at : close + 1].split())
+        word = Word(name, value.number, at + 1, written, Form(form), value.r)
+        return self._keep(word, close + 1)
+
+    def _value(self, at: int) -> _Value | None:
+        """A number or an R parameter."""
+        r = _R.match(self._text, at)
+        if r is not None:
+            number = int(r[1][:9])
+            return _Value(None, number, r.end()) if number <= known.MOST_R else None
+        match = _NUMBER.match(self._text, at)
+        return None if match is None else _Value(float(match[0]), None, match.end())
+
+    def _keep(self, word: Word, end: int) -> int:
+        after = self._text[end : end + 1]
+        if after in {".", "+", "-", "*", "=", "(", ")", ","}:
+            return self._skip(word.column - 1, f"{word.text}{after} is no number", "Correct the number.")
+        fault = self._beyond(word)
+        if fault:
+            self.refuse(word.column, *fault)
+        self.words.append(word)
+        return end
+
+    def _beyond(self, word: Word) -> tuple[str, str] | None:
+        """What is wrong with the number of a word."""
+        value = word.value
+        if value is None:
+            return None
+        if word.name in {"G", "M"}:
+            digits = word.text[1:]
+            return None if digits.isdigit() else (f"{word.text} is no code", "Codes are whole numbers.")
+        low, high = known.REACH["R" if _R.fullmatch(word.name) else word.name]
+        if low <= value <= high:
+            return None
+        return f"{word.text} is out of range", f"{word.name} lies between {low:g} and {high:g}."

@@ -1,0 +1,25 @@
+"""What a machine cannot do at once: its spindle turn, and be the axis C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from core.interpreter.blocks import Block
+from core.language.diagnostics import Diagnostic, Severity
+from core.machine.model import Machine
+
+
+def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
+    """An error for each block that moves C while the spindle, which is this machine's C, turns."""
+    if machine.c_own_drive or not machine.c_enabled:
+        return
+    for block in blocks:
+        if block.c != block.c0 and block.modal.spindle:
+            yield Diagnostic(
+                line=block.line,
+                column=1,
+                severity=Severity.ERROR,
+                code="c-is-spindle",
+                message="C moves while the spindle turns, and on this machine the spindle itself is C",
+                hint="stop it with M5 first; a machine whose C has its own drive says so by axis.C.own_drive",
+            )
