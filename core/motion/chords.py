@@ -33,6 +33,8 @@ def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limi
     i and i+1. Where the pieces end within an interval of a joint it stands for itself and takes all it may,
     so that what a plan builds on only grows with the path.
     """
+    if not len(alone.joint):
+        return alone
     share = CENTRIPETAL_SHARE * limits.accelerations
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
     at = s[alone.joint + 1]
