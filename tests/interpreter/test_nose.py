@@ -288,7 +288,7 @@ REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     ((*FACING, "M19"), (6, 1, "comp-with")),
     ((*FACING, "CA90"), (6, 1, "comp-with")),
     ((*FACING, "(~PLXC)", "(END)"), (6, 1, "comp-with")),
-    ((*FACING, "X.2D1"), (6, 1, "comp-d")),
+    ((*FACING, "X.2D1"), (6, 4, "comp-d")),
     ((*FACING, "D0", "X.2"), (6, 1, "comp-d")),
     # the approach
     (("X0Z.05F9", "G41", "X0Z0", "X.2"), (5, 0, "comp-approach")),
