@@ -11,6 +11,7 @@ from app.cli.errors import CommandError
 from app.compose.journal import Journal
 from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
+from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.simulated import simulated
 from app.compose.special import furnish
@@ -96,6 +97,7 @@ def desk_and_executor(
         editor=_editor(machine, offsets, journal),
     )
     furnish(desk, machine, journal or NothingKept())
+    give_mdi(desk, machine, offsets, journal or NothingKept())
     heard.append(desk)
     return desk, executor
 

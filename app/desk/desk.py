@@ -35,11 +35,13 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.errors import StoreError
 
 if TYPE_CHECKING:
     from app.desk.editing.editor import Editor
+    from app.desk.files.files import FilesDesk
+    from app.desk.mdi.mdi import MdiDesk
     from app.desk.special.special import SpecialDesk
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
@@ -78,6 +80,8 @@ class Desk:
     time_of_day: Callable[[], str] = _time_of_day
     editor: Editor | None = None
     special: SpecialDesk | None = None
+    files: FilesDesk | None = None
+    mdi: MdiDesk | None = None
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunRecord = field(default_factory=RunRecord)
@@ -111,8 +115,9 @@ class Desk:
         self._tell_unkept()
         self._build_anew(snapshot)
         loaded = self.session.now
-        self.counter.see(snapshot, self.post, self.say)
-        self.record.see(snapshot, loaded)
+        if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
+            self.counter.see(snapshot, self.post, self.say)
+            self.record.see(snapshot, loaded)
         view = view_of(snapshot, self.readout, self.with_c, self.settings.units)
         if self._pulse.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
@@ -303,6 +308,8 @@ class Desk:
         """Why the palms start nothing now; empty when they may."""
         if not self.starts_here:
             return prompts.NOT_HERE
+        if self.mdi is not None and self.mdi.open:
+            return self.mdi.barred()
         if self.restoring:
             return prompts.RESTORING
         loaded = self.session.now
@@ -320,7 +327,7 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
-        for part in (self.editor, self.special):
+        for part in (self.editor, self.special, self.files, self.mdi):
             if part is not None:
                 part.close()
         self.shut()

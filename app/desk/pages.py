@@ -28,6 +28,5 @@ ENTRIES = (
     Entry("F10", "SPECIAL", SPECIAL, "speed limit, inputs and outputs, log"),
 )
 LATER = {
-    MDI: "MDI COMES WITH A LATER VERSION",
     JOG: "JOG COMES WITH A LATER VERSION",
 }

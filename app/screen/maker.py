@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, MENU, SECCMP, SPECIAL, TOOLS
+from app.desk.pages import EDITOR, MDI, MENU, SECCMP, SPECIAL, TOOLS
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
@@ -33,9 +33,19 @@ def _special(host: Host, parent: QWidget) -> Page:
     return SpecialPage(host, model, parent)
 
 
+def _mdi(host: Host, parent: QWidget) -> Page:
+    from app.screen.mdi.page import MdiPage
+
+    model = host.desk.mdi
+    if model is None:
+        raise RuntimeError("the desk was put together without MDI")
+    return MdiPage(host, model, parent)
+
+
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
+    MDI: _mdi,
     SPECIAL: _special,
     SECCMP: SeccmpPage,
     TOOLS: ToolsPage,

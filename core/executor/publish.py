@@ -44,7 +44,7 @@ class Publisher:
             modal=modal,
             velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
             feed=_feed(block, modal),
-            rapid=block.kind is Kind.RAPID if block else modal.rapid,
+            rapid=block.rapid if block else modal.rapid,
             rpm_command=bench.spindle.command,
             rpm_actual=bench.spindle.measured,
             spindle_asked=bench.spindle.asked_rpm,
@@ -69,6 +69,7 @@ class Publisher:
             proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
             starts=standing.starts,
             prepared=standing.prepared.digest if standing.prepared else "",
+            lines=counters.lines,
             tool_open=standing.tool_open,
             start_refused=standing.start_refused,
         )

@@ -49,6 +49,7 @@ class Rounds:
         assert job is not None
         self.counters.cycle = 0.0
         self._line = standing.starts is Starts.LINE
+        self.counters.lines += self._line
         if standing.starts is Starts.RESTART:
             standing.starts = Starts.PROGRAM
         standing.prepared = standing.prepared_proof = None

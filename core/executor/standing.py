@@ -14,6 +14,7 @@ class Counters:
     """What is counted from the start of the executor; times in seconds, stops not counted."""
 
     parts: int = 0
+    lines: int = 0  # of MDI that were begun
     underruns: int = 0
     cycle: float = 0.0
     last_cycle: float = 0.0

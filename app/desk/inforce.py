@@ -1,0 +1,111 @@
+"""The modal state in words: what is in force, one row for each group of codes. MDI and SEARCHTO show it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.desk import formats
+from app.desk.words import tr
+from core.interpreter.begin import Checkpoint
+from core.interpreter.modal import Modal
+
+NONE = formats.NOTHING
+
+
+@dataclass(frozen=True, slots=True)
+class InForce:
+    """One row: what it is about, and what is in force. ``key`` is the same in every language."""
+
+    key: str
+    label: str
+    value: str
+
+
+def rows_of(point: Checkpoint) -> tuple[InForce, ...]:
+    """Every group of codes, always in the same order."""
+    modal = point.modal
+    return (
+        *_geometry(modal),
+        *_feeds(point),
+        *_spindle(modal),
+        *_frame(modal),
+        *_functions(modal),
+    )
+
+
+def _geometry(modal: Modal) -> tuple[InForce, ...]:
+    distance = NONE if modal.absolute is None else "G90" if modal.absolute else "G91"
+    coarse = {0: "G36", 1: "G35", 2: "G35F2"}[modal.coarse]
+    return (
+        InForce("units", tr("UNITS"), "G71 MM" if modal.metric else "G70 INCH"),
+        InForce("x words", tr("X WORDS"), "G72 Ø" if modal.diameter else "G73 R"),
+        InForce("distance", tr("DISTANCE"), distance),
+        InForce("nose", tr("NOSE COMP"), f"G{modal.nose_comp}"),
+        InForce("coarse", tr("COARSE FEED"), coarse),
+    )
+
+
+def _feeds(point: Checkpoint) -> tuple[InForce, ...]:
+    modal = point.modal
+    first = formats.feed(point.first_feed, modal.metric, False) if point.first_feed else NONE
+    return (
+        InForce("feed mode", tr("FEED MODE"), "G95" if modal.per_rev else "G94"),
+        InForce("feed", tr("FEED"), _feed(modal.feed, modal.metric, modal.per_rev)),
+        InForce("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
+        InForce("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
+        InForce("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
+        InForce("first feed", tr("F THAT IS A RAPID"), first),
+    )
+
+
+def _feed(value: float | None, metric: bool, per_rev: bool) -> str:
+    if value is None:
+        return NONE
+    return f"{formats.feed(value, metric, per_rev)} {formats.feed_unit(metric, per_rev)}"
+
+
+def _spindle(modal: Modal) -> tuple[InForce, ...]:
+    run = {1: "M03", -1: "M04", 0: "M05"}[modal.spindle]
+    surface = formats.surface_speed(modal.surface_speed, modal.metric)
+    unit = "M/MIN" if modal.metric else "SFM"
+    speed = f"G96 {surface} {unit}" if modal.css else f"G97 {formats.rpm(modal.rpm)} RPM"
+    least, most = modal.css_min, modal.css_max
+    limits = f"{formats.rpm(least)} … {formats.rpm(most) if most is not None else NONE}"
+    return (
+        InForce("spindle", tr("SPINDLE"), run),
+        InForce("speed", tr("SPEED"), speed),
+        InForce("clamps", tr("G76 … G77"), limits if least or most is not None else NONE),
+        InForce("c", tr("C AXIS"), tr("LOCKED") if modal.c_locked else tr("FREE")),
+    )
+
+
+def _frame(modal: Modal) -> tuple[InForce, ...]:
+    pair = _pair
+    return (
+        InForce("tool", tr("TOOL"), f"T{modal.tool}  {pair(modal, modal.tool_x, modal.tool_z)}"),
+        InForce("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
+        InForce("shift", tr("G10 IN FORCE"), pair(modal, modal.shift_x, modal.shift_z)),
+        InForce("pending", tr("G10 AT NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
+        InForce("preset", tr("G92 PRESET"), pair(modal, modal.preset_x, modal.preset_z)),
+    )
+
+
+def _d(modal: Modal) -> str:
+    return _pair(modal, modal.secondary_x, modal.secondary_z) if modal.secondary else ""
+
+
+def _pair(modal: Modal, x: float, z: float) -> str:
+    """X as a radius, because offsets are kept so."""
+    if not x and not z:
+        return "0"
+    return f"X R{formats.length(x, modal.metric)}  Z {formats.length(z, modal.metric)}"
+
+
+def _functions(modal: Modal) -> tuple[InForce, ...]:
+    outputs = " ".join(sorted(name.upper() for name in modal.outputs)) or NONE
+    return (
+        InForce("coolant", tr("COOLANT"), "M08" if modal.coolant else "M09"),
+        InForce("collet", tr("COLLET"), "M12" if modal.collet_closed else "M13"),
+        InForce("outputs", tr("M FUNCTIONS"), outputs),
+        InForce("comment", tr("COMMENT"), modal.comment.strip() or NONE),
+    )

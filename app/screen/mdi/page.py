@@ -1,0 +1,99 @@
+"""F4 MDI: one line at a time, proved before it may run, with what is in force beside it."""
+
+from __future__ import annotations
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.inforce import rows_of
+from app.desk.mdi.mdi import MdiDesk
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.screen.mdi.history import HistoryPanel
+from app.screen.mdi.inforce import InForcePanel
+from app.screen.mdi.line import LinePanel
+from app.screen.pages import Doings, Host, Page
+from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.states import CYCLE
+from core.interpreter.begin import Checkpoint
+
+LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
+
+
+class MdiPage(Page):
+    """The model decides, this only shows it and hands the keys on."""
+
+    NAME = pages.MDI
+    LABELS = ("MENU", "AUTO", "", "READOUT", "", "", "ALARMS", "SPN STOP", "SECCMP", "")
+    STARTS = True
+
+    def __init__(self, host: Host, model: MdiDesk, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.line = LinePanel(self.look, self)
+        self.history = HistoryPanel(self.look, self._recall, self)
+        self.inforce = InForcePanel(self.look, self)
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        return {
+            "F2": lambda: self._go(pages.AUTOMATIC),
+            "F4": self.desk.next_readout,
+            "F8": self.model.stop_spindle,
+            "F9": lambda: self._go(pages.SECCMP),
+        }
+
+    def _go(self, name: str) -> None:
+        self.host.go(name)
+
+    def _recall(self, back: int) -> None:
+        if self.desk.snapshot().state is State.IDLE:
+            self.model.recall(back)
+
+    def typed(self, key: str) -> bool:
+        """At rest, text; while a line is under way the letters are the keys they are everywhere."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
+
+    def opens(self) -> bool:
+        """Not while a program is under way."""
+        return self.model.opens()
+
+    def opened(self) -> None:
+        """Cycle Start now means lines."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Not while a line is under way."""
+        return self.model.leave()
+
+    def escape(self) -> bool:
+        """Take back a ready line, then the text."""
+        return self.model.escape()
+
+    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """The line, what was found, and the state of this instant."""
+        model, typing = self.model, self.model.typing
+        model.look(snapshot)
+        running = snapshot.state in CYCLE and snapshot.starts is Starts.LINE
+        text = snapshot.block_text if running and not typing.text else typing.text
+        self.line.show_line(text, len(text) if running else typing.at, model.found, model.ready is not None)
+        self.history.show_history(typing.history, typing.back)
+        self.inforce.show_rows(rows_of(Checkpoint(snapshot.modal)))
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The line over the history, what is in force at their right."""
+        u = self.look.u
+        gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
+        wide = self.width() - state - gap
+        self.line.setGeometry(0, 0, wide, high)
+        self.history.setGeometry(0, high + gap, wide, self.height() - high - gap)
+        self.inforce.setGeometry(wide + gap, 0, state, self.height())

@@ -1,0 +1,194 @@
+"""MDI by keys alone, on the executor and the simulated lathe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.desk import pages
+from app.screen.look import Look
+from app.screen.mdi.page import MdiPage
+from app.screen.pictures import Stage
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import Starts, State
+from tests.screen.lathe import Key, Operator
+
+INCH = 25.4
+
+
+@pytest.fixture
+def operator(qapp: object) -> Iterator[Operator]:
+    stage = Stage()
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    window.open_desk(stage.desk)
+    window.show()
+    yield Operator(stage, window)
+    window.put_away()
+    stage.close()
+
+
+@pytest.fixture
+def at_mdi(operator: Operator) -> Operator:
+    """Drives on, MDI in front."""
+    operator.drives_on()
+    operator.key(Key.Key_F1, Key.Key_F4)
+    assert operator.frame.title.page == pages.MDI
+    operator.pause(0.05)
+    return operator
+
+
+def page_of(operator: Operator) -> MdiPage:
+    page = operator.frame.page
+    assert isinstance(page, MdiPage)
+    operator.window.refresh()
+    return page
+
+
+def value(operator: Operator, key: str) -> str:
+    return next(row.value for row in page_of(operator).inforce.rows if row.key == key)
+
+
+def test_a_line_is_typed_proved_started_and_its_modes_stay(at_mdi: Operator) -> None:
+    assert value(at_mdi, "distance") == "—"
+    at_mdi.run("G90G72")
+    assert (value(at_mdi, "distance"), value(at_mdi, "x words")) == ("G90", "G72 Ø")
+    at_mdi.run("x.5f100")
+    assert at_mdi.shot.actual[0] == pytest.approx(0.25 * INCH, abs=0.006)
+    assert value(at_mdi, "feed") == "100.00 in/min"
+    assert page_of(at_mdi).history.lines == ("G90G72", "x.5f100")
+    assert page_of(at_mdi).line.text == ""
+
+
+def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> None:
+    at_mdi.run("G90")
+    at_mdi.line("X.5F1000")
+    page = page_of(at_mdi)
+    assert page.line.found[0].column == 4
+    assert "out of range" in page.line.message
+    assert at_mdi.prompt().startswith("THE LINE DOES NOT RUN")
+    at_mdi.palms()
+    assert at_mdi.shot.state is State.IDLE
+    assert at_mdi.prompt() == "NO LINE IS READY: TYPE ONE AND PRESS ENTER"
+    at_mdi.key(Key.Key_Backspace)
+    assert page_of(at_mdi).line.found == ()
+    at_mdi.key(Key.Key_Return)
+    at_mdi.mdi.settle(5.0)
+    assert at_mdi.prompt() == "TO RUN THE LINE PRESS BOTH PALM BUTTONS (F11 + F12); ESC TAKES IT BACK"
+
+
+def test_a_ready_line_that_is_changed_starts_no_more(at_mdi: Operator) -> None:
+    at_mdi.run("G91F50")
+    at_mdi.line("X.1")
+    assert page_of(at_mdi).line.ready
+    at_mdi.type("0")
+    at_mdi.palms()
+    assert at_mdi.shot.state is State.IDLE
+    assert at_mdi.shot.actual[0] == pytest.approx(0.0, abs=0.006)
+    assert not page_of(at_mdi).line.ready
+
+
+def test_history_by_arrow_keys_and_by_finger(at_mdi: Operator) -> None:
+    for line in ("G90F50", "X.1", "Z-.1"):
+        at_mdi.run(line)
+    at_mdi.type("X.")
+    at_mdi.key(Key.Key_Up, Key.Key_Up)
+    assert page_of(at_mdi).line.text == "X.1"
+    at_mdi.key(Key.Key_Down, Key.Key_Down)
+    assert page_of(at_mdi).line.text == "X."  # what was being typed
+    page = page_of(at_mdi)
+    at_mdi.window.grab()
+    page.history._places[0][1]()
+    assert page_of(at_mdi).line.text == "G90F50"
+
+
+def test_the_cursor_goes_through_the_line(at_mdi: Operator) -> None:
+    at_mdi.type("G9X.1")
+    at_mdi.key(Key.Key_Left, Key.Key_Left, Key.Key_Left)
+    at_mdi.type("1")
+    assert page_of(at_mdi).line.text == "G91X.1"
+    at_mdi.key(Key.Key_Delete)
+    assert page_of(at_mdi).line.text == "G91.1"
+    at_mdi.key(Key.Key_Escape)
+    assert page_of(at_mdi).line.text == ""
+
+
+def test_the_history_is_there_again_the_next_day(at_mdi: Operator) -> None:
+    at_mdi.run("G90F50")
+    at_mdi.key(Key.Key_F1)
+    at_mdi.key(Key.Key_F4)
+    at_mdi.mdi.typing.history = []
+    at_mdi.mdi.typing.reload()
+    assert at_mdi.mdi.typing.history == ["G90F50"]
+
+
+def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> None:
+    at_mdi.run("G90")
+    at_mdi.line("X1F5")
+    at_mdi.palms()
+    assert at_mdi.shot.state is State.RUN
+    at_mdi.key(Key.Key_H)
+    at_mdi.reaches(State.HOLD)
+    at_mdi.key(Key.Key_F1)  # it is still under way
+    assert at_mdi.frame.title.page == pages.MDI
+    at_mdi.key(Key.Key_R)
+    at_mdi.key(Key.Key_R)
+    at_mdi.reaches(State.IDLE)
+    assert value(at_mdi, "distance") == "G90"
+    at_mdi.type("R")  # text again
+    assert page_of(at_mdi).line.text == "R"
+
+
+def test_hold_and_estop_keep_their_keys_while_typing(at_mdi: Operator) -> None:
+    at_mdi.type("X.5h")
+    assert page_of(at_mdi).line.text == "X.5"
+    at_mdi.key(Key.Key_E)
+    at_mdi.reaches(State.ESTOP)
+    at_mdi.type("X")
+    assert page_of(at_mdi).line.text == "X.5"
+
+
+def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Operator) -> None:
+    at_mdi.run("M03S900")
+    at_mdi.pause(2.0)
+    at_mdi.key(Key.Key_F1)
+    assert at_mdi.frame.title.page == pages.MENU
+    at_mdi.pause(1.0)
+    assert at_mdi.shot.rpm_actual == pytest.approx(900, rel=0.05)
+    assert at_mdi.shot.starts is Starts.PROGRAM
+    at_mdi.key(Key.Key_F4)
+    assert value(at_mdi, "spindle") == "M03"
+    at_mdi.key(Key.Key_F8)
+    at_mdi.pause(0.05)
+    assert at_mdi.shot.rpm_command == 0.0
+    assert value(at_mdi, "spindle") == "M05"
+
+
+def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> None:
+    operator.stage.start()
+    operator.key(Key.Key_F1, Key.Key_F4)
+    assert operator.frame.title.page == pages.MENU
+    assert operator.prompt().startswith("A PROGRAM IS UNDER WAY")
+
+
+def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
+    desk = at_mdi.stage.desk
+    desk.choose("bushing")
+    desk.session.settled(30.0)
+    at_mdi.palms()
+    assert at_mdi.shot.state is State.IDLE
+    at_mdi.key(Key.Key_F2)
+    assert at_mdi.frame.page is at_mdi.frame.automatic
+    at_mdi.palms()
+    assert at_mdi.shot.state in {State.RUN, State.WAIT}
+
+
+def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator) -> None:
+    at_mdi.line("T9")
+    assert "Tool 9" in page_of(at_mdi).line.message
+    assert at_mdi.mdi.ready is None
+    at_mdi.key(Key.Key_Escape)
+    at_mdi.run("T1")
+    assert value(at_mdi, "tool").startswith("T1")
