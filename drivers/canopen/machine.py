@@ -1,0 +1,92 @@
+"""The whole machine on one bus: connected in order, then ticked by the one loop that owns it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.ports import Clock, DriverError, Stop
+from drivers.canopen.axes import CanopenAxes
+from drivers.canopen.bus import Bus
+from drivers.canopen.config import CanopenConfig
+from drivers.canopen.spindle import CanopenSpindle
+from drivers.canopen.terminals import CanopenIO
+
+_FIRST = 0.5  # s in which everything must have answered a first SYNC
+
+
+class CanopenMachine:
+    """Connects when made. Raises DriverError with the first node that is not as the machine file says."""
+
+    def __init__(self, config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
+        self.config = config
+        self.clock = clock
+        self.bus = Bus(config.bus, clock, idle)
+        self._next = clock.now()
+        try:
+            self.axes = CanopenAxes(config, self.bus)
+            self.spindle = CanopenSpindle(config.spindle, self.bus) if config.spindle else None
+            drives = {axis.config.name: axis.drive for axis in self.axes.driven}
+            self.io = CanopenIO(config, self.bus, drives)
+            self.axes.clearing = [self.io.clear_fault]
+            if self.spindle is not None:
+                self.axes.clearing.append(self.spindle.clear_fault)
+            self._connect()
+        except DriverError:
+            self.bus.close()
+            raise
+
+    def tick(self) -> None:
+        """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds."""
+        self.bus.pump()
+        now = self.clock.now()
+        self.axes.tick(now)
+        if self.bus.trouble:
+            return
+        try:
+            self.axes.beside = self.io.tick(now)
+            if self.spindle is not None:
+                self.spindle.tick()
+            if now >= self._next or self.axes.follower.urgent:
+                self._next = max(self._next, now - self.config.bus.sync) + self.config.bus.sync
+                self.axes.follower.urgent = False
+                self._exchange()
+        except DriverError as error:
+            self.bus.lost(str(error))
+
+    def close(self) -> None:
+        """Power off as far as the bus still works, and let it go."""
+        if not self.bus.trouble:
+            self.axes.stop(Stop.RAMP_OFF)
+            self.io.safe()
+            if self.spindle is not None:
+                self.spindle.coast()
+                self._exchange()
+        self.bus.close()
+
+    def _connect(self) -> None:
+        """NMT start only after all have been configured."""
+        self.axes.connect()
+        if self.spindle is not None:
+            self.spindle.connect()
+        self.io.connect()
+        self.axes.operational()
+        if self.spindle is not None:
+            self.spindle.drive.operational()
+        self.io.operational()
+        self._exchange()
+        self.bus.wait(self._answered, _FIRST)
+
+    def _answered(self) -> bool:
+        drives = [axis.drive for axis in self.axes.driven]
+        if self.spindle is not None:
+            drives.append(self.spindle.drive)
+        silent = [drive.missing for drive in drives] + [m.missing for m in self.io.modules.values()]
+        return not any(silent)
+
+    def _exchange(self) -> None:
+        self.axes.command()
+        if self.spindle is not None:
+            self.spindle.drive.command()
+        for module in self.io.modules.values():
+            module.missing += 1
+        self.bus.synchronise()

@@ -1,0 +1,93 @@
+"""The objects of CiA 301, 401 and 402 that are used, and of a drive with a PVT queue after maxon's EPOS2."""
+
+from __future__ import annotations
+
+from canopen import ObjectDictionary
+from canopen.objectdictionary import ODArray, ODRecord, ODVariable
+from canopen.objectdictionary import datatypes as kind
+
+U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
+I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
+
+DEVICE_TYPE, ERROR_REGISTER = 0x1000, 0x1001
+WATCHED, HEARTBEAT, ON_ERROR = 0x1016, 0x1017, 0x1029
+ABORT_OPTION, QUICK_OPTION, FAULT_OPTION = 0x6007, 0x605A, 0x605E
+CONTROL, STATUS, MODE, MODE_SHOWN = 0x6040, 0x6041, 0x6060, 0x6061
+POSITION, WINDOW, WINDOW_TIME, VELOCITY = 0x6064, 0x6065, 0x6066, 0x606C
+TARGET, HOME_OFFSET, LIMITS = 0x607A, 0x607C, 0x607D
+PROFILE_SPEED, PROFILE_ACCEL, PROFILE_DECEL, QUICK_DECEL = 0x6081, 0x6083, 0x6084, 0x6085
+HOME_METHOD, HOME_SPEEDS, HOME_ACCEL = 0x6098, 0x6099, 0x609A
+IP_SUBMODE, BUFFER, FOLLOWING = 0x60C0, 0x60C4, 0x60F4
+INPUTS_402, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60FF, 0x6502
+PVT_RECORD, PVT_STATUS = 0x20C1, 0x20C4  # vendor's: one record, and state of the queue
+DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
+ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
+
+_VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (HEARTBEAT, U16))
+_ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
+_VARIABLES_402 = (
+    *((ABORT_OPTION, I16), (QUICK_OPTION, I16), (FAULT_OPTION, I16)),
+    *((CONTROL, U16), (STATUS, U16), (MODE, I8), (MODE_SHOWN, I8)),
+    *((POSITION, I32), (WINDOW, U32), (WINDOW_TIME, U16), (VELOCITY, I32)),
+    *((TARGET, I32), (HOME_OFFSET, I32), (PROFILE_SPEED, U32), (PROFILE_ACCEL, U32)),
+    *((PROFILE_DECEL, U32), (QUICK_DECEL, U32), (HOME_METHOD, I8), (HOME_ACCEL, U32)),
+    *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32)),
+    *((SUPPORTED, U32), (PVT_RECORD, U64)),
+)
+_ARRAYS_402 = ((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (BUFFER, U32, 6), (PVT_STATUS, U16, 3))
+_ARRAYS_401 = (
+    *((DIGITAL_IN, U8, 8), (DIGITAL_OUT, U8, 8), (ERROR_MODE, U8, 8), (ERROR_VALUE, U8, 8)),
+    *((ANALOG_IN, I16, 4), (ANALOG_DELTA, U32, 4)),
+)
+
+
+def drive_objects() -> ObjectDictionary:
+    """The dictionary of a drive without an EDS file."""
+    return _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
+
+
+def module_objects() -> ObjectDictionary:
+    """The dictionary of an I/O module without an EDS file."""
+    return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
+
+
+def _dictionary(
+    variables: tuple[tuple[int, int], ...], arrays: tuple[tuple[int, int, int], ...]
+) -> ObjectDictionary:
+    found = ObjectDictionary()
+    for index, data_type in variables:
+        found.add_object(_variable(index, 0, data_type))
+    for index, data_type, length in arrays:
+        array = ODArray(f"{index:04X}", index)
+        array.add_member(_variable(index, 0, U8, length))
+        for sub in range(1, length + 1):
+            array.add_member(_variable(index, sub, data_type))
+        found.add_object(array)
+    for number in range(4):
+        for base in (0x1400, 0x1800):
+            found.add_object(_communication(base + number))
+        for base in (0x1600, 0x1A00):
+            found.add_object(_mapping(base + number))
+    return found
+
+
+def _variable(index: int, sub: int, data_type: int, value: int = 0) -> ODVariable:
+    variable = ODVariable(f"{index:04X}:{sub}", index, sub)
+    variable.data_type = data_type
+    variable.access_type = "rw"
+    variable.default = value
+    return variable
+
+
+def _communication(index: int) -> ODRecord:
+    record = ODRecord(f"{index:04X}", index)
+    for sub, data_type in ((0, U8), (1, U32), (2, U8), (3, U16), (5, U16)):
+        record.add_member(_variable(index, sub, data_type))
+    return record
+
+
+def _mapping(index: int) -> ODArray:
+    array = ODArray(f"{index:04X}", index)
+    for sub in range(9):
+        array.add_member(_variable(index, sub, U32 if sub else U8))
+    return array

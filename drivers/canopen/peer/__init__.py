@@ -1,0 +1,1 @@
+"""The other end of the bus: drives and terminals of the simulated machine behind real CAN frames."""

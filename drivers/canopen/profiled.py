@@ -1,0 +1,97 @@
+"""Profile position: the drive plans. For jogging and single moves where a drive has no queue for paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.ports import DriverError, Segments
+from drivers.canopen import objects as od
+from drivers.canopen.follow import Fed
+from drivers.canopen.states import AT_ONCE, BIT_12, NEW, PP
+from drivers.setpoint_queue import SetpointQueue
+
+_ANSWER = 0.2  # s in which a drive must have taken a target
+
+
+class ProfiledFollower:
+    """Gives each drive the end of the queue as its target, with the speeds of the path there.
+
+    Only straight moves: each drive plans for itself, and on a line all of them keep in step.
+    """
+
+    mode = PP
+
+    def __init__(self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue) -> None:
+        self._axes = axes
+        self._indices = indices
+        self._queue = queue
+        self._pending: tuple[float, Segments] | None = None
+        self._told = -1.0
+        self.trouble = ""
+        self.urgent = False
+        self.off_path = 0.0
+
+    def check(self, segments: Segments) -> None:
+        """Refuse what is no straight line."""
+        dt = segments.dt[-1]
+        end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
+        way = end - segments.p[0]
+        length = float(np.linalg.norm(way))
+        along = way / length if length > 0.0 else way
+        off = segments.p - segments.p[0]
+        off = off - np.outer(off @ along, along)
+        limit = max(axis.config.count for axis in self._axes)
+        if float(np.abs(off).max()) > limit:
+            raise DriverError(
+                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "pvt"'
+            )
+        self._pending = (float(segments.t[0]), segments)
+
+    def spliced(self) -> None:
+        """Taken up by the next feed."""
+
+    def prepare(self) -> None:
+        """The drives begin where they stand."""
+        self._pending = None
+        for axis in self._axes:
+            axis.drive.target = axis.drive.position
+
+    def abort(self) -> None:
+        """No target is waiting any more."""
+        self._pending, self._told, self.trouble = None, -1.0, ""
+        for axis in self._axes:
+            axis.drive.extra &= ~(NEW | AT_ONCE)
+
+    def feed(self, now: float) -> None:
+        """Hand a target over when its time has come, then see that it was taken."""
+        if self._told >= 0.0:
+            self._finish(now)
+        elif self._pending is not None and now >= self._pending[0]:
+            _, segments = self._pending
+            self._pending, self._told = None, now
+            self._hand_over(segments)
+
+    def _hand_over(self, segments: Segments) -> None:
+        rest, _ = self._queue.demand_at(float("inf"))
+        self.urgent = True
+        for axis, i in zip(self._axes, self._indices, strict=True):
+            count, drive = axis.config.count, axis.drive
+            speed = max(float(np.abs(segments.v[:, i]).max()) / count, 1.0)
+            accel = max(float(np.abs(segments.a[:, i]).max()) / count, 1.0)
+            drive.setup.write(od.PROFILE_SPEED, 0, round(speed))
+            drive.setup.write(od.PROFILE_ACCEL, 0, round(accel))
+            drive.setup.write(od.PROFILE_DECEL, 0, round(accel))
+            drive.target = round(rest[i] / count)
+            drive.extra |= NEW | AT_ONCE
+
+    def _finish(self, now: float) -> None:
+        """The drives acknowledge by bit 12; then bit 4 may fall."""
+        late = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
+        if not late:
+            self._told = -1.0
+            for axis in self._axes:
+                axis.drive.extra &= ~(NEW | AT_ONCE)
+        elif now - self._told > _ANSWER:
+            self.trouble = self.trouble or f"{', '.join(late)}: the drive did not take its target"

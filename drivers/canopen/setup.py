@@ -1,0 +1,125 @@
+"""What every node goes through before it may run: checked, written, read back, mapped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import canopen
+from canopen.pdo import PdoMap
+from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
+
+from core.ports import DriverError
+from drivers.canopen import objects as od
+from drivers.canopen.bus import Bus, Node
+from drivers.canopen.states import MODE_BITS
+
+_Answer = TypeVar("_Answer")
+
+_PROFILE = 0xFFFF
+_ON_SYNC, _AT_ONCE = 1, 255
+_INVALID = 1 << 31  # a PDO that is being mapped
+_MAPS = 0x200  # from the communication record of a PDO to its mapping
+_NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}
+
+
+class Setup:
+    """SDO work on one node; each failure names node, object and what was answered."""
+
+    def __init__(self, bus: Bus, node: Node, name: str) -> None:
+        self._bus = bus
+        self._node = node
+        self._name = name
+
+    def pre_operational(self) -> None:
+        """PDO mapping may only change there."""
+        self._node.nmt.state = "PRE-OPERATIONAL"
+
+    def read(self, index: int, sub: int = 0) -> int:
+        """One object as a number; signed where the dictionary says so."""
+        data = self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub))
+        return self._number(index, sub, data)
+
+    def write(self, index: int, sub: int, value: int) -> None:
+        """Write one object and read it back. Raises DriverError when the node keeps something else."""
+        size = len(self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub)))
+        data = (value % (1 << 8 * size)).to_bytes(size, "little")
+        self._sdo(index, sub, lambda: self._node.sdo.download(index, sub, data))
+        kept = self._sdo(index, sub, lambda: self._node.sdo.upload(index, sub))
+        if kept != data:
+            shown = int.from_bytes(kept, "little")
+            raise DriverError(
+                f"{self._name}: object {index:04X}:{sub} stays at {shown} instead of {value};"
+                f" check what the drive allows and [canopen.sdo]"
+            )
+
+    def write_all(self, values: tuple[tuple[int, int, int], ...]) -> None:
+        """One after the other; a later value of the same object wins."""
+        for index, sub, value in values:
+            self.write(index, sub, value)
+
+    def demand_profile(self, profile: int) -> None:
+        """Is it the kind of device that the machine file says? Raises DriverError."""
+        found = self.read(od.DEVICE_TYPE) & _PROFILE
+        if found != profile:
+            raise DriverError(
+                f"{self._name}: node {self._node.id} is a device of profile {found}, expected {profile};"
+                " check the node numbers in [canopen.nodes]"
+            )
+
+    def demand_modes(self, modes: int) -> None:
+        """Does it offer what is needed? Raises DriverError naming what is not."""
+        offered = self.read(od.SUPPORTED)
+        lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
+        if lacking:
+            raise DriverError(f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode")
+
+    def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
+        """Map what the node receives in PDO ``number``: (object, bits)."""
+        self._map(self._node.rpdo[number], entries, _AT_ONCE if at_once else _ON_SYNC)
+
+    def transmit(self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int]) -> None:
+        """Map what the node sends in PDO ``number`` at each SYNC: (object + sub · 65536, bits)."""
+        pdo = self._node.tpdo[number]
+        self._map(pdo, entries, _ON_SYNC)
+        pdo.callbacks[:] = [heard]
+
+    def _map(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
+        """The library's own ``save`` writes no entries where the dictionary has them as an array."""
+        base = pdo.com_record.od.index
+        pdo.clear()
+        for index, bits in entries:
+            pdo.add_variable(index & 0xFFFF, index >> 16, bits)
+        cob = pdo.predefined_cob_id
+        pdo.cob_id, pdo.trans_type, pdo.enabled = cob, kind, True
+        assert cob is not None
+        self._put(base, 1, cob | _INVALID, 4)
+        self._put(base, 2, kind, 1)
+        self._put(base + _MAPS, 0, 0, 1)
+        for sub, (index, bits) in enumerate(entries, 1):
+            self._put(base + _MAPS, sub, (index & 0xFFFF) << 16 | (index >> 16) << 8 | bits, 4)
+        self._put(base + _MAPS, 0, len(entries), 1)
+        self._put(base, 1, cob, 4)
+        pdo.subscribe()
+
+    def _put(self, index: int, sub: int, value: int, size: int) -> None:
+        data = value.to_bytes(size, "little")
+        self._sdo(index, sub, lambda: self._node.sdo.download(index, sub, data))
+
+    def _number(self, index: int, sub: int, data: bytes) -> int:
+        variable = self._node.object_dictionary.get_variable(index, sub)
+        signed = variable is not None and variable.data_type in canopen.objectdictionary.SIGNED_TYPES
+        return int.from_bytes(data, "little", signed=signed)
+
+    def _sdo(self, index: int, sub: int, do: Callable[[], _Answer]) -> _Answer:
+        """Do something with one object; what can go wrong becomes one sentence."""
+        where = f"{self._name}: node {self._node.id}, object {index:04X}:{sub}"
+        try:
+            return do()
+        except SdoAbortedError as error:
+            raise DriverError(f"{where}: refused by the node: {error}") from error
+        except SdoCommunicationError as error:
+            why = self._bus.trouble or f"{error}; check cable, power and node number"
+            raise DriverError(f"{where}: {why}") from error
+        except KeyError as error:
+            raise DriverError(f"{where}: not in the node's object dictionary; check its EDS file") from error

@@ -1,0 +1,81 @@
+"""The spindle on the bus: a drive in profile velocity mode, which makes its own ramps."""
+
+from __future__ import annotations
+
+from core.ports import DriverError
+from drivers.canopen import objects as od
+from drivers.canopen.bus import Bus
+from drivers.canopen.config import SpindleConfig
+from drivers.canopen.drive import Drive402
+from drivers.canopen.states import MODE_BITS, PV, DriveState
+
+_STANDS = 2.0  # rpm
+
+
+class CanopenSpindle:
+    """``core.ports.Spindle``. The drive is without power unless it turns or is asked to."""
+
+    def __init__(self, config: SpindleConfig, bus: Bus) -> None:
+        self._config = config
+        self._bus = bus
+        self.drive = Drive402(bus, "spindle", config.node, config.eds, od.TARGET_SPEED, od.VELOCITY)
+
+    def connect(self) -> None:
+        """Configure it. Raises DriverError."""
+        config, beat = self._config, self._bus.config.heartbeat
+        standing = (
+            (od.ABORT_OPTION, 0, 3),
+            (od.QUICK_OPTION, 0, 2),
+            (od.FAULT_OPTION, 0, 2),
+            (od.PROFILE_ACCEL, 0, round(config.accel)),
+            (od.PROFILE_DECEL, 0, round(config.decel)),
+            (od.QUICK_DECEL, 0, round(config.decel)),
+            (od.HEARTBEAT, 0, round(1000 * beat)),
+            (od.WATCHED, 1, self._bus.config.host_id << 16 | round(3000 * beat)),
+        )
+        self.drive.connect((), MODE_BITS[PV], (*standing, *config.objects))
+        self.drive.mode, self.drive.target = PV, 0
+
+    def tick(self) -> None:
+        """Supervise; power goes when it stands and is to stand."""
+        drive = self.drive
+        drive.look(3.0 * self._bus.config.heartbeat)
+        if drive.trouble:
+            drive.goal, drive.target = DriveState.QUICK_STOP, 0
+        elif drive.target == 0 and abs(drive.more) < _STANDS and drive.goal is DriveState.ENABLED:
+            drive.goal = DriveState.OFF
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
+        if rpm and (self._bus.trouble or self.drive.trouble):
+            raise DriverError(f"the spindle stays off: {self._bus.trouble or self.drive.trouble}")
+        limit = self._config.rpm_max
+        self.drive.target = round(min(max(rpm, -limit), limit))
+        if rpm:
+            self.drive.goal = DriveState.ENABLED
+
+    def coast(self) -> None:
+        """No torque: it runs down by itself."""
+        self.drive.target, self.drive.goal = 0, DriveState.OFF
+
+    def clear_fault(self) -> None:
+        """Forget and reset a fault, without power. Raises DriverError where it has to be configured anew."""
+        if self.drive.rebooted or self.drive.missing:
+            self.connect()
+            self.drive.operational()
+        self.drive.forget()
+        self.drive.clear()
+
+    def speed(self) -> float:
+        """Measured rpm, signed."""
+        return float(self.drive.more)
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""
+        if not self._config.counts_per_rev:
+            return None
+        return self.drive.answered, self.drive.position / self._config.counts_per_rev
+
+    def fault(self) -> str:
+        """What is wrong with it; empty when well."""
+        return self._bus.trouble or self.drive.trouble

@@ -1,0 +1,66 @@
+"""A machine and its peers on python-can's virtual bus, on a clock that the test moves."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+import resources
+from app.compose.canopen import canopen_machine, canopen_peers
+from core.machine.load import parse_machine
+from core.machine.model import Machine
+from drivers.canopen.machine import CanopenMachine
+from drivers.canopen.peer.machine import Peers
+from drivers.simulated import StepClock
+
+TICK = 0.005
+_channels = itertools.count()
+SHIPPED = resources.machine_file("gt75-canopen.toml")
+
+
+def can_machine(*changes: tuple[str, str], absolute: bool = True) -> Machine:
+    """The shipped machine on a virtual bus of its own; ``absolute`` slides need no homing."""
+    text = SHIPPED.replace('interface = "socketcan"', 'interface = "virtual"')
+    text = text.replace('channel = "can0"', f'channel = "bench-{next(_channels)}"')
+    if absolute:
+        text = text.replace("absolute = false", "absolute = true")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return parse_machine(text, "bench.toml")
+
+
+class CanBench:
+    """Both ends of the bus; ``tick`` lets time pass on both."""
+
+    def __init__(self, machine: Machine | None = None) -> None:
+        self.model = machine or can_machine()
+        self.clock = StepClock()
+        self.peers: Peers = canopen_peers(self.model, self.clock)
+        try:
+            self.machine: CanopenMachine = canopen_machine(self.model, self.clock, self.peers.pump)
+        except Exception:
+            self.peers.close()
+            raise
+
+    def tick(self, dt: float = TICK) -> None:
+        self.clock.advance(dt)
+        self.machine.tick()
+        self.peers.pump()
+
+    def run(self, seconds: float) -> None:
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.tick()
+
+    def until(self, ready: Callable[[], bool], limit: float = 10.0) -> float:
+        """Run until ``ready``; how long it took."""
+        began = self.clock.now()
+        while not ready():
+            assert self.clock.now() - began < limit, f"not within {limit} s: {self.machine.axes.sample()}"
+            self.tick()
+        return self.clock.now() - began
+
+    def close(self) -> None:
+        self.machine.bus.close()
+        self.peers.close()
