@@ -28,8 +28,15 @@ from core.language.sinumerik.vocabulary import ARC
 from core.language.sinumerik.words import Line
 from core.language.source import Source
 
-# Codes of findings that follow from where the machine stands: after an error nobody knows where that is.
-_BY_POSITION = frozenset({"arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"})
+# Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
+# knows either.
+_BY_STATE = frozenset(
+    {
+        *("arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
+        *("10860", "g95-spindle-stopped", "dwell-spindle-stopped", "speed-missing", "surface-speed-missing"),
+        *("r-unset", "word-unused"),
+    }
+)
 
 
 class Interpreter:
@@ -191,8 +198,8 @@ class Interpreter:
         yield from ()
 
     def _refuse(self, found: Diagnostic) -> None:
-        """Keep the error; what follows from not knowing where the machine stands says nothing new."""
-        if not (self._stopped and found.code in _BY_POSITION):
+        """Keep the error; what may come of it says nothing new."""
+        if not (self._stopped and found.code in _BY_STATE):
             self._log.add(self._flow.located(found))
         self._stopped = True
         self._corners.drop()

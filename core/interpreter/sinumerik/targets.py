@@ -40,7 +40,7 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
     if form is Form.IC:
         return value
     if not 0.0 <= value < TURN:
-        raise TargetError(WRONG_MODULO, f"{value:g} is no position of a modulo axis, which has 0 to <360")
+        raise TargetError(WRONG_MODULO, f"{value:.9g} is no position of a modulo axis, which has 0 to <360")
     at = wrapped(position)
     if form is Form.AC:
         return _unless_noise(value - at)

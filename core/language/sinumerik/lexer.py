@@ -89,7 +89,12 @@ class _Scanner:
 
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""
-        self.errors.append(alarm(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+        self._tell(alarm(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+
+    def _tell(self, fault: Diagnostic) -> None:
+        """The first mistake of a block is told; what follows may come of it."""
+        if not self.errors:
+            self.errors.append(fault)
 
     def _skip(self, at: int, text: str, hint: str) -> int:
         self.refuse(at + 1, text, hint)
@@ -99,7 +104,7 @@ class _Scanner:
     def _outside(self, at: int, end: int, name: str, why: str) -> int:
         """A word of the language that this control does not execute."""
         fault = refused(self._number, at + 1, "not-in-subset", self._block, f"{name}: {why}.", "Take it out.")
-        self.errors.append(fault)
+        self._tell(fault)
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
 

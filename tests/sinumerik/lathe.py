@@ -1,0 +1,79 @@
+"""A lathe with C, and programs on it: the shortest way from text to blocks, findings and times."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+from app.compose.machine import setup_for
+from core.interpreter.blocks import Block
+from core.interpreter.dialects import interpretation
+from core.interpreter.setup import Setup, ZeroOffset
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import Dialect
+from core.language.source import Source
+from core.machine.load import shipped_machine
+from core.machine.model import Machine
+from core.proving.timeline import Timeline, timed_blocks
+
+MODULO = shipped_machine("sinumerik-modulo")
+LINEAR = shipped_machine("sinumerik-linear")
+START = (10.0, 50.0, 0.0)  # X20 Z50 C0 under DIAMON
+
+
+class Passed(NamedTuple):
+    """What became of a program."""
+
+    blocks: list[Block]
+    found: list[Diagnostic]
+
+    @property
+    def errors(self) -> list[Diagnostic]:
+        return [each for each in self.found if each.severity is Severity.ERROR]
+
+    @property
+    def moves(self) -> list[Block]:
+        return [block for block in self.blocks if block.moves]
+
+
+def source(text: str, *subprograms: Source, name: str = "part.mpf") -> Source:
+    """Program text with these files beside it."""
+    return Source(name, text, Dialect.SINUMERIK, subprograms)
+
+
+def setup(
+    machine: Machine = MODULO,
+    start: tuple[float, float, float] = START,
+    zero: Mapping[int, ZeroOffset] | None = None,
+) -> Setup:
+    """Circumstances on this machine."""
+    return replace(setup_for(machine, tools={}, secondary={}), start=start, zero=zero or {})
+
+
+def run(text: str | Source, around: Setup | None = None) -> Passed:
+    """The blocks of a program and all findings."""
+    program = interpretation(text if isinstance(text, Source) else source(text), around or setup())
+    blocks = list(program.blocks())
+    return Passed(blocks, list(program.diagnostics))
+
+
+def good(text: str | Source, around: Setup | None = None) -> list[Block]:
+    """The moving blocks of a program without findings."""
+    passed = run(text, around)
+    assert passed.found == []
+    return passed.moves
+
+
+def refused(text: str | Source, around: Setup | None = None) -> Diagnostic:
+    """The one error of a program."""
+    (error,) = run(text, around).errors
+    return error
+
+
+def times(text: str, machine: Machine = MODULO, around: Setup | None = None) -> list[tuple[Block, float]]:
+    """Every block with the seconds that it takes by feeds and limits alone."""
+    timeline = Timeline.of(source(text), around or setup(machine), machine, ideal=True)
+    found = [(block, t1 - t0) for block, t0, t1 in timed_blocks(timeline)]
+    assert not timeline.errors, timeline.diagnostics
+    return found

@@ -1,0 +1,101 @@
+"""CHF, CHR and RND between straight moves; C ends with the block that names them."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import dist, pi, sqrt
+
+import pytest
+
+from core.geometry.arcs import arc_length
+from core.interpreter.blocks import Block, Kind
+from tests.sinumerik.lathe import good, refused, run, setup
+
+AT = setup(start=(10.0, 0.0, 0.0))
+
+
+def corner(words: str) -> list[Block]:
+    """Along Z to -20, then out along X to radius 30: a corner of 90 degrees; C turns 90 on the first way."""
+    return good(f"G1 Z-20 C90 F100 {words}\nX60", AT)
+
+
+def way(block: Block) -> float:
+    return dist((block.x0, block.z0), (block.x, block.z))
+
+
+def test_a_chamfer_by_its_length() -> None:
+    first, cut, last = corner("CHF=4")
+    assert way(cut) == pytest.approx(4)
+    assert (first.x, first.z) == pytest.approx((10, -20 + 4 / sqrt(2)))
+    assert (last.x0, last.z0) == pytest.approx((10 + 4 / sqrt(2), -20))
+
+
+def test_a_chamfer_by_its_leg() -> None:
+    first, cut, last = corner("CHR=4")
+    assert (first.z, last.x0) == pytest.approx((-16, 14))
+    assert way(cut) == pytest.approx(4 * sqrt(2))
+
+
+def test_chamfers_of_a_blunt_corner_by_length() -> None:
+    """A turn of 45 degrees: legs of 3 / (2 cos 22.5°) leave a chamfer of 3."""
+    _, cut, _ = good("G1 Z-20 F100 CHF=3\nX60 Z-40", AT)
+    assert way(cut) == pytest.approx(3)
+
+
+def test_a_rounding() -> None:
+    first, arc, last = corner("RND=4")
+    assert arc.kind is Kind.ARC
+    assert (first.z, last.x0) == pytest.approx((-16, 14))
+    ends = (arc.x0, arc.z0), (arc.x, arc.z)
+    assert arc_length(*ends, (arc.cx, arc.cz), clockwise=arc.clockwise) == pytest.approx(4 * pi / 2)
+
+
+@pytest.mark.parametrize("words", ["CHF=4", "CHR=4", "RND=4"])
+def test_c_ends_with_the_programmed_block(words: str) -> None:
+    first, cut, last = corner(words)
+    assert (first.c0, first.c) == (0, 90)
+    assert (cut.c0, cut.c) == (90, 90)
+    assert (last.c0, last.c) == (90, 90)
+
+
+def test_the_next_block_brings_its_own_c() -> None:
+    first, cut, last = good("G1 Z-20 C90 F100 CHR=4\nX60 C=IC(30)", AT)
+    assert [b.c - b.c0 for b in (first, cut, last)] == pytest.approx([90, 0, 30])
+
+
+def test_blocks_follow_each_other_without_a_gap() -> None:
+    text = "G1 Z-20 F100 RND=3\nX60 CHF=2\nTRANS Z-5 C20\nZ-40 C=IC(9) CHR=1\nS100 M3\nX80 RND=1\nG0 Z5"
+    blocks = run(text, AT).moves
+    assert run(text, AT).found == []
+    for before, after in pairwise(blocks):
+        assert (after.x0 + after.offset_x, after.z0 + after.offset_z) == pytest.approx((before.mx, before.mz))
+        assert after.c0 + after.modal.offset_c == pytest.approx(before.mc)
+    assert [b.n for b in run(text, AT).blocks] == list(range(1, len(run(text, AT).blocks) + 1))
+
+
+def test_lines_in_one_direction_have_no_corner() -> None:
+    passed = run("G1 Z-20 F100 CHF=4\nZ-30", AT)
+    assert [each.code for each in passed.found] == ["corner-straight"]
+    assert not passed.errors
+    assert len(passed.moves) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("G1 Z-20 F100 CHF=4", "corner-next"),
+        ("G1 Z-20 F100 CHF=4\nM30", "corner-next"),
+        ("G1 Z-20 F100 CHF=4\nC=IC(5)", "corner-next"),
+        ("G1 Z-20 F100 RND=4\nG3 X40 Z-30 CR=10", "corner-next"),
+        ("G0 Z-20 CHF=4\nX60", "corner-next"),
+        ("F100 G3 X40 Z-10 CR=10 RND=1\nG1 Z-30", "corner-next"),
+        ("G1 Z-20 F100 RND=25\nX60", "corner-too-large"),
+        ("G1 Z-20 F100 RND=4\nX22", "corner-too-large"),
+        ("G1 Z-20 F100 RND=4 CHF=1\nX22", "corner-both"),
+        ("G1 Z-20 F100 RND=0\nX22", "not-positive"),
+        ("G1 Z-20 F100 RND=-1\nX22", "12080"),
+        ("G1 Z-20 F100 RND=1\nZ0", "corner-next"),
+    ],
+)
+def test_refusals(text: str, code: str) -> None:
+    assert refused(text, AT).code == code

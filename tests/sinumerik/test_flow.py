@@ -1,0 +1,102 @@
+"""Subprograms by name, their ends, skipped blocks, R parameters, and files beside the program."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from core.interpreter.actions import ProgramEnd
+from core.language.dialect import Dialect
+from core.language.sinumerik.sections import with_subprograms
+from core.language.source import Source, load_source
+from tests.sinumerik.lathe import good, refused, run, setup, source
+
+NUT = Source("NUT.spf", "N10 G0 Z=IC(1)\nN20 C=IC(90)\nN30 M17\nN40 G0 Z99\n", Dialect.SINUMERIK)
+
+
+def test_a_subprogram_runs_where_it_is_called_as_often_as_it_says() -> None:
+    blocks = good(source("G0 Z0\nNUT P3\nG0 Z50", NUT))
+    assert [block.z for block in blocks] == pytest.approx([0, 1, 1, 2, 2, 3, 3, 50])
+    assert [block.line for block in blocks] == [1, 2, 2, 2, 2, 2, 2, 3]  # the line of the call is shown
+
+
+def test_what_a_subprogram_sets_stays_in_force() -> None:
+    rough = Source("rough.spf", "G91 G1 F600 R1=5\nM17", Dialect.SINUMERIK)
+    (block,) = good(source("ROUGH\nZ=IC(R1)", rough))
+    assert (block.feed, block.z - block.z0) == pytest.approx((10, 5))
+
+
+def test_programs_in_one_file() -> None:
+    text = "%_N_PART_MPF\nG0 Z0\nCUT\nM30\n%_N_CUT_SPF\nG0 Z7\nM17\n"
+    blocks = run(source(text)).blocks
+    assert [block.line for block in blocks] == [2, 6, 4]  # lines of the file itself
+    assert isinstance(blocks[-1].action, ProgramEnd)
+
+
+def test_m17_ends_a_main_program_too() -> None:
+    assert [type(b.action) for b in run("M17\nG0 Z5").blocks] == [ProgramEnd]
+
+
+@pytest.mark.parametrize("code", ["M2", "M30"])
+def test_nothing_runs_behind_the_end(code: str) -> None:
+    blocks = run(f"G0 Z1\nG0 Z2 {code}\nG0 Z400 C999").blocks
+    assert [block.line for block in blocks] == [1, 2, 2]
+
+
+@pytest.mark.parametrize("code", ["M2", "M30"])
+def test_the_end_of_a_main_program_in_a_subprogram(code: str) -> None:
+    inner = Source("inner.spf", f"G0 Z1\nN5 {code}", Dialect.SINUMERIK)
+    error = refused(source("G0 Z0\nINNER", inner))
+    assert (error.code, error.line) == ("end-in-subprogram", 2)
+
+
+def test_a_missing_subprogram() -> None:
+    error = refused("G0 Z0\nN20 THREAD")
+    assert (error.code, error.line) == ("subprogram-missing", 2)
+    assert "THREAD" in error.message
+    assert "THREAD.spf" in error.hint
+
+
+def test_a_mistake_in_a_subprogram_is_told_with_its_file_and_line() -> None:
+    bad = Source("BAD.spf", "G0 Z1\nN7 G0 C400", Dialect.SINUMERIK)
+    error = refused(source("G0 Z0\n\nBAD", bad))
+    assert (error.code, error.line) == ("16830", 3)
+    assert "BAD.spf line 2" in error.message
+    assert "block N7 axis C" in error.message
+
+
+def test_subprograms_that_call_themselves() -> None:
+    loop = Source("RING.spf", "G0 Z=IC(1)\nRING", Dialect.SINUMERIK)
+    passed = run(source("RING", loop))
+    assert [each.code for each in passed.errors] == ["recursion"]
+    assert len(passed.blocks) < 20
+
+
+def test_skipped_blocks() -> None:
+    text = "G0 Z0\n/G0 Z1\n/7 N5 G0 Z2\nG0 Z3"
+    assert len(good(text)) == 4
+    assert [b.z for b in good(text, replace(setup(), block_delete=True))] == [0, 3]
+
+
+def test_r_parameters() -> None:
+    blocks = good("R1=20 R2=-5 R3=R2\nG0 X=R1 Z=IC(R2)\nZ=AC(R3) C=DC(R1)")
+    assert [value for b in blocks for value in (b.x, b.z)] == pytest.approx([10, 45, 10, -5])
+    assert blocks[-1].c == pytest.approx(20)
+
+
+def test_files_beside_the_program_are_found_in_any_case(tmp_path: Path) -> None:
+    (tmp_path / "Nut.SPF").write_text("LOCH\nM17\n")
+    (tmp_path / "loch.spf").write_text("G0 Z3\nM17\n")
+    (tmp_path / "other.spf").write_text("G0 Z99\nM17\n")
+    (tmp_path / "part.mpf").write_text("N5 NUT P2 ; twice\nM30\n")
+    found = with_subprograms(load_source(tmp_path / "part.mpf"), [tmp_path])
+    assert [each.name.lower() for each in found.subprograms] == ["loch.spf", "nut.spf"]
+    assert len(good(found)) == 2
+
+
+def test_a_file_that_is_no_text_is_missing(tmp_path: Path) -> None:
+    (tmp_path / "nut.spf").write_bytes(b"\0\0")
+    found = with_subprograms(source("NUT"), [tmp_path])
+    assert refused(found).code == "subprogram-missing"

@@ -1,0 +1,109 @@
+"""Blocks as text: words, numbers, labels, skips and comments; and the coloured parts of a line."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.language.sinumerik import Form, lex_line
+from core.language.sinumerik.spans import Ink, spans
+
+
+def words(text: str) -> list[tuple[str, float | None]]:
+    line = lex_line(1, text)
+    assert line.errors == ()
+    return [(word.name, word.value) for word in line.words]
+
+
+def test_letters_may_stand_without_blanks_and_without_equals() -> None:
+    assert words("G1X10Z-2.5F.4") == [("G", 1), ("X", 10), ("Z", -2.5), ("F", 0.4)]
+    assert words("G1 X=10 Z = -2.5 F=.4") == [("G", 1), ("X", 10), ("Z", -2.5), ("F", 0.4)]
+    assert words("S270") == words("S270.0") == words("S=270.") == [("S", 270)]
+
+
+def test_words_of_more_than_a_letter_take_equals() -> None:
+    assert words("X10CR=5 LIMS=2500") == [("X", 10), ("CR", 5), ("LIMS", 2500)]
+    assert lex_line(1, "CR5").errors[0].code == "12080"
+
+
+def test_any_case() -> None:
+    assert words("g1 x=ic(3) diamon") == words("G1 X=IC(3) DIAMON")
+
+
+@pytest.mark.parametrize("form", ["AC", "IC", "DC", "ACP", "ACN"])
+def test_targets(form: str) -> None:
+    (word,) = lex_line(1, f"C = {form}( -7.25 )").words
+    assert (word.form, word.value, word.text) == (Form(form), -7.25, f"C={form}(-7.25)")
+
+
+def test_r_parameters_are_values() -> None:
+    (word,) = lex_line(1, "C=DC(R12)").words
+    assert (word.form, word.value, word.r) == (Form.DC, None, 12)
+    assert lex_line(1, "X=R3").words[0].r == 3
+    assert words("R3=17.5 R4=-2") == [("R3", 17.5), ("R4", -2)]
+    assert lex_line(1, "X=R300").errors
+
+
+@pytest.mark.parametrize(
+    ("text", "block", "label", "skip"),
+    [
+        ("N10 X1", "N10", "", None),
+        (":20 X1", ":20", "", None),
+        ("/N10 X1", "N10", "", 0),
+        ("/3 N10 X1", "N10", "", 3),
+        ("N10 START: X1", "N10", "START", None),
+        ("START: X1", "START", "START", None),
+        ("X1", "in line 1", "", None),
+    ],
+)
+def test_what_stands_before_the_words(text: str, block: str, label: str, skip: int | None) -> None:
+    line = lex_line(1, text)
+    assert (line.block, line.label, line.skip, len(line.words)) == (block, label, skip, 1)
+
+
+def test_a_comment_is_no_word_and_brackets_are_no_comment() -> None:
+    line = lex_line(1, "X1 ; Y5 (T1)")
+    assert (len(line.words), line.comment_column, line.errors) == (1, 4, ())
+    assert lex_line(1, "X1 (here)").errors
+    assert not lex_line(1, "   ; only this").executable
+
+
+def test_calls() -> None:
+    line = lex_line(1, "N5 NUT_1 P3 ; three times")
+    assert (line.call, line.passes, line.errors) == ("NUT_1", 3, ())
+    assert lex_line(1, "L100").call == "L100"
+    assert lex_line(1, "NUT_1 X5").errors
+    assert lex_line(1, "X5 NUT_1").errors
+    assert lex_line(1, "NUT_1(5)").errors
+    assert lex_line(1, "NUT P0").errors
+
+
+def test_one_mistake_a_block_with_its_column() -> None:
+    (error,) = lex_line(4, "N5 G1 X=DC( Z?").errors
+    assert (error.line, error.column) == (4, 7)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "\x00", "ß=5", "=5", "X==5", "C=DC((5))", "N", "/", "C=AC", "X=+", "(" * 500]
+)
+def test_nothing_breaks_the_lexer(text: str) -> None:
+    lex_line(1, text)
+    spans(text)
+
+
+def test_the_parts_of_a_line() -> None:
+    text = "N5 G1 C = DC(5) F100 DIAMON ; turn"
+    found = {text[start : start + length]: ink for start, length, ink in spans(text)}
+    assert found == {
+        "N5": Ink.NUMBER,
+        "G1": Ink.CODE,
+        "C = DC(5)": Ink.POSITION,
+        "F100": Ink.RUN,
+        "DIAMON": Ink.KEY,
+        "; turn": Ink.COMMENT,
+    }
+
+
+def test_the_parts_of_other_lines() -> None:
+    assert spans("%_N_NUT_SPF")[0].ink is Ink.CALL
+    assert spans("NUT P2")[0] == (0, 3, Ink.CALL)
+    assert spans("X5 T1")[-1] == (3, 1, Ink.FAULT)

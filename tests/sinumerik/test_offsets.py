@@ -1,0 +1,120 @@
+"""Offsets of C, and of X and Z: TRANS, ATRANS, G54 to G59, G500 and G53."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.blocks import Block
+from core.interpreter.setup import ZeroOffset
+from tests.sinumerik.lathe import good, refused, run, setup
+
+ROWS = [  # MCS at the start, word, travel, MCS and WCS at the end; TRANS C30
+    (0, "C10", -320, 40, 10),
+    (0, "C=AC(10)", -320, 40, 10),
+    (0, "C=DC(10)", +40, 40, 10),
+    (0, "C=ACP(10)", +40, 40, 10),
+    (0, "C=ACN(10)", -320, 40, 10),
+    (30, "C0", 0, 30, 0),
+    (350, "C0", -320, 30, 0),
+    (350, "C=IC(20)", +20, 10, 340),
+]
+
+
+def travel(block: Block) -> float:
+    return block.c - block.c0
+
+
+@pytest.mark.parametrize(("start", "word", "way", "mcs", "wcs"), ROWS)
+def test_trans_of_c(start: float, word: str, way: float, mcs: float, wcs: float) -> None:
+    (block,) = good(f"TRANS C30\nG0 {word}", setup(start=(0.0, 0.0, start)))
+    assert travel(block) == pytest.approx(way)
+    assert block.mc % 360 == pytest.approx(mcs)
+    assert block.c % 360 == pytest.approx(wcs)
+
+
+def test_settable_and_programmed_offsets_sum_up() -> None:
+    """-15 + 30 + 10 = 25: the machine's 0 is 335 of the program."""
+    around = setup(start=(0.0, 0.0, 0.0), zero={54: ZeroOffset(c=-15.0)})
+    text = "G54\nTRANS C30\nATRANS C10\nG0 C=DC(0)"
+    (block,) = good(text, around)
+    assert block.c0 % 360 == pytest.approx(335)
+    assert travel(block) == pytest.approx(25)
+    assert block.mc == pytest.approx(25)
+
+
+def test_an_offset_alone_moves_nothing() -> None:
+    assert run("G54\nTRANS C30 X1 Z-5\nATRANS C10\nTRANS\nG500").blocks == []
+
+
+def test_trans_replaces_and_alone_clears() -> None:
+    around = setup(start=(0.0, 0.0, 0.0))
+    blocks = good("TRANS C30 Z5\nTRANS C10\nG0 Z0 C=DC(0)\nTRANS\nZ0 C=DC(0)", around)
+    assert [b.mc for b in blocks] == pytest.approx([10, 0])
+    assert [b.mz for b in blocks] == pytest.approx([0, 0])
+
+
+def test_g53_takes_offsets_out_for_one_block() -> None:
+    around = setup(start=(0.0, 0.0, 100.0), zero={55: ZeroOffset(5.0, 7.0, 40.0)})
+    blocks = good("G55\nTRANS C30 Z1\nG0 G53 X10 Z2 C=DC(0)\nX10 Z2 C=DC(0)", around)
+    assert [b.mc % 360 for b in blocks] == pytest.approx([0, 70])
+    assert [b.mz for b in blocks] == pytest.approx([2, 10])
+    assert [b.mx for b in blocks] == pytest.approx([5, 10])  # X is a diameter
+    assert blocks[0].c == pytest.approx(0)
+    assert blocks[1].c0 % 360 == pytest.approx(290)  # where the block before has ended, seen from the offsets
+
+
+@pytest.mark.parametrize("code", range(54, 60))
+def test_six_settable_offsets(code: int) -> None:
+    zero = {n: ZeroOffset(float(n), 2.0 * n, 3.0 * n) for n in range(54, 60)}
+    (block,) = good(f"G{code} G0 X0 Z0 C0", setup(start=(0.0, 0.0, 0.0), zero=zero))
+    assert (block.mx, block.mz, block.mc % 360) == pytest.approx((code, 2 * code, 3 * code))
+    assert block.modal.settable == code
+
+
+def test_g500_switches_the_settable_offset_off_and_keeps_trans() -> None:
+    around = setup(start=(0.0, 0.0, 0.0), zero={54: ZeroOffset(z=20.0)})
+    (block,) = good("G54\nTRANS Z3\nG500 G0 Z1", around)
+    assert block.mz == pytest.approx(4)
+    assert block.modal.settable == 0
+
+
+def test_an_offset_nobody_has_entered_is_0() -> None:
+    (block,) = good("G59 G0 Z1")
+    assert block.mz == pytest.approx(1)
+
+
+def test_trans_of_x_is_a_radius_whatever_diamon_says() -> None:
+    for key in ("DIAMON", "DIAMOF"):
+        (block,) = good(f"{key}\nTRANS X3\nG0 X0")
+        assert block.mx == pytest.approx(3)
+
+
+def test_trans_in_inches() -> None:
+    (block,) = good("G70\nTRANS X1 C10\nG0 X0 C0", setup(start=(0.0, 0.0, 0.0)))
+    assert block.mx == pytest.approx(25.4)
+    assert block.mc % 360 == pytest.approx(10)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "TRANS C30 X10 G1",
+        "TRANS C30 F100",
+        "TRANS C30 M3",
+        "ATRANS X1 S100",
+        "TRANS ATRANS X1",
+        "N5 G0 TRANS",
+    ],
+)
+def test_trans_has_a_block_of_its_own(text: str) -> None:
+    error = refused(text)
+    assert error.code == "own-block"
+    assert "block of its own" in error.message
+
+
+def test_an_offset_is_no_target() -> None:
+    assert refused("TRANS C=DC(10)").code == "offset-form"
+
+
+def test_g53_without_a_move() -> None:
+    assert refused("G53").code == "word-unused"

@@ -1,0 +1,169 @@
+"""Signed travel of C by every form of a target: the tables of the specification, and 20 000 random moves."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from core.interpreter.sinumerik import targets
+from core.interpreter.sinumerik.targets import TargetError, check_reach, linear_travel, modulo_travel
+from core.language.sinumerik.words import Form
+from tests.sinumerik.lathe import LINEAR, good, refused, setup
+
+TABLE = [  # start, target, AC, DC, ACP, ACN
+    (0, 10, +10, +10, +10, -350),
+    (0, 55.7, +55.7, +55.7, +55.7, -304.3),
+    (0, 180, +180, +180, +180, -180),
+    (0, 190, +190, -170, +190, -170),
+    (0, 350, +350, -10, +350, -10),
+    (10, 0, -10, -10, +350, -10),
+    (10, 10, 0, 0, 0, 0),
+    (10, 190, +180, +180, +180, -180),
+    (90, 350, +260, -100, +260, -100),
+    (180, 0, -180, +180, +180, -180),
+    (270, 180, -90, -90, +270, -90),
+    (350, 10, -340, +20, +20, -340),
+    (-30, 10, -320, +40, +40, -320),
+    (-30, 350, +20, +20, +20, -340),
+    (725, 0, -5, -5, +355, -5),
+]
+FORMS = (Form.AC, Form.DC, Form.ACP, Form.ACN)
+
+
+@pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
+def test_the_table_of_the_modulo_axis(row: tuple[float, ...]) -> None:
+    start, target, *travels = row
+    for form, travel in zip(FORMS, travels, strict=True):
+        assert modulo_travel(form, target, start) == pytest.approx(travel, abs=1e-9)
+
+
+@pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
+def test_the_table_by_words_of_a_program(row: tuple[float, ...]) -> None:
+    start, target, *travels = row
+    words = [f"C={form}({target})" for form in FORMS]
+    for word, travel in zip([f"C{target}", *words], [travels[0], *travels], strict=True):
+        (block,) = good(f"G0 {word}", setup(start=(0.0, 0.0, start)))
+        assert block.c - block.c0 == pytest.approx(travel, abs=1e-9)
+        assert (block.mc - target) % 360 == pytest.approx(0, abs=1e-9)
+
+
+def test_the_makers_own_example() -> None:
+    blocks = good("G0 C=ACP(100)\nC=ACN(300)\nC=ACP(240)\nC=AC(0)", setup(start=(0.0, 0.0, 0.0)))
+    assert [b.c - b.c0 for b in blocks] == pytest.approx([100, -160, 300, -240])
+    assert [b.mc % 360 for b in blocks] == pytest.approx([100, 300, 240, 0])
+
+
+@pytest.mark.parametrize(
+    ("start", "by", "shown"), [(350, 20, 10), (10, -20, 350), (0, 360, 0), (0, -1080, 0)]
+)
+def test_distances_take_any_number_of_turns(start: float, by: float, shown: float) -> None:
+    for text in (f"G0 C=IC({by})", f"G91 G0 C{by}"):
+        (block,) = good(text, setup(start=(0.0, 0.0, start)))
+        assert block.c - block.c0 == pytest.approx(by)
+        assert block.mc % 360 == pytest.approx(shown)
+
+
+def test_a_form_says_more_than_g91() -> None:
+    (block,) = good("G91 G0 C=AC(10)", setup(start=(0.0, 0.0, 300.0)))
+    assert block.c - block.c0 == pytest.approx(-290)
+
+
+def test_20_000_random_moves_end_where_they_should() -> None:
+    dice, at = random.Random(7), 0.0
+    for _ in range(20_000):
+        target = round(dice.uniform(0, 359.4), dice.randrange(4))
+        ways = {form: modulo_travel(form, target, at) for form in FORMS}
+        for way in ways.values():
+            off = (at + way - target) % 360
+            assert min(off, 360 - off) < 1e-6
+        assert abs(ways[Form.DC]) <= min(abs(ways[Form.ACP]), abs(ways[Form.ACN])) + 1e-9
+        assert abs(ways[Form.DC]) <= 180 + 1e-9
+        assert 0 <= ways[Form.ACP] < 360
+        assert -360 < ways[Form.ACN] <= 0
+        form = dice.choice([*FORMS, Form.IC])
+        at += dice.uniform(-2000, 2000) if form is Form.IC else ways[form]
+
+
+def test_20_000_random_moves_of_a_program() -> None:
+    """Forms in turn; the blocks follow each other without a jump, and each ends at its target."""
+    dice = random.Random(11)
+    rows = [(dice.choice(FORMS), round(dice.uniform(0, 359.99), 2)) for _ in range(20_000)]
+    blocks = good("\n".join(f"G0 C={form}({value})" for form, value in rows))
+    assert len(blocks) == len(rows)
+    at = 0.0
+    for (form, value), block in zip(rows, blocks, strict=True):
+        assert block.c0 == pytest.approx(at, abs=1e-9)
+        off = (block.mc - value) % 360
+        assert min(off, 360 - off) < 1e-6
+        assert form is not Form.ACP or block.c >= block.c0
+        assert form is not Form.ACN or block.c <= block.c0
+        at = block.c
+
+
+@pytest.mark.parametrize("noise", [1e-12, -1e-12, 3e-10, -3e-10])
+def test_noise_of_sums_turns_nothing_round(noise: float) -> None:
+    """A position that is 0 but for binary noise is 0: no whole turn comes of it."""
+    for form in FORMS:
+        assert modulo_travel(form, 0.0, noise) == pytest.approx(0, abs=1e-9)
+        assert modulo_travel(form, 0.0, 720 + noise) == pytest.approx(0, abs=1e-9)
+    assert modulo_travel(Form.DC, 180.0, noise) == pytest.approx(180, abs=1e-8)
+    assert modulo_travel(Form.AC, 10.0, 360 + noise) == pytest.approx(10, abs=1e-8)
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("value", [-1.0, 360.0, 400.0, -0.001])
+def test_a_modulo_axis_has_0_to_under_360(form: Form, value: float) -> None:
+    with pytest.raises(TargetError) as told:
+        modulo_travel(form, value, 0.0)
+    assert told.value.number == 16830
+
+
+# --- the linear axis -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("start", "word", "travel"),
+    [
+        (0, "C350", +350),
+        (350, "C10", -340),
+        (-30, "C10", +40),
+        (-30, "C-350", -320),
+        (0, "C-360", -360),
+        (0, "C360", +360),
+    ],
+)
+def test_the_linear_axis(start: float, word: str, travel: float) -> None:
+    (block,) = good(f"G0 {word}", setup(LINEAR, (0.0, 0.0, start)))
+    assert block.c - block.c0 == pytest.approx(travel)
+    assert block.mc == pytest.approx(start + travel)
+
+
+@pytest.mark.parametrize(
+    ("start", "text"),
+    [(350, "G0 C=IC(20)"), (0, "G0 C=IC(400)"), (0, "TRANS C30\nG0 C350"), (0, "G0 C-360.001")],
+)
+def test_beyond_the_range_of_the_linear_axis(start: float, text: str) -> None:
+    error = refused(text, setup(LINEAR, (0.0, 0.0, start)))
+    assert error.code == str(targets.WRONG_RANGE)
+    assert "axis C" in error.message
+
+
+def test_an_offset_inside_the_range_of_the_linear_axis() -> None:
+    (block,) = good("TRANS C30\nG0 C330", setup(LINEAR, (0.0, 0.0, 0.0)))
+    assert block.mc == pytest.approx(360)
+    assert block.c == pytest.approx(330)
+
+
+@pytest.mark.parametrize(("form", "alarm"), [("DC", "16800"), ("ACP", "16810"), ("ACN", "16820")])
+def test_the_linear_axis_has_no_rotary_targets(form: str, alarm: str) -> None:
+    assert refused(f"G0 C={form}(10)", setup(LINEAR)).code == alarm
+    with pytest.raises(TargetError):
+        linear_travel(Form(form), 10.0, 0.0)
+
+
+def test_the_end_of_the_range_itself_is_inside() -> None:
+    check_reach(360.0)
+    check_reach(-360.0)
+    with pytest.raises(TargetError, match="-360 to"):
+        check_reach(360.01)
