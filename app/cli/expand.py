@@ -39,14 +39,15 @@ def run(args: argparse.Namespace) -> int:
     source = read_source(path, args)
     timeline = Timeline.of(source, around.setup, around.machine, ideal=args.ideal)
     block_json = _json_of(source.dialect)
+    head, row = _table_of(source.dialect)
     if not args.json:
-        sys.stdout.write(_HEAD)
+        sys.stdout.write(head)
     with Progress(f"expanding {path.name}") as progress:
         for block, t0, t1 in timed_blocks(timeline):
             if args.json:
                 shown = json.dumps(block_json(block, source.lines[block.line - 1], t0, t1)) + "\n"
             else:
-                shown = _row(block, t0)
+                shown = row(block, t0)
             sys.stdout.write(shown)
             progress.reach(block.n)
     return report_diagnostics(path, timeline)
@@ -58,9 +59,22 @@ def _json_of(dialect: Dialect) -> Callable[[Block, str, float, float], dict[str,
         from app.cli import shown_sinumerik
 
         return shown_sinumerik.block_json
+    if dialect is Dialect.KLARTEXT:
+        from app.cli import shown_klartext
+
+        return shown_klartext.block_json
     from app.cli import shown
 
     return shown.block_json
+
+
+def _table_of(dialect: Dialect) -> tuple[str, Callable[[Block, float], str]]:
+    """Head and rows of the table for a person: a mill has more axes."""
+    if dialect is Dialect.KLARTEXT:
+        from app.cli import shown_klartext
+
+        return shown_klartext.HEAD, shown_klartext.row
+    return _HEAD, _row
 
 
 def report_diagnostics(path: Path, timeline: Timeline) -> int:

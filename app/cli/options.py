@@ -77,13 +77,10 @@ def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, boo
 
 
 def read_source(path: Path, args: argparse.Namespace) -> Source:
-    """The program text; raises CommandError when the file cannot be read or its dialect is not built yet."""
-    from core.interpreter.dialects import KNOWN
+    """The program text; raises CommandError when the file cannot be read."""
     from core.language.source import SourceError, load_source
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
-    if dialect not in KNOWN:
-        raise CommandError(f"{path}: {dialect} programs cannot be read yet; only {', '.join(sorted(KNOWN))}")
     try:
         return load_source(path, dialect)
     except SourceError as error:

@@ -15,9 +15,8 @@ from app.cli.progress import Progress
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
+    from core.machine.model import Machine
     from core.proving.timeline import Timeline
-
-HEADER = "t,x,z,c,spindle_deg,line\n"
 
 
 def _interval(text: str) -> float:
@@ -41,28 +40,51 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the setpoints as CSV in inches (X a radius) and degrees; 1 when the program has errors."""
+    """Write the setpoints as CSV: slides of a lathe in inches (X a radius), of a mill in mm; degrees.
+
+    1 when the program has errors.
+    """
     from core.proving.timeline import Timeline
 
     path = Path(args.file)
     around = circumstances(args)
     timeline = Timeline.of(read_source(path, args), around.setup, around.machine)
+    table = _Table(around.machine)
     if args.out is None:
-        sys.stdout.write(HEADER)
-        _write(timeline, args.dt, sys.stdout.write, path)
+        _write(timeline, table, args.dt, sys.stdout.write, path)
     else:
-        _write_file(timeline, args, path)
+        _write_file(timeline, table, args, path)
     return report_diagnostics(path, timeline)
 
 
-def _write_file(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
+class _Table:
+    """The columns of a machine: time, its axes in their order, the spindle, the line."""
+
+    def __init__(self, machine: Machine) -> None:
+        from app.cli.shown import MM_PER_INCH
+
+        names = ",".join(axis.name.lower() for axis in machine.axes)
+        inch = machine.kind == "lathe"
+        self.header = f"t,{names},spindle_deg,line\n"
+        self._scales = [1.0 if axis.rotary or not inch else MM_PER_INCH for axis in machine.axes]
+        self._places = [5 if axis.rotary else 7 if inch else 6 for axis in machine.axes]
+
+    def row(self, t: float, at: tuple[float, ...], turned: float, line: int) -> str:
+        """One setpoint."""
+        axes = ",".join(
+            f"{value / scale:.{places}f}"
+            for value, scale, places in zip(at, self._scales, self._places, strict=True)
+        )
+        return f"{t:.6f},{axes},{turned:.4f},{line}\n"
+
+
+def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, path: Path) -> None:
     """Whole or not at all: a program with errors leaves no setpoints behind, nor does a full disk."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
         with partial.open("w", encoding="ascii", newline="") as file:
-            file.write(HEADER)
-            _write(timeline, args.dt, file.write, path)
+            _write(timeline, table, args.dt, file.write, path)
         if timeline.errors:
             partial.unlink()
         else:
@@ -71,17 +93,12 @@ def _write_file(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
         raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
 
 
-def _write(timeline: Timeline, dt: float, write: Callable[[str], object], path: Path) -> None:
-    from app.cli.shown import MM_PER_INCH
+def _write(timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], path: Path) -> None:
     from core.proving.trace import setpoints
 
+    write(table.header)
     with Progress(f"tracing {path.name}") as progress:
         for chunk in setpoints(timeline, dt):
-            write(
-                "".join(
-                    f"{t:.6f},{x / MM_PER_INCH:.7f},{z / MM_PER_INCH:.7f},{c:.5f},{turned:.4f},{line}\n"
-                    for t, x, z, c, turned, line in chunk
-                )
-            )
+            write("".join(table.row(*row) for row in chunk))
             if chunk:
                 progress.reach(chunk[-1][0])

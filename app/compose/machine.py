@@ -61,8 +61,12 @@ def setup_for(
     strict: bool = False,
 ) -> Setup:
     """Circumstances of one pass, from the machine's home; inputs that nobody names are open."""
+    from app.compose.kinematics import kinematics_of
+
     states = dict(inputs or {})
     return Setup(
+        start=(0.0,) * len(machine.axes),
+        kinematics=kinematics_of(machine),
         tools=tools,
         secondary=secondary,
         limits=control_limits(machine),

@@ -26,8 +26,6 @@ from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event
 from core.executor.thread import ExecutorThread
-from core.interpreter.dialects import KNOWN
-from core.language.dialect import dialect_of
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
 from core.ports import Clock
@@ -139,8 +137,6 @@ def workshop(machine: Machine, offsets: Callable[[], Offsets], journal: Journal 
 
 
 def _read(path: Path) -> Source:
-    if dialect_of(path.name) not in KNOWN:
-        raise ValueError(f"{path.name}: {dialect_of(path.name)} programs cannot be read yet")
     try:
         return load_source(path)
     except SourceError as error:

@@ -54,6 +54,7 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
         absolute=axis.absolute,
         home_speed=axis.home_speed or 10.0,
         corner=axis.amax * machine.timing.setpoint,
+        own_drive=not machine.spindle_is_c,
     )
 
 

@@ -28,7 +28,7 @@ class Pass(NamedTuple):
 
 def needs_speed(block: Block) -> bool:
     """Whether this block must not begin before the spindle is at its speed; rapids may."""
-    return block.moves and block.kind is not Kind.RAPID
+    return block.moves and not block.rapid
 
 
 class BlockFeed:

@@ -57,7 +57,8 @@ class Jogger:
 
     def _missing(self, name: str) -> str:
         machine = self._bench.machine
-        there = name in {axis.name for axis in machine.axes} and (name != "C" or machine.c_enabled)
+        known = name in {axis.name for axis in machine.axes}
+        there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
         return "" if there else f"this machine has no axis {name} to jog"
 
     def _barred(self, name: str) -> str:
@@ -66,7 +67,8 @@ class Jogger:
             return "feed hold is pressed"
         if self.axis and self.axis != name:
             return f"{self.axis} is still being jogged"
-        if name == "C" and (bench.spindle.asked or not bench.spindle.stopped):
+        spinning = bench.spindle.asked or not bench.spindle.stopped
+        if name == "C" and bench.machine.spindle_is_c and spinning:
             return "C is the spindle, and the spindle turns; stop it first"
         return ""
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.path import Path, PathBuilder
 
@@ -91,7 +91,7 @@ class Stretch:
         if last is not None and n > last:
             return 0.0
         block = self._blocks[n]
-        if block.kind is Kind.RAPID:
+        if block.rapid:
             return scales.rapid
         turns = block.per_rev and not block.modal.c_locked
         return scales.feed * scales.turn if turns else scales.feed

@@ -10,6 +10,7 @@ from core.geometry.mill import PlaneMove
 from core.geometry.travel import Travel
 from core.interpreter.actions import Action
 from core.interpreter.modal import Modal
+from core.interpreter.swivel import Swivel
 
 
 class Kind(StrEnum):
@@ -23,12 +24,8 @@ class Kind(StrEnum):
     DWELL = "dwell"
     PLANE_LINE = "plane-line"
     PLANE_ARC = "plane-arc"
+    PLANE = "plane"  # a PLANE block of Klartext: rotary axes swivel
     ACTION = "action"
-
-
-MOVES = frozenset(
-    {Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD, Kind.ROTATE, Kind.PLANE_LINE, Kind.PLANE_ARC}
-)
 
 
 @dataclass(slots=True, eq=False)
@@ -67,6 +64,7 @@ class Block:
     action: Action | None = None
     plane: PlaneMove | None = None  # the same way in the frame of the virtual mill
     travel: Travel | None = None  # all axes, on machines that have more than X, Z and C
+    swivel: Swivel | None = None  # where a mill's block stands in its working plane
 
     @property
     def mx(self) -> float:
@@ -109,6 +107,11 @@ class Block:
         low_x, high_x, low_z, high_z = self.reach()
         x, z, c = self.offset_x, self.offset_z, self.mc
         return (low_x + x, high_x + x), (low_z + z, high_z + z), (c, c)
+
+    @property
+    def rapid(self) -> bool:
+        """Whether the rapid override counts for it, and no spindle has to be at its speed."""
+        return self.kind is Kind.RAPID or (self.kind is Kind.PLANE and self.modal.rapid)
 
     @property
     def moves(self) -> bool:

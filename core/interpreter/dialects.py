@@ -91,14 +91,26 @@ def _sinumerik(source: Source, setup: Setup) -> Interpretation:
     return Interpreter(source, setup)
 
 
+def _klartext(source: Source, setup: Setup) -> Interpretation:
+    if setup.kinematics is None:
+        why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
+        return Refused(why, "Choose the machine file of a mill: --machine ac-table-mill.")
+    if setup.begin is not None:
+        return Refused("A Klartext program begins with its first block.", "Start it from the beginning.")
+    from core.interpreter.klartext.program import read_program
+    from core.interpreter.klartext.run import Interpreter
+
+    return Interpreter(read_program(source), setup, setup.kinematics)
+
+
 # A language is loaded when a program of it is: the others cost nothing.
 _INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
     Dialect.OMNITURN: _omniturn,
     Dialect.SINUMERIK: _sinumerik,
+    Dialect.KLARTEXT: _klartext,
 }
-KNOWN = frozenset(_INTERPRETERS)
 
 
 def interpretation(source: Source, setup: Setup) -> Interpretation:
-    """One pass through this program. Raises KeyError for a dialect that is not in ``KNOWN``."""
+    """One pass through this program."""
     return _INTERPRETERS[source.dialect](source, setup)

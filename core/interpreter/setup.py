@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from core.geometry.kinematics import Kinematics
 from core.interpreter.begin import Begin
 
 
@@ -79,4 +80,5 @@ class Setup:
     metric: bool = False
     last_rapid: float = 100 * 25.4 / 60  # mm/s
     inputs: Callable[[str], bool] = _no_inputs
+    kinematics: Kinematics | None = None  # of a mill
     begin: Begin | None = None

@@ -134,6 +134,7 @@ TABLES = (
 )
 TOP = (
     *("machine", "limits", "axis", "c_axis", "spindle", "collet", "interlocks", "io", "m_codes", "sim"),
+    "kinematics",
     *HARDWARE,
 )
 CHILDREN = {"spindle": ("vfd",), "sim": ("faults",)}  # read with what the machine is wired to

@@ -12,6 +12,7 @@ from core.machine.errors import Finding, MachineFileError
 from core.machine.hardware import rules as hardware_rules
 from core.machine.hardware.build import hardware_of
 from core.machine.hardware.reading import HardwareReading
+from core.machine.kinematics import KinematicsReading
 from core.machine.model import (
     Axis,
     InputModel,
@@ -64,19 +65,24 @@ def parse_machine(text: str, source: str) -> Machine:
         raise MachineFileError([Finding("TOML", "", str(error))], source) from error
     reading = Reading(data)
     hardware = HardwareReading(data, reading.values)
+    rotary = [name for name in _axis_names(reading) if name not in fields.SLIDES[reading.kind]]
+    kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
     findings = [
         *reading.findings,
         *hardware.findings,
+        *kinematics.findings,
         *rules.broken(reading.values),
         *signals.broken(reading),
         *hardware_rules.broken(hardware, _axis_names(reading), signals.by_terminal(reading)),
     ]
     if findings:
         raise MachineFileError(findings, source)
-    return _machine(reading, hardware, source)
+    return _machine(reading, hardware, kinematics, source)
 
 
-def _machine(reading: Reading, hardware: HardwareReading, source: str) -> Machine:
+def _machine(
+    reading: Reading, hardware: HardwareReading, kinematics: KinematicsReading, source: str
+) -> Machine:
     values = reading.values
     return Machine(
         name=values.text("machine.name"),
@@ -105,6 +111,7 @@ def _machine(reading: Reading, hardware: HardwareReading, source: str) -> Machin
         c_modulo=_of_c(reading, "modulo"),
         c_own_drive=_of_c(reading, "own_drive"),
         hardware=hardware_of(hardware, _axis_names(reading), reading.outputs),
+        kinematics=kinematics.model(),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from core.machine.hardware.model import Hardware
+from core.machine.kinematics import KinematicsModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +109,12 @@ class Machine:
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle
     hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
+    kinematics: KinematicsModel | None = None  # of a mill with rotary axes
+
+    @property
+    def spindle_is_c(self) -> bool:
+        """Whether C is a second use of the spindle, so that it cannot be positioned while that turns."""
+        return self.kind == "lathe" and not self.c_own_drive
 
     def axis(self, name: str) -> Axis:
         """The axis of this name. Raises KeyError where the machine has none."""

@@ -13,7 +13,8 @@ from core.machine.errors import Finding
 from core.machine.units import LENGTHS, Unit, shown, to_file, to_model
 
 Pair = tuple[float, float]
-Value = float | bool | str | Pair
+Triple = tuple[float, float, float]
+Value = float | bool | str | Pair | Triple
 
 
 class Kind(Enum):
@@ -24,11 +25,12 @@ class Kind(Enum):
     FLAG = "true or false"
     TEXT = "a text in quotes"
     PAIR = "two numbers, [low, high]"
+    TRIPLE = "three numbers, [x, y, z]"
     CHOICE = "one of"
 
 
 _HUGE = 10**300
-_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR))
+_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +70,14 @@ class Values:
 
     def pair(self, path: str) -> Pair:
         value = self.found[path]
-        if not isinstance(value, tuple):
+        if not isinstance(value, tuple) or len(value) != 2:
             raise TypeError(f"{path} holds no pair")
+        return value
+
+    def triple(self, path: str) -> Triple:
+        value = self.found[path]
+        if not isinstance(value, tuple) or len(value) != 3:
+            raise TypeError(f"{path} holds no triple")
         return value
 
 
@@ -139,8 +147,9 @@ def _shape_is_right(raw: object, field: Field) -> bool:
             return isinstance(raw, bool)
         case Kind.TEXT:
             return isinstance(raw, str) and bool(raw.strip())
-        case Kind.PAIR:
-            return isinstance(raw, list) and len(raw) == 2 and all(_number(part) for part in raw)
+        case Kind.PAIR | Kind.TRIPLE:
+            count = 2 if field.kind is Kind.PAIR else 3
+            return isinstance(raw, list) and len(raw) == count and all(_number(part) for part in raw)
         case Kind.CHOICE:
             return any(raw is choice or (isinstance(raw, str) and raw == choice) for choice in field.choices)
 
@@ -161,13 +170,16 @@ def _problem(raw: object, field: Field, inch: bool | None) -> str:
     low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
     parts = _parts(raw)
     inside = all(low <= to_model(part, field.unit, inch) <= high for part in parts)
-    return "" if inside and parts == sorted(set(parts)) else _expected(field, inch)
+    ordered = field.kind is Kind.TRIPLE or parts == sorted(set(parts))
+    return "" if inside and ordered else _expected(field, inch)
 
 
 def _converted(raw: object, field: Field, inch: bool) -> Value:
     if isinstance(raw, bool | str):
         return raw
     numbers = [to_model(part, field.unit, inch) for part in _parts(raw)]
+    if field.kind is Kind.TRIPLE:
+        return numbers[0], numbers[1], numbers[2]
     return (numbers[0], numbers[1]) if field.kind is Kind.PAIR else numbers[0]
 
 

@@ -57,6 +57,8 @@ class MotionBlock(Protocol):
     @property
     def feed(self) -> float: ...
     @property
+    def rapid(self) -> bool: ...
+    @property
     def per_rev(self) -> bool: ...
     @property
     def rpm(self) -> float: ...
@@ -77,6 +79,7 @@ class MotionBlock(Protocol):
 
 
 KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
+KINDS["plane"] = 7  # Klartext: rotary axes swivel
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
 _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
 
@@ -142,7 +145,7 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         rpm=np.minimum(np.abs(table[:, 10]), rpm_max),
         per_rev=((table[:, 13] != 0.0) & (kinds != KINDS["rapid"])) | (kinds == KINDS["thread"]),
         clockwise=table[:, 14] != 0.0,
-        rapid=kinds == KINDS["rapid"],
+        rapid=_rapid(blocks, kinds),
         arc=kinds == KINDS["arc"],
         thread=kinds == KINDS["thread"],
         locked=table[:, 16] != 0.0,
@@ -152,6 +155,14 @@ def read_words(blocks: Sequence[MotionBlock], rpm_max: float) -> Words:
         way=tuple(_way(block) for block in blocks),
         length=length,
     )
+
+
+def _rapid(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
+    """Blocks (m,) for which the rapid override counts."""
+    rapid: BoolArray = kinds == KINDS["rapid"]
+    for i in np.flatnonzero(kinds == KINDS["plane"]).tolist():
+        rapid[i] = blocks[i].rapid
+    return rapid
 
 
 def _way(block: MotionBlock) -> CurvedWay | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.interpreter.actions import Dwell
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.blocks import Block
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
@@ -61,7 +61,7 @@ class _Proof:
     def _moved(self, stretch: Moved) -> None:
         blocks, spent = stretch.blocks, (stretch.chunk.t1 - stretch.chunk.t0).tolist()
         self._tally.add(blocks)
-        rapid = sum(t for block, t in zip(blocks, spent, strict=True) if block.kind is Kind.RAPID)
+        rapid = sum(t for block, t in zip(blocks, spent, strict=True) if block.rapid)
         self._rapid += rapid
         self._cutting += sum(spent) - rapid
         self.elementary += len(blocks)

@@ -49,7 +49,7 @@ class Tally:
         if not blocks:
             return
         table = np.array([(b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev) for b in blocks])
-        rapid = np.array([b.kind is Kind.RAPID for b in blocks])
+        rapid = np.array([b.rapid for b in blocks])
         length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
         for index, block in enumerate(blocks):
             if block.travel is not None:

@@ -108,7 +108,7 @@ class Timeline:
 
     def _motion(self, first: Block) -> Iterator[Moved | Rested]:
         """Everything up to the next block that does not move, as one motion from rest to rest."""
-        if first.kind is not Kind.RAPID:
+        if not first.rapid:
             yield from self._at_speed()
         yield self._rest(self._wait(self._machine.timing.commit))
         if first.kind is Kind.THREAD:
@@ -140,7 +140,7 @@ class Timeline:
         thread = Kind.THREAD
         if first.kind is thread:
             return before.kind is not thread or (block.kind is not thread and before is not first)
-        return block.kind is thread or (self._speed_wanted and block.kind is not Kind.RAPID)
+        return block.kind is thread or (self._speed_wanted and not block.rapid)
 
     def _index(self, block: Block) -> Rested:
         """Until the slides may start, so that they are in step with an index of the spindle: see the

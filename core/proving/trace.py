@@ -12,7 +12,7 @@ from core.interpreter.blocks import Block
 from core.motion.timeline import sample_positions
 from core.proving.timeline import Moved, Rested, Timeline
 
-Row = tuple[float, float, float, float, float, int]  # t, x, z, c, spindle degrees, line
+Row = tuple[float, tuple[float, ...], float, int]  # t, all axes, spindle degrees, line
 
 BATCH = 10_000  # rows handed out at a time while the machine rests
 
@@ -20,7 +20,8 @@ BATCH = 10_000  # rows handed out at a time while the machine rests
 def setpoints(timeline: Timeline, dt: float) -> Iterator[list[Row]]:
     """Rows every ``dt`` seconds from 0 to the first one at which the program has ended.
 
-    Machine coordinates in mm (X a radius), degrees; the spindle angle counts on from the start.
+    Machine coordinates in the machine's order, mm (X of a lathe a radius), degrees; the spindle angle counts
+    on from the start.
     """
     sampler = _Sampler(timeline, dt)
     for stretch in timeline.spans():
@@ -49,10 +50,10 @@ class _Sampler:
         )
         owners = _Owners(stretch.blocks)
         rows = []
-        for x_z_c, number in zip(positions.tolist(), numbers.tolist(), strict=True):
+        for at, number in zip(positions.tolist(), numbers.tolist(), strict=True):
             block = owners.find(number)
             self._line = block.line
-            rows.append(self._emit(tuple(x_z_c), block))
+            rows.append(self._emit(tuple(at), block))
         profile = stretch.chunk.profile
         self._at = tuple(profile.position(profile.duration)[0].tolist())
         return rows
@@ -72,7 +73,7 @@ class _Sampler:
         t = self._row * self._dt
         self._turn(t, at[0], block)
         self._row += 1
-        return (t, at[0], at[1], at[2], self._angle, self._line)
+        return (t, at, self._angle, self._line)
 
     def _turn(self, t: float, machine_x: float, block: Block | None) -> None:
         """Turn the spindle on by one interval: the mean of the speeds at its two ends."""

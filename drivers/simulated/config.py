@@ -24,6 +24,7 @@ class SimAxis:
     bandwidth: float = 40.0  # Hz, of the position loop
     feed_forward: float = 0.9  # of the velocity: what is missing shows as following error
     reserve: float = 1.3  # the servo can accelerate this much harder than amax
+    own_drive: bool = False  # of C: it can be positioned while the spindle turns
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
         fastest = abs(segments.v[:, i]).max(initial=0.0)
         if fastest > axis.vmax * 1.001 + 0.01:
             raise DriverError(f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued")
-        if axis.name == "C" and fastest > 0.0 and abs(rpm) > _STANDS:
+        if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
             raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued")
         if axis.travel is None or not servo.homed:
             continue

@@ -148,7 +148,7 @@ def test_a_mistake_is_named_by_line_and_column(
     [
         (("prove",), "FILE"),
         (("prove", "absent.nc"), "absent.nc"),
-        (("prove", "part.h"), "klartext"),
+        (("prove", "absent.h"), "absent.h"),
         (("prove", "part.nc", "--machine", "absent.toml"), "absent.toml"),
         (("prove", "part.nc", "--offsets", "absent.toml"), "absent.toml"),
         (("prove", "part.nc", "--inputs", "absent.toml"), "absent.toml"),

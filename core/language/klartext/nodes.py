@@ -1,4 +1,4 @@
-"""What a line of Klartext holds, once read. Numbers are as written: in the program's unit, F as programmed."""
+"""What a line of Klartext holds, once read. Numbers as written: the program's unit, F as programmed."""
 
 from __future__ import annotations
 

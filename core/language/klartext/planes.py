@@ -89,46 +89,48 @@ def _positioning(cursor: Cursor, form: str) -> Positioning:
         raise cursor.expected("MOVE, TURN or STAY is missing", "Say how the rotary axes are positioned.")
     made = Positioning(way)
     while not cursor.done:
-        column = cursor.column
-        name, change = _word(cursor, form)
-        ((key, value),) = change.items()
-        if getattr(made, key):
-            raise doubled(cursor, column, _KINDS[key])
-        _demand_fits(cursor, way, key, name, column)
-        made = dataclasses.replace(made, **{key: value})
+        made = _with_word(cursor, form, made)
     return made
 
 
-_KINDS = {
-    "distance": "DIST",
-    "retract": "MB",
-    "feed": "F",
-    "side": "SYM or SEQ",
-    "rotation": "COORD ROT or TABLE ROT",
-}
-
-
-def _word(cursor: Cursor, form: str) -> tuple[str, dict[str, object]]:
-    """The next word behind the way of positioning, by the field that it fills."""
-    if form != "RESET":
-        if side := cursor.take(_SIDE):
-            return side.group(1), {"side": "".join(side.groups())}
-        if rotation := cursor.take(_ROTATION):
-            return rotation.group(1), {"rotation": f"{rotation.group(1)} ROT"}
+def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
+    """The next word behind the way of positioning."""
+    column = cursor.column
+    if form != "RESET" and (side := cursor.take(_SIDE)):
+        _once(cursor, column, made.side, "SYM or SEQ")
+        return dataclasses.replace(made, side="".join(side.groups()))
+    if form != "RESET" and (rotation := cursor.take(_ROTATION)):
+        _once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
+        return dataclasses.replace(made, rotation=f"{rotation.group(1)} ROT")
     if cursor.keyword("DIST"):
-        return "DIST", {"distance": cursor.number("DIST")}
+        if made.way != "MOVE":
+            text = f"DIST belongs to MOVE, not to {made.way}."
+            raise faults.syntax(cursor.line, column, text, "Take it out.")
+        _once(cursor, column, made.distance, "DIST")
+        return dataclasses.replace(made, distance=cursor.number("DIST"))
+    return _with_motion(cursor, made, column)
+
+
+def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
     if way := retract(cursor):
-        return "MB", {"retract": way}
+        _demand_motion(cursor, made, column, "MB")
+        _once(cursor, column, made.retract, "MB")
+        return dataclasses.replace(made, retract=way)
     if speed := feed(cursor):
-        return "F", {"feed": speed}
-    if way := cursor.keyword(*_WAYS):
-        raise cursor.expected(f"{way} stands behind another way of positioning", "Take one out.")
+        _demand_motion(cursor, made, column, "F")
+        _once(cursor, column, made.feed, "F")
+        return dataclasses.replace(made, feed=speed)
+    if second := cursor.keyword(*_WAYS):
+        text = f"{second} stands behind {made.way}."
+        raise faults.syntax(cursor.line, column, text, "Take one of them out.")
     raise cursor.expected("No word of a PLANE block")
 
 
-def _demand_fits(cursor: Cursor, way: str, key: str, name: str, column: int) -> None:
-    """STAY moves nothing, and only MOVE has a pivot."""
-    if key == "distance" and way != "MOVE":
-        raise faults.syntax(cursor.line, column, f"{name} belongs to MOVE, not to {way}.", "Take it out.")
-    if key in {"retract", "feed"} and way == "STAY":
-        raise faults.syntax(cursor.line, column, f"STAY moves nothing: no {name} here.", "Take it out.")
+def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
+    if known:
+        raise doubled(cursor, column, what)
+
+
+def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) -> None:
+    if made.way == "STAY":
+        raise faults.syntax(cursor.line, column, f"STAY moves nothing: no {what} here.", "Take it out.")

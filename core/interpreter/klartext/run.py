@@ -1,0 +1,183 @@
+"""The interpreter of Klartext: a program and its circumstances to elementary blocks, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.geometry.frames import Vector
+from core.geometry.kinematics import Kinematics
+from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.blocks import Block
+from core.interpreter.count import MOST_BLOCKS, MOST_LINES
+from core.interpreter.klartext import functions, words
+from core.interpreter.klartext.flow import Flow
+from core.interpreter.klartext.moves import move
+from core.interpreter.klartext.planes import plane
+from core.interpreter.klartext.program import Program
+from core.interpreter.klartext.state import ORIGIN, SLIDES, State
+from core.interpreter.klartext.tools import ToolUse, tool_call
+from core.interpreter.log import Log, refusal
+from core.interpreter.modal import Modal
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.klartext.nodes import (
+    Assign,
+    Call,
+    Codes,
+    Datum,
+    KlartextLine,
+    Label,
+    MCode,
+    Move,
+    Plane,
+    Stop,
+    ToolCall,
+)
+from core.language.klartext.written import written
+
+MOST_Q = 999_999_999.999999
+
+
+class Interpreter:
+    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    No block comes after an error, but the pass goes on as well as it can to find the other errors.
+    """
+
+    def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
+        self._program = program
+        self._log = Log(program.problems)
+        self._state = State(setup, kinematics, self._log, inch=program.inch)
+        self._tools = ToolUse()
+        self._flow = Flow(program)
+        self._stopped = False  # an error has been met: no more blocks
+
+    @property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        return self._program.blocks
+
+    @property
+    def diagnostics(self) -> list[Diagnostic]:
+        """All findings so far, those of reading the program first; grows while blocks are taken."""
+        return self._log.found
+
+    @property
+    def modal(self) -> Modal:
+        """The state after the last block that was taken."""
+        return self._state.modal
+
+    @property
+    def used_tools(self) -> list[int]:
+        """Tool numbers asked for so far, in the order of first use."""
+        return self._tools.used
+
+    @property
+    def missing_tools(self) -> list[int]:
+        """Those of them whose offset has never been set."""
+        return self._tools.missing
+
+    @property
+    def state(self) -> State:
+        """Where everything stands after the last block that was taken."""
+        return self._state
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once.
+
+        At the first error the blocks end. What is left of the program is then still gone through for its
+        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        """
+        flow, lines = self._flow, self._program.lines
+        left = MOST_LINES
+        while flow.at < flow.end:
+            line = lines[flow.at]
+            flow.at += 1
+            left -= 1
+            if left < 0 or self._state.blocks >= MOST_BLOCKS:
+                self._too_much(line.number)
+                return
+            for block in self._guarded(line):
+                if not self._stopped:
+                    yield block
+            if self._stopped and (to_first_error or self._log.full):
+                return
+        if not self._stopped and flow.at == flow.end < len(lines):
+            yield functions.end(self._state, flow.end + 1, written(lines[flow.end]))
+
+    def _guarded(self, line: KlartextLine) -> Iterator[Block]:
+        """The blocks of a line; an error of it is kept and ends them."""
+        if line.skip and self._state.setup.block_delete:
+            return
+        if line.error is not None:
+            self._stopped = True
+            return
+        try:
+            yield from self._line(line)
+        except ProgramError as problem:
+            self._log.add(problem.diagnostic)
+            self._stopped = True
+
+    def _line(self, line: KlartextLine) -> Iterator[Block]:
+        state, number, node = self._state, line.number, line.node
+        match node:
+            case Move():
+                yield from self._move(line, node)
+            case Codes():
+                yield from self._codes(line, node)
+            case Plane():
+                yield from plane(state, number, written(line), node)
+            case ToolCall():
+                yield from tool_call(state, number, written(line), node, self._tools)
+            case Datum():
+                _datum(state, number, node)
+            case Label():
+                self._flow.label(node)
+            case Call():
+                self._flow.call(number, node)
+            case Assign():
+                state.q[node.q] = words.number(state, number, node.value, f"Q{node.q}", MOST_Q)
+            case Stop():
+                yield state.action(number, "STOP", ProgramStop(optional=False, message=line.comment or ""))
+
+    def _move(self, line: KlartextLine, node: Move) -> Iterator[Block]:
+        state, number, text = self._state, line.number, written(line)
+        functions.check(state, number, node.codes)
+        yield from functions.before(state, number, text, node.codes)
+        machine = any(code.number == functions.M91 for code in node.codes)
+        yield from move(state, number, text, node, machine=machine)
+        yield from self._behind(line, text, node.codes)
+
+    def _codes(self, line: KlartextLine, node: Codes) -> Iterator[Block]:
+        text = written(line)
+        functions.check(self._state, line.number, node.codes)
+        yield from functions.before(self._state, line.number, text, node.codes)
+        yield from self._behind(line, text, node.codes)
+
+    def _behind(self, line: KlartextLine, text: str, codes: tuple[MCode, ...]) -> Iterator[Block]:
+        for block in functions.behind(self._state, line.number, text, codes, line.comment or ""):
+            yield block
+            if isinstance(block.action, ProgramEnd):
+                self._flow.at = len(self._program.lines)  # behind END PGM: nothing ends twice
+
+    def _too_much(self, line: int) -> None:
+        self._stopped = True
+        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the repeats."))
+
+
+def _datum(state: State, line: int, node: Datum) -> None:
+    """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
+    if node.reset:
+        state.datum = state.shift = ORIGIN
+    elif node.axes:
+        now = dict(zip(SLIDES, state.shift if state.plane is not None else state.datum, strict=True))
+        for word in node.axes:
+            value = words.coordinate(state, line, word)
+            now[word.axis] = now[word.axis] + value if word.incremental else value
+        made: Vector = (now["X"], now["Y"], now["Z"])
+        if state.plane is not None:
+            state.shift = made
+        else:
+            state.datum = made
+    state.derive()

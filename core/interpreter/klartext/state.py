@@ -1,0 +1,204 @@
+"""Everything that changes while a Klartext program is gone through."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from core.geometry.frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
+from core.geometry.kinematics import Kinematics, Place
+from core.geometry.travel import CurvedWay, Travel
+from core.interpreter.actions import Action, Dwell
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.log import Log
+from core.interpreter.modal import Modal
+from core.interpreter.setup import Setup
+from core.interpreter.swivel import Swivel
+from core.interpreter.units import MM_PER_INCH
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+SLIDES = "XYZ"
+ROTARY = "ABC"
+Q_TARGETS = (120, 121, 122)
+SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
+
+
+@dataclass(frozen=True, slots=True)
+class WorkingPlane:
+    """The plane in force. ``frame`` in the machine-parallel system; ``targets`` by axis, as shown."""
+
+    frame: Matrix
+    targets: Mapping[str, float]
+    line: int
+
+
+class State:
+    """Machine position and modal state. ``at`` holds all axes by name, mm and degrees, rotary counted on.
+
+    ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
+    the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
+    system, ``place`` takes points of the working plane to machine positions of the slides.
+    """
+
+    def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
+        self.setup = setup
+        self.kinematics = kinematics
+        self.log = log
+        self.scale = MM_PER_INCH if inch else 1.0
+        self.blocks = 0
+        self.at = dict(zip(kinematics.names, setup.start, strict=True))
+        self.plane: WorkingPlane | None = None
+        self.datum = ORIGIN
+        self.shift = ORIGIN
+        self.tool_axis = ""
+        self.tool_length = 0.0
+        self.feed: float | None = None  # F in force, as programmed
+        self.tool_feed: float | None = None  # F of the last TOOL CALL
+        self.q: dict[int, float] = {}
+        self.m128 = False
+        self.told: set[object] = set()  # warnings that would otherwise repeat
+        self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
+        self.frame, self.origin = IDENTITY, ORIGIN
+        self.place = self._place()
+
+    # --- where things stand -------------------------------------------------------------------------------
+
+    @property
+    def slides(self) -> Vector:
+        """Machine X Y Z, mm."""
+        return self.at["X"], self.at["Y"], self.at["Z"]
+
+    @property
+    def rotary(self) -> dict[str, float]:
+        """Rotary axes by name, degrees, counted on."""
+        return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
+
+    @property
+    def point(self) -> Vector:
+        """Where the tip stands in the working plane's system, mm."""
+        return self.place.point(self.slides)
+
+    @property
+    def targets(self) -> dict[str, float]:
+        """The effective angle of each rotary axis: that of the plane in force, else where it stands."""
+        if self.plane is not None:
+            return dict(self.plane.targets)
+        return {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+
+    def derive(self) -> None:
+        """Work out again what follows from plane, datum and tool."""
+        self.frame = IDENTITY
+        if self.plane is not None:
+            self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
+        self.origin = plus(self.datum, applied(self.frame, self.shift))
+        self.place = self._place()
+
+    def set_plane(self, plane: WorkingPlane | None) -> None:
+        """Another plane, or none. The datum's point on the workpiece stays where it is."""
+        self.datum, self.shift = self.origin, ORIGIN
+        self.plane = plane
+        self.derive()
+
+    def _place(self) -> Place:
+        angles = self.plane.targets if self.plane is not None else {}
+        frame = self.plane.frame if self.plane is not None else self.kinematics.basic
+        datum = applied(self.kinematics.basic, self.origin)
+        return self.kinematics.place(angles, frame, datum, self.tool_length)
+
+    # --- numbers ------------------------------------------------------------------------------------------
+
+    def path_feed(self, word: float) -> float:
+        """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
+        return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
+
+    # --- blocks -------------------------------------------------------------------------------------------
+
+    def move(
+        self,
+        line: int,
+        text: str,
+        kind: Kind,
+        end: Mapping[str, float],
+        feed: float | None,
+        way: CurvedWay | None = None,
+    ) -> Block:
+        """Go to ``end`` (axes that it lacks stay) and tell it. ``feed`` None is rapid.
+
+        The feed counts mm of the slides, or degrees where only rotary axes turn or lead (``way``).
+        """
+        start, goal = self.at, self.at | dict(end)
+        slides = math.dist([start[n] for n in SLIDES], [goal[n] for n in SLIDES])
+        turn = math.hypot(*(goal[a.name] - start[a.name] for a in self.kinematics.rotaries))
+        linear = slides > SAME_POINT and way is None
+        length = slides if linear else (turn if turn > SAME_POINT else 0.0)
+        rate = feed if feed is not None else self._rapid(start, goal, length, slides=linear)
+        before = self.point
+        names = self.kinematics.names
+        travel = Travel(
+            tuple(start[n] for n in names), tuple(goal[n] for n in names), length, way, slides > SAME_POINT
+        )
+        self.at = goal
+        return self._block(line, text, kind, before, travel, rate, rapid=feed is None)
+
+    def action(self, line: int, text: str, action: Action) -> Block:
+        """A block in which no axis moves."""
+        at = tuple(self.at[n] for n in self.kinematics.names)
+        kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
+        return self._block(line, text, kind, self.point, Travel(at, at, 0.0, slides=False), 0.0, action)
+
+    def _block(
+        self,
+        line: int,
+        text: str,
+        kind: Kind,
+        before: Vector,
+        travel: Travel,
+        feed: float,
+        action: Action | None = None,
+        *,
+        rapid: bool = False,
+    ) -> Block:
+        self.blocks += 1
+        end, slides = self.point, self.slides
+        if action is None and self.modal.rapid != rapid:
+            self.modal = self.modal._replace(rapid=rapid)
+        c = self.kinematics.names.index("C") if "C" in self.at else None
+        return Block(
+            n=self.blocks,
+            line=line,
+            kind=kind,
+            text=text,
+            x0=before[0], z0=before[2], c0=travel.start[c] if c is not None else 0.0,
+            x=end[0], z=end[2], c=travel.end[c] if c is not None else 0.0,
+            offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
+            modal=self.modal,
+            feed=feed,
+            rpm=self.modal.rpm * self.modal.spindle,
+            action=action,
+            travel=travel,
+            swivel=self._swivel(before, end, slides),
+        )  # fmt: skip
+
+    def _swivel(self, before: Vector, end: Vector, slides: Vector) -> Swivel:
+        axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+        q120, q121, q122 = (self.q.get(q, 0.0) for q in Q_TARGETS)
+        return Swivel(
+            start=before,
+            end=end,
+            slides=slides,
+            rotary=(axes.get("A"), axes.get("B"), axes.get("C")),
+            frame=self.frame,
+            datum=self.origin,
+            tilted=self.plane is not None,
+            targets=(q120, q121, q122),
+            plane_line=self.plane.line if self.plane is not None else 0,
+        )
+
+    def _rapid(
+        self, start: Mapping[str, float], goal: Mapping[str, float], length: float, *, slides: bool
+    ) -> float:
+        """Path speed at which the slowest axis goes its fastest, mm/s or degrees/s."""
+        axes = (*(self.kinematics.slides if slides else ()), *self.kinematics.rotaries)
+        seconds = max((abs(goal[axis.name] - start[axis.name]) / axis.vmax for axis in axes), default=0.0)
+        return length / seconds if seconds > 0.0 and length > 0.0 else self.setup.last_rapid
