@@ -94,7 +94,7 @@ def desk_and_executor(
         book=book_of(offsets, journal),
         editor=_editor(machine, offsets, journal),
     )
-    furnish(desk, machine, journal or NothingKept())
+    furnish(desk, machine, journal or NothingKept(), workshop(machine, offsets))
     give_mdi(desk, machine, offsets, journal or NothingKept())
     heard.append(desk)
     return desk, executor

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.editing.worker import Worker
+from app.desk.files.chooser import Chooser
+from app.desk.files.files import FilesDesk
+from app.desk.files.preview import Preview
 from app.desk.files.record import RunRecord
+from app.desk.files.traffic import Traffic
 from app.desk.home import home
 from app.desk.keep import Keep
+from app.desk.session import Workshop
 from app.desk.settings import SettingsBook
 from app.desk.special.counter import PartCounter
 from app.desk.special.drives import DrivesSection
@@ -48,10 +54,30 @@ ITEMS: tuple[MakeSection, ...] = (
 )
 
 
-def furnish(desk: Desk, machine: Machine, keep: Keep) -> None:
-    """Give the desk what it remembers, and the pages that show it."""
+def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path | None = None) -> None:
+    """Give the desk what it remembers, and the pages that show it.
+
+    ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder.
+    """
     desk.settings = SettingsBook(keep)
     desk.counter = PartCounter(keep)
     desk.record = RunRecord(keep)
     worker = Worker()
     desk.special = SpecialDesk([make(desk, machine, keep, worker) for make in ITEMS], worker)
+    desk.files = _files(desk, keep, workshop, own or home() / "programs")
+
+
+def _files(desk: Desk, keep: Keep, workshop: Workshop, own: Path) -> FilesDesk:
+    """The list of programs; what comes in is proved with the offsets of that moment."""
+
+    def check(path: Path) -> str:
+        job = workshop.make_job(workshop.read(path), False)
+        proved = workshop.prove(job, lambda _count: None)
+        errors = proved.proof.errors
+        result = f"{len(errors)} ERRORS: {errors[0]}" if errors else "PROVED"
+        keep.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
+        return errors[0] if errors else ""
+
+    worker = Worker()
+    traffic = Traffic(desk, own, keep, worker, check, Chooser(Path.home()))
+    return FilesDesk(desk, own, keep, worker, Preview(workshop), traffic, lambda: desk.session.now)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
+PROGRAMS = "PROGRAMS"
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,9 +24,10 @@ ENTRIES = (
     Entry("F3", "EDIT", EDITOR, "write and prove programs"),
     Entry("F4", "MDI", MDI, "one line at a time"),
     Entry("F5", "JOG", JOG, "move by hand, touch tools off"),
+    Entry("F6", "PROGRAMS", PROGRAMS, "list, preview, copy, import and export"),
     Entry("F8", "TOOLS", TOOLS, "T1…T32: position and nose radius"),
     Entry("F9", "SECCMP", SECCMP, "D1…D32: corrections of wear and size"),
-    Entry("F10", "SPECIAL", SPECIAL, "speed limit, inputs and outputs, log"),
+    Entry("F10", "SPECIAL", SPECIAL, "speed limit, parts, inputs and outputs, log, backup"),
 )
 LATER = {
     JOG: "JOG COMES WITH A LATER VERSION",

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, MDI, MENU, SECCMP, SPECIAL, TOOLS
+from app.desk.pages import EDITOR, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
@@ -22,6 +22,15 @@ def _editor(host: Host, parent: QWidget) -> Page:
     if editor is None:
         raise RuntimeError("the desk was put together without an editor")
     return EditorPage(host, editor, parent)
+
+
+def _programs(host: Host, parent: QWidget) -> Page:
+    from app.screen.files.page import FilesPage
+
+    model = host.desk.files
+    if model is None:
+        raise RuntimeError("the desk was put together without a list of programs")
+    return FilesPage(host, model, parent)
 
 
 def _special(host: Host, parent: QWidget) -> Page:
@@ -46,6 +55,7 @@ MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
     MDI: _mdi,
+    PROGRAMS: _programs,
     SPECIAL: _special,
     SECCMP: SeccmpPage,
     TOOLS: ToolsPage,

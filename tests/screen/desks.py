@@ -63,7 +63,7 @@ def desk_on(
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )
-    furnish(desk, lathe, keep or NothingKept())
+    furnish(desk, lathe, keep or NothingKept(), work, folders[0] if folders else None)
     built.append(desk)
     return desk
 

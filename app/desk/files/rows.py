@@ -1,0 +1,79 @@
+"""The programs that can be chosen, with all that is known of each; how they are sorted."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from app.desk.keep import Keep
+from app.desk.shelf import Shelf
+from core.store.rows import RunRow
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """One file: bytes, seconds since 1970; ``sample`` ones are not the operator's and stay as they are."""
+
+    name: str
+    path: Path
+    size: int
+    changed: float
+    sample: bool
+    run: RunRow
+
+    @property
+    def key(self) -> tuple[str, float, int]:
+        """Another text is another key: what was drawn of it stays good as long as this is the same."""
+        return str(self.path), self.changed, self.size
+
+
+def programs(shelf: Shelf, own: Path, keep: Keep) -> tuple[Program, ...]:
+    """All programs of the shelf. Takes its time; raises StoreError when the store cannot be read."""
+    runs = {row.program: row for row in keep.runs()}
+    return tuple(
+        Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
+        for entry in shelf.entries()
+        if (status := _status(entry.path)) is not None
+        for run in (runs.get(entry.name, RunRow(entry.name)),)
+    )
+
+
+def _status(path: Path) -> os.stat_result | None:
+    try:
+        return path.stat()
+    except OSError:
+        return None  # it has gone between two looks
+
+
+Rank = tuple[float, str]
+Order = Callable[[Program], Rank]
+# Newest and most on top; the name decides between equals.
+ORDERS: Mapping[str, Order] = {
+    "NAME": lambda p: (0.0, p.name.lower()),
+    "DATE": lambda p: (-p.changed, p.name.lower()),
+    "LAST RUN": lambda p: (_backwards(p.run.started), p.name.lower()),
+    "PARTS": lambda p: (-p.run.parts, p.name.lower()),
+    "SIZE": lambda p: (-p.size, p.name.lower()),
+}
+
+
+def _backwards(at: str | None) -> float:
+    return -datetime.fromisoformat(at).timestamp() if at else 0.0
+
+
+def sorted_by(order: str, found: Sequence[Program]) -> tuple[Program, ...]:
+    """In the order of this name."""
+    return tuple(sorted(found, key=ORDERS[order]))
+
+
+def local(at: str | None) -> str:
+    """A time of the store as a clock on the wall shows it; a dash where there is none."""
+    return datetime.fromisoformat(at).astimezone().strftime("%Y-%m-%d %H:%M") if at else "—"
+
+
+def day(seconds: float) -> str:
+    """The time of a file in the same way."""
+    return datetime.fromtimestamp(seconds).strftime("%Y-%m-%d %H:%M")

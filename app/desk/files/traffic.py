@@ -1,0 +1,189 @@
+"""Import and export: the chooser is open, something is asked or under way, and what came of it is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from app.desk.editing.worker import Worker
+from app.desk.files.chooser import Chooser
+from app.desk.files.shown import chooser_sheet
+from app.desk.files.transfer import Check, Moved, brought_in, taken_out
+from app.desk.keep import Keep
+from app.desk.special.sheet import Key, Sheet
+from app.desk.words import tr
+
+BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
+PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
+
+
+class Speaker(Protocol):
+    """Who says what came of it."""
+
+    notice: str
+
+    def say(self, text: str) -> None: ...
+
+    def clear(self) -> None: ...
+
+
+def _nobody() -> None:
+    """Nobody waits for it."""
+
+
+@dataclass(slots=True)
+class Traffic:
+    """``check`` proves a program that has come in; ``finished`` is told when the list is to be read again."""
+
+    desk: Speaker
+    own: Path
+    keep: Keep
+    worker: Worker
+    check: Check
+    chooser: Chooser
+    finished: Callable[[], None] = _nobody
+    open: bool = False
+    out: bool = False
+    all: tuple[Path, ...] = ()  # what the list shows
+    one: Path | None = None  # what is marked in it
+    _asked: tuple[Path, ...] = ()  # what may be replaced once this is confirmed
+
+    def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
+        """Open the chooser at the list of places."""
+        self.open, self.out, self.all, self.one = True, out, shown, marked
+        self._asked = ()
+        self.chooser.at = self.chooser.top = None
+        self.chooser.marked = 0
+        self._look()
+
+    def shut(self) -> None:
+        """Close the chooser."""
+        self.open, self._asked = False, ()
+
+    def _look(self) -> None:
+        self.worker.ask(self.chooser.look, self.chooser.found, self._unread)
+
+    def _unread(self, why: str) -> None:
+        self.desk.say(f"REFUSED: {why}")
+        self.chooser.at = self.chooser.top = None
+        self.worker.ask(self.chooser.look, self.chooser.found, self.desk.say)
+
+    def sheet(self) -> Sheet:
+        """The folder that is looked into."""
+        name = self.one.name if self.one else ""
+        return chooser_sheet(self.chooser, f"EXPORT {name}" if self.out else "IMPORT")
+
+    def keys(self) -> Mapping[str, Key]:
+        """One, all, look again."""
+        if self.out:
+            return {
+                "F2": Key("LOOK", self._look),
+                "F4": Key("ONE HERE", self._one_here),
+                "F5": Key("ALL HERE", lambda: self._send(self.all)),
+            }
+        return {"F2": Key("LOOK", self._look), "F5": Key("ALL", lambda: self._send(self.chooser.programs))}
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return opens a folder or takes a program."""
+        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
+        if key in steps:
+            self.choose(self.chooser.marked + steps[key])
+        elif key == "Enter":
+            self._enter()
+        else:
+            return False
+        return True
+
+    def choose(self, row: int) -> None:
+        """Mark a line; on the marked one a finger is Return."""
+        self._asked = ()
+        self.desk.clear()
+        self.chooser.marked = max(0, min(len(self.chooser.spots) - 1, row))
+
+    def touch(self, row: int) -> None:
+        """A finger on a line."""
+        if row == self.chooser.marked:
+            self._enter()
+        else:
+            self.choose(row)
+
+    def _enter(self) -> None:
+        spot = self.chooser.here
+        if spot is None:
+            return
+        if spot.folder:
+            self._asked = ()
+            self.desk.clear()
+            self.chooser.go(spot)
+            self._look()
+        elif self.out:
+            self.desk.say("F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS")
+        else:
+            self._send((spot.path,))
+
+    def _one_here(self) -> None:
+        if self.one is not None:
+            self._send((self.one,))
+
+    def escape(self) -> None:
+        """Up to the list of places, then away."""
+        if self.chooser.at is None:
+            self.shut()
+        else:
+            self.chooser.at = self.chooser.top = None
+            self._look()
+        self._asked = ()
+
+    def _send(self, paths: tuple[Path, ...]) -> None:
+        if self.worker.busy:
+            self.desk.say(BUSY)
+        elif self.chooser.at is None:
+            self.desk.say(PLACE_FIRST)
+        elif not paths:
+            self.desk.say("NO PROGRAM IS IN THIS FOLDER")
+        else:
+            self._carry(paths, self.chooser.at, replace=self._asked == paths and bool(self.desk.notice))
+
+    def _carry(self, paths: tuple[Path, ...], at: Path, *, replace: bool) -> None:
+        self._asked = paths
+        self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
+        if self.out:
+            self.worker.ask(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
+        else:
+            own, keep, check = self.own, self.keep, self.check
+            self.worker.ask(
+                lambda: brought_in(paths, own, keep, check, replace=replace), self._done, self._failed
+            )
+
+    def _done(self, moved: Moved) -> None:
+        if moved.standing:
+            names = ", ".join(moved.standing[:3]) + (" …" if len(moved.standing) > 3 else "")
+            key = "F4" if self.out and len(self._asked) == 1 else "RETURN" if len(self._asked) == 1 else "F5"
+            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. {key} ONCE MORE REPLACES, ESC KEEPS")
+            self.desk.say(asked.format(names=names, key=key))
+            return
+        self._asked = ()
+        count = len(moved.done)
+        if self.out:
+            words = tr("{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE").format(
+                count=count
+            )
+        elif moved.found:
+            words = tr("{count} IMPORTED; NOT ALL PROVE: {found}").format(count=count, found=moved.found[0])
+        else:
+            words = tr("{count} IMPORTED AND PROVED WITHOUT AN ERROR").format(count=count)
+        self.desk.say(words)
+        self._look()
+        self.finished()
+
+    def _failed(self, why: str) -> None:
+        self._asked = ()
+        self.desk.say(f"REFUSED: {why}")
+
+    def prompt(self) -> str:
+        """What the keys do here."""
+        if self.out:
+            return "RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK"
+        return "RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK"

@@ -1,0 +1,128 @@
+"""The list of programs at the left; picture and record of the marked one at the right."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.files.files import FilesDesk
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.screen.files.record import RecordPanel
+from app.screen.pages import Doings, Host, Page
+from app.screen.pathview import PathView
+from app.screen.special.table import SheetPanel
+from core.executor.snapshot import Snapshot
+
+SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
+
+
+class PreviewPath(PathView):
+    """The path of a program that is only looked at."""
+
+    title = "PREVIEW"
+
+
+class FilesPage(Page):
+    """The model decides; this shows it and hands the keys on."""
+
+    NAME = pages.PROGRAMS
+
+    def __init__(self, host: Host, model: FilesDesk, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.table = SheetPanel(self.look, self._chosen, self)
+        self.path = PreviewPath(self.look, self)
+        self.record = RecordPanel(self.look, self)
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the list or of the chooser."""
+        own = {"F1": "MENU", "F7": "ALARMS", "F3": "" if self.model.traffic.open else "EDIT"}
+        own.update((name, key.label) for name, key in self.model.keys().items())
+        return tuple(own.get(f"F{number}", "") for number in range(1, 11))
+
+    def doings(self) -> Doings:
+        """The keys of this moment."""
+        keys = self.model.keys()
+        own = {} if self.model.traffic.open else {"F3": self._edit}
+        return {**own, **{name: partial(self._do, name) for name in keys}}
+
+    def _do(self, name: str) -> None:
+        self.model.keys()[name].action()
+
+    def _edit(self) -> None:
+        here = self.model.here
+        if here is not None and self.desk.editor is not None:
+            self.desk.editor.wanted = here.name
+        self.host.go(pages.EDITOR)
+
+    def _chosen(self, row: int) -> None:
+        model = self.model
+        if model.traffic.open:
+            model.traffic.touch(row)
+        elif row == model.marked:
+            self.typed("Enter")
+        else:
+            model.choose(row)
+
+    def typed(self, key: str) -> bool:
+        """Return on a program loads it and leads to Automatic; everything else is the model's."""
+        model = self.model
+        if key == "Enter" and not model.traffic.open and not model.question:
+            if model.load():
+                self.host.go(pages.AUTOMATIC)
+            return True
+        return model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt()
+
+    def opened(self) -> None:
+        """Read the folders."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Nothing stays half asked."""
+        self.desk.clear()
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """One step back, and from the list to the Automatic page."""
+        if not self.model.escape():
+            self.host.go(pages.AUTOMATIC)
+        return True
+
+    def dress(self) -> None:
+        """The path is drawn anew."""
+        self.path.restart()
+
+    def refresh(self, _snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """List, picture and record of this moment."""
+        model = self.model
+        model.look()
+        self.table.show_sheet(model.sheet())
+        here = model.here
+        picture = model.preview.of(here)
+        if picture is not self.path.picture:
+            self.path.show_picture(picture)
+        self.path.advance()
+        self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """List beside picture over record."""
+        u = self.look.u
+        gap = max(4, round(0.7 * u))
+        left, low = round(SHARE * self.width()), round(RECORD * u)
+        right = self.width() - left - gap
+        self.table.setGeometry(0, 0, left, self.height())
+        self.path.setGeometry(left + gap, 0, right, self.height() - low - gap)
+        self.record.setGeometry(left + gap, self.height() - low, right, low)

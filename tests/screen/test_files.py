@@ -1,0 +1,293 @@
+"""The list of programs by keys alone, on real folders; a stick is a folder that says it is mounted."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.desk import pages
+from app.desk.files.media import Stick, sticks
+from app.screen.files.page import FilesPage
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.commands import LoadJob
+from core.executor.snapshot import State
+from tests.screen.desks import SAMPLES, desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key
+
+
+@dataclass
+class Shop(Hands):
+    """The operator, the folders and the store behind the screen."""
+
+    own: Path = Path()
+    stick: Path = Path()
+    journal: Journal | None = None
+
+    @property
+    def list(self) -> FilesPage:
+        page = self.frame.page
+        assert isinstance(page, FilesPage)
+        return page
+
+    def open_list(self) -> None:
+        self.key(Key.Key_F1)
+        self.key(Key.Key_F6)
+        self.sees(lambda: bool(self.list.model.all) and not self.list.model.worker.busy)
+
+    def rows(self) -> list[str]:
+        return [row.cells[0] for row in self.list.table.sheet.rows]
+
+    def settle(self) -> None:
+        self.sees(lambda: not self.list.model.worker.busy)
+
+    def open_stick(self) -> None:
+        self.settle()
+        self.sees(lambda: self.rows()[:1] == ["STICK"])
+        self.key(Key.Key_Return)
+        self.sees(lambda: self.rows()[:1] == [".."])
+        self.settle()
+
+
+@pytest.fixture
+def shop(
+    qtbot: QtBot, machine: FakeMachine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Shop]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    own, stick = tmp_path / "programs", tmp_path / "STICK"
+    for folder in (own, stick):
+        folder.mkdir()
+    shutil.copy(SAMPLES / "pin.nc", own / "alpha.nc")
+    shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
+    journal = Journal.at_home()
+    desk = desk_on(machine, own, SAMPLES, keep=journal)
+    assert desk.files is not None
+    desk.files.traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    yield Shop(qtbot, window, desk, machine, own, stick, journal)
+    machine.idle()
+    window.close()
+    desk.close()
+    journal.close()
+    window.deleteLater()
+
+
+def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
+    shop.open_list()
+    assert shop.frame.title.page == pages.PROGRAMS
+    shop.type("alp")
+    shop.sees(lambda: shop.rows() == ["alpha.nc"])
+    shop.sees(lambda: shop.list.path.picture is not None)
+    shop.key(Key.Key_Return)
+    assert shop.frame.page is shop.page
+    shop.sees(lambda: shop.prompt().startswith("TO START"))
+    assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
+    shop.open_list()
+    shop.sees(lambda: shop.list.model.here is not None and shop.list.model.here.run.proof == "PROVED")
+
+
+def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None:
+    shop.open_list()
+    shop.machine.now = replace(shop.machine.now, state=State.HOLD)
+    assert not shop.list.takes("h")
+    shop.key(Key.Key_Return)
+    assert "UNDER WAY" in shop.desk.notice
+    assert shop.list.model.find.text == ""
+
+
+def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
+    assert shop.journal is not None
+    shop.journal.run_started("pin.nc")
+    shop.sees(lambda: shop.journal is not None and bool(shop.journal.runs()))
+    shop.open_list()
+    assert shop.rows() == sorted(shop.rows())
+    shop.key(Key.Key_F2)
+    shop.key(Key.Key_F2)
+    shop.sees(lambda: shop.rows()[0] == "pin.nc")
+    assert shop.list.table.sheet.title.endswith("BY LAST RUN")
+    shop.key(Key.Key_F2)
+    shop.key(Key.Key_F2)
+    largest = max(shop.list.model.all, key=lambda program: program.size).name
+    shop.sees(lambda: shop.rows()[0] == largest)
+
+
+def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: shop.list.table.sheet.question == "NAME OF THE COPY?")
+    shop.key(Key.Key_Delete)
+    shop.type("gamma")
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: "gamma.nc" in shop.rows())
+    assert (shop.own / "gamma.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("BETA.NC", "beta.nc IS THERE ALREADY"),
+        ("", "NOTHING IS ENTERED"),
+        ("a/b", "cannot name a program"),
+        (".x", "WOULD BE HIDDEN"),
+    ],
+)
+def test_a_name_that_will_not_do_is_refused(shop: Shop, name: str, why: str) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F4)
+    shop.key(Key.Key_Delete)
+    shop.type(name)
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: why in shop.prompt())
+    assert sorted(path.name for path in shop.own.iterdir()) == ["alpha.nc", "beta.nc"]
+
+
+def test_versions_go_with_another_name(shop: Shop) -> None:
+    assert shop.journal is not None
+    shop.journal.keep_version("alpha.nc", b"old", "test")
+    shop.open_list()
+    shop.key(Key.Key_F5)
+    shop.key(Key.Key_Delete)
+    shop.type("zeta")
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: "zeta.nc" in shop.rows() and "alpha.nc" not in shop.rows())
+    assert shop.journal.text_of("zeta.nc", 1) == b"old"
+
+
+def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
+    assert shop.journal is not None
+    text = (shop.own / "alpha.nc").read_bytes()
+    shop.open_list()
+    shop.key(Key.Key_F6)
+    assert shop.prompt().startswith("PRESS F6 ONCE MORE TO DELETE alpha.nc")
+    shop.key(Key.Key_Escape)
+    shop.key(Key.Key_F6)
+    assert (shop.own / "alpha.nc").exists()
+    shop.key(Key.Key_F6)
+    shop.sees(lambda: "alpha.nc" not in shop.rows())
+    assert shop.journal.text_of("alpha.nc", 1) == text
+
+
+@pytest.mark.parametrize("key", [Key.Key_F5, Key.Key_F6])
+def test_a_sample_stays_as_it_is(shop: Shop, key: Key) -> None:
+    shop.open_list()
+    shop.type("knob")
+    shop.sees(lambda: shop.rows() == ["knob.nc"])
+    shop.key(key)
+    assert shop.prompt() == "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
+
+
+def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
+    shop.load("alpha")
+    shop.machine.now = replace(shop.machine.now, state=State.HOLD)
+    shop.open_list()
+    shop.key(Key.Key_F6)
+    assert shop.desk.notice == "alpha.nc IS UNDER WAY: LET IT END FIRST"
+
+
+def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F9)
+    shop.key(Key.Key_F4)
+    shop.settle()
+    shop.open_stick()
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: "SAFE TO REMOVE" in shop.prompt())
+    assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
+    assert [path.name for path in shop.stick.iterdir()] == ["alpha.nc"]
+    (shop.stick / "alpha.nc").write_text("M30\n")
+    shop.settle()
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: "THERE ALREADY WITH ANOTHER TEXT" in shop.prompt())
+    assert (shop.stick / "alpha.nc").read_text() == "M30\n"
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: "SAFE TO REMOVE" in shop.prompt())
+    assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
+
+
+def test_escape_keeps_what_stands_there(shop: Shop) -> None:
+    (shop.stick / "ALPHA.NC").write_text("M30\n")
+    shop.open_list()
+    shop.key(Key.Key_F9)
+    shop.open_stick()
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    shop.key(Key.Key_Escape)
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    assert (shop.stick / "ALPHA.NC").read_text() == "M30\n"
+
+
+def test_in_from_a_stick_is_proved_and_errors_are_told(shop: Shop) -> None:
+    shutil.copy(SAMPLES / "grooves.nc", shop.stick / "good.nc")
+    (shop.stick / "bad.nc").write_text("G90G72F10\nG99X1\nM30\n")
+    shop.open_list()
+    shop.key(Key.Key_F8)
+    shop.open_stick()
+    shop.key(Key.Key_F5)
+    shop.sees(lambda: shop.prompt().startswith("2 IMPORTED; NOT ALL PROVE: bad.nc"))
+    assert {"good.nc", "bad.nc"} <= {path.name for path in shop.own.iterdir()}
+
+
+def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
+    assert shop.journal is not None
+    old = (shop.own / "alpha.nc").read_bytes()
+    shutil.copy(SAMPLES / "grooves.nc", shop.stick / "alpha.nc")
+    shop.open_list()
+    shop.key(Key.Key_F8)
+    shop.open_stick()
+    shop.key(Key.Key_Down)
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    assert (shop.own / "alpha.nc").read_bytes() == old
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: "IMPORTED AND PROVED" in shop.prompt())
+    assert (shop.own / "alpha.nc").read_bytes() == (SAMPLES / "grooves.nc").read_bytes()
+    assert shop.journal.text_of("alpha.nc", 1) == old
+
+
+def test_what_is_no_program_does_not_come_in(shop: Shop) -> None:
+    (shop.stick / "photo.nc").write_bytes(bytes(range(256)))
+    shop.open_list()
+    shop.key(Key.Key_F8)
+    shop.open_stick()
+    shop.key(Key.Key_F5)
+    shop.sees(lambda: shop.prompt().startswith("REFUSED: photo.nc IS NO PROGRAM"))
+    assert not (shop.own / "photo.nc").exists()
+
+
+def test_a_stick_that_has_gone_is_told(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F9)
+    shop.open_stick()
+    shutil.rmtree(shop.stick)
+    shop.key(Key.Key_F4)
+    shop.sees(lambda: shop.prompt().startswith("REFUSED"))
+
+
+def test_nothing_is_copied_to_the_list_of_places(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F9)
+    shop.settle()
+    shop.key(Key.Key_F4)
+    assert shop.prompt().startswith("OPEN A PLACE FIRST")
+
+
+def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -> None:
+    for path in ("one", "user/two", "user/gone"):
+        (tmp_path / path).mkdir(parents=True)
+    mounted = {tmp_path / "one", tmp_path / "user" / "two"}
+    found = sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__)
+    assert [stick.label for stick in found] == ["one", "two"]
