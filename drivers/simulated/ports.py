@@ -121,7 +121,9 @@ class SimSpindle:
             return self._plant.spindle.speed
 
     def angle(self) -> tuple[float, float] | None:
-        """(time, revolutions counted), in steps of the encoder's four edges."""
+        """(time, revolutions counted), in steps of the encoder's four edges; None without an encoder."""
+        if not self._plant.config.spindle.ppr:
+            return None
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.t, self._plant.spindle.counted

@@ -1,0 +1,31 @@
+"""A spindle without an encoder: turning goes on by the inverter's word, threads are refused."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from core.executor.snapshot import State
+from core.machine.load import load_machine
+from tests.executor.rig import Rig
+
+
+def rig_without_encoder() -> Rig:
+    machine = load_machine()
+    return Rig(
+        machine=dataclasses.replace(machine, spindle=dataclasses.replace(machine.spindle, encoder_ppr=0))
+    )
+
+
+def test_a_program_with_a_turning_spindle_runs() -> None:
+    rig = rig_without_encoder()
+    rig.start("G90G94F300\nM03S1000\nX.5Z.1\nG95F.004X.4\nM30\n")
+    rig.until(State.IDLE, State.FAULT)
+    assert rig.state is State.IDLE, rig.shot.alarms
+    assert not rig.shot.alarms
+
+
+def test_a_thread_is_refused_with_a_sentence() -> None:
+    rig = rig_without_encoder()
+    rig.start("G90G94F300\nM03S1000\nX.25Z.2\nG33X.24Z-.2I.01K.05O\nM30\n")
+    rig.until(State.FAULT)
+    assert "encoder" in rig.shot.alarms[0].cause
