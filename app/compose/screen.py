@@ -90,6 +90,7 @@ def desk_and_executor(
         station=simulation.machine,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
+        lathe=machine,
         machine=f"{machine.name} · SIMULATED",
         book=book_of(offsets, journal),
         editor=_editor(machine, offsets, journal),

@@ -39,6 +39,7 @@ from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.errors import StoreError
 
 if TYPE_CHECKING:
+    from core.machine.model import Machine
     from app.desk.editing.editor import Editor
     from app.desk.files.files import FilesDesk
     from app.desk.mdi.mdi import MdiDesk
@@ -73,6 +74,7 @@ class Desk:
     two_hand: bool = True
     with_c: bool = True
     machine: str = ""
+    lathe: Machine | None = None  # what the machine file says, for moves by hand
     simulated: bool = True
     shut: Callable[[], None] = _nothing
     unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are

@@ -29,6 +29,3 @@ ENTRIES = (
     Entry("F9", "SECCMP", SECCMP, "D1…D32: corrections of wear and size"),
     Entry("F10", "SPECIAL", SPECIAL, "speed limit, parts, inputs and outputs, log, backup"),
 )
-LATER = {
-    JOG: "JOG COMES WITH A LATER VERSION",
-}

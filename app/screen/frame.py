@@ -69,9 +69,6 @@ class Frame(QWidget):
         """Open a page; a page that is not there yet, or does not open or let go now, says so."""
         if name == self.page.NAME:
             return True
-        if not self.there(name):
-            self.desk.say(pages.LATER[name])
-            return False
         page = self._pages.get(name) or MAKERS[name](self._host, self)
         self._pages[name] = page
         if not page.opens() or not self.page.leave():

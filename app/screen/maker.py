@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS
+from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
@@ -51,10 +51,19 @@ def _mdi(host: Host, parent: QWidget) -> Page:
     return MdiPage(host, model, parent)
 
 
+def _jog(host: Host, parent: QWidget) -> Page:
+    from app.screen.jog.page import JogPage
+
+    if host.desk.lathe is None:
+        raise RuntimeError("the desk was put together without a machine to move by hand")
+    return JogPage(host, host.desk.lathe, parent)
+
+
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
     MDI: _mdi,
+    JOG: _jog,
     PROGRAMS: _programs,
     SPECIAL: _special,
     SECCMP: SeccmpPage,

@@ -11,6 +11,8 @@ It is made when it is first opened. What a page gives:
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
 ``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
               E, D, R, A and the pots work on every page, as does F1.
+``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
+``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
 ``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
               ``Page up``, ``Page down``; True when it was taken. A stock widget
               that has the focus takes its keys by itself.
@@ -34,6 +36,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
@@ -76,6 +79,16 @@ class Page(QWidget):
     def doings(self) -> Doings:
         """Keys of this page alone."""
         return {}
+
+    def key_down(self, _event: QKeyEvent) -> bool:
+        """Take a key as it goes down; False lets it mean what it means elsewhere."""
+        return False
+
+    def key_up(self, _event: QKeyEvent) -> None:
+        """A key comes up."""
+
+    def let_go(self) -> None:
+        """The keyboard has gone elsewhere."""
 
     def typed(self, _key: str) -> bool:
         """Take a typed key; False leaves it to the window."""

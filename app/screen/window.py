@@ -119,6 +119,9 @@ class MainWindow(QWidget):
         frame = self.frame
         if frame is None:
             return
+        if frame.page.key_down(event):
+            self.refresh()
+            return
         if not event.isAutoRepeat() and event.key() in PALMS and not frame.automatic.files.isVisible():
             self._palm(PALMS[Qt.Key(event.key())], down=True)
             return
@@ -137,7 +140,9 @@ class MainWindow(QWidget):
         return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        """A palm is let go."""
+        """A palm, or what a page holds, is let go."""
+        if self.frame is not None:
+            self.frame.page.key_up(event)
         if not event.isAutoRepeat() and event.key() in PALMS:
             self._palm(PALMS[Qt.Key(event.key())], down=False)
 
@@ -162,6 +167,7 @@ class MainWindow(QWidget):
             if self.frame.dock is not None:
                 self.frame.dock.let_go()
             self.frame.desk.hands.let_go()
+            self.frame.page.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The frame fills the window."""

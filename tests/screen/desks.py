@@ -59,6 +59,7 @@ def desk_on(
         shelf=Shelf(folders or (SAMPLES,)),
         station=machine,
         two_hand=two_hand,
+        lathe=lathe,
         editor=Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)),
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",

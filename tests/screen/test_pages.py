@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
@@ -24,14 +23,6 @@ def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.key(Key.Key_Escape)
     assert hands.frame.page is hands.page
-
-
-@pytest.mark.parametrize("key", [Key.Key_F5])
-def test_the_menu_announces_what_is_not_there(hands: Hands, key: Key) -> None:
-    hands.key(Key.Key_F1)
-    hands.key(key)
-    assert hands.prompt().endswith("WITH A LATER VERSION")
-    assert hands.frame.page.NAME == pages.MENU
 
 
 def test_a_finger_opens_a_page_by_its_function_key(hands: Hands) -> None:

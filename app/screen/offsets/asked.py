@@ -59,6 +59,8 @@ class AskedPanel(Panel):
         painter.setPen(look.colour("text"))
         painter.setFont(look.fit(asked.question, 2.4, 36 * u, bold=True))
         put(painter, QRectF(row.x(), row.y(), 36 * u, row.height()), LEFT, asked.question)
+        if not asked.question:
+            return
         box = row.adjusted(37 * u, 0.2 * u, 0, -0.2 * u)
         painter.setPen(look.pen("accent", 0.2))
         painter.setBrush(look.colour("ground"))

@@ -20,14 +20,18 @@ _KEYS = (
     ("C", "Esc", ")", "Back"),
 )
 _SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "RETURN"}
+_FREE = "C"  # the place that a page gives its own meaning
 
 
 class KeyPad(Panel):
     """Every key does what the key of the keyboard does."""
 
-    def __init__(self, look: Look, press: Callable[[str], None], *, clears: bool, parent: QWidget) -> None:
+    def __init__(
+        self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
+    ) -> None:
+        """``own``: a key of this page and the word on it; None leaves its place empty."""
         super().__init__(look, parent)
-        self._press, self._clears = press, clears
+        self._press, self._own = press, own
 
     def draw(self, painter: QPainter) -> None:
         u = self.look.u
@@ -36,16 +40,19 @@ class KeyPad(Panel):
         wide = (self.width() + gap) / len(_KEYS[0])
         for row, keys in enumerate(_KEYS):
             for column, key in enumerate(keys):
-                if key != "C" or self._clears:
-                    self._key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
-        self._key(painter, QRectF(0, len(_KEYS) * high, self.width(), high - gap), "Enter")
+                box = QRectF(column * wide, row * high, wide - gap, high - gap)
+                if key != _FREE:
+                    self._key(painter, box, key, _SHOWN.get(key, key.upper()))
+                elif self._own is not None:
+                    self._key(painter, box, *self._own)
+        foot = QRectF(0, len(_KEYS) * high, self.width(), high - gap)
+        self._key(painter, foot, "Enter", _SHOWN["Enter"])
 
-    def _key(self, painter: QPainter, box: QRectF, key: str) -> None:
+    def _key(self, painter: QPainter, box: QRectF, key: str, shown: str) -> None:
         look = self.look
         figure = key.isdigit() or key == "."
         painter.fillRect(box, look.colour("key"))
         painter.setPen(look.colour("text" if figure else "accent"))
-        shown = _SHOWN.get(key, key.upper())
         painter.setFont(look.fit(shown, 3.0, box.width() - look.u, bold=True))
         put(painter, box, CENTRE, shown)
         self.place(box, partial(self._press, key))

@@ -50,7 +50,8 @@ class OffsetPage(Page):
         self.shared = model
         self.history = HistoryList(self.look, self)
         self.asked = AskedPanel(self.look, self)
-        self.pad = KeyPad(self.look, self._touched, clears=self.NAME == pages.SECCMP, parent=self)
+        own = ("C", "C") if self.NAME == pages.SECCMP else None
+        self.pad = KeyPad(self.look, self._touched, own=own, parent=self)
 
     def board(self) -> QWidget:
         """The table of this page."""

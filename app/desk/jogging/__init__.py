@@ -1,0 +1,1 @@
+"""Moving by hand, homing and touching tools off; no Qt."""

@@ -1,0 +1,198 @@
+"""The model of the Jog page: what its keys do, and what may be done now."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.desk import prompts
+from app.desk.desk import Desk
+from app.desk.jogging.hold import JogHold
+from app.desk.jogging.home import HomeAsk
+from app.desk.jogging.speeds import CONTINUOUS, Speeds
+from app.desk.jogging.tool import TOOL, TOUCH_X, TOUCH_Z, ToolSetting
+from app.desk.words import tr
+from core.executor.commands import JogStop
+from core.executor.snapshot import Snapshot, State
+from core.machine.model import Machine
+
+LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
+
+# Letters that ask something of the chosen tool, while nothing is asked.
+LETTERS = {
+    "t": TOOL,
+    "x": TOUCH_X,
+    "z": TOUCH_Z,
+    "n": "nose_radius",
+    "q": "quadrant",
+    "w": "wear_x",
+    "k": "remark",
+}
+
+
+@dataclass(slots=True)
+class JogDesk:
+    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
+
+    desk: Desk
+    machine: Machine
+    speeds: Speeds = field(init=False)
+    hold: JogHold = field(init=False)
+    home: HomeAsk = field(init=False)
+    tool: ToolSetting = field(init=False)
+    armed: bool = False  # the next finger that holds goes rapid
+
+    def __post_init__(self) -> None:
+        desk = self.desk
+        self.speeds = Speeds(self.machine)
+        self.hold = JogHold(
+            self.speeds,
+            min(self.machine.timing.lease, LEASE),
+            desk.post,
+            desk.say,
+            desk.clear,
+            self._now,
+            self.barred,
+        )
+        self.home = HomeAsk(self.machine, desk.post, desk.say, desk.clear)
+        self.tool = ToolSetting(desk, desk.book)
+
+    def _now(self) -> float:
+        return self.desk.hands.clock()
+
+    @property
+    def with_c(self) -> bool:
+        """Whether C can be jogged."""
+        return self.machine.c_enabled
+
+    def barred(self) -> str:
+        """Why nothing is moved by hand now; empty when it may be."""
+        state = self.desk.snapshot().state
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
+        if self.home.give_up():
+            return tr("HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG")
+        return self._state_bars(state)
+
+    def _state_bars(self, state: State) -> str:
+        words = {
+            State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
+            State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
+            State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
+            State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+        }
+        if state in prompts.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
+            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
+        return words.get(state, "")
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame."""
+        self.hold.look(snapshot)
+        self.tool.look(snapshot)
+
+    def prompt(self, snapshot: Snapshot) -> str:
+        """The page's own words on the prompt line."""
+        if self.tool.asked:
+            return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
+        lost = self.home.lost(snapshot)
+        why = self._state_bars(snapshot.state)
+        if why:
+            return why
+        if lost:
+            return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
+                axes=tr(" AND ").join(sorted(lost))
+            )
+        if self.speeds.step != CONTINUOUS:
+            return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
+        return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def next_step(self) -> None:
+        """F2: another increment ends what is held."""
+        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
+        self.speeds.next_step()
+
+    def choose_step(self, step: int) -> None:
+        """A finger on one of the steps."""
+        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
+        self.speeds.step, self.armed = step, False
+
+    def next_speed(self) -> None:
+        """F3: another speed ends what is held."""
+        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
+        self.speeds.next_speed()
+
+    def choose_speed(self, speed: int) -> None:
+        """A finger on one of the speeds."""
+        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
+        self.speeds.speed, self.armed = speed, False
+
+    def arm(self) -> None:
+        """A finger on RAPID: the next hold goes rapid, and only that one."""
+        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
+        self.armed = not self.armed
+
+    def finger(self, source: str, axis: str, sign: int) -> None:
+        """A finger or the mouse goes down on a direction."""
+        rapid, self.armed = self.armed, False
+        self.hold.press(source, axis, sign, rapid=rapid)
+
+    def home_key(self) -> None:
+        """Home asks; home again homes all in their order."""
+        self.hold.let_go()
+        self.home.key(self.desk.snapshot(), self._no_homing())
+
+    def home_one(self, axis: str) -> None:
+        """A finger on one axis asks; again homes it."""
+        self.hold.let_go()
+        self.home.one(axis, self.desk.snapshot(), self._no_homing())
+
+    def _no_homing(self) -> str:
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST")
+        state = self.desk.snapshot().state
+        return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else self._state_bars(state)
+
+    def typed(self, key: str) -> bool:
+        """A typed key; False leaves it to the window."""
+        if self.tool.asked:
+            return self.tool.typed(key)
+        if self.home.answer(key, self.desk.snapshot()):
+            return True
+        if key in {"m", "M"}:
+            self.tool.master()
+        elif key.lower() in LETTERS:
+            self.tool.ask(LETTERS[key.lower()])
+        else:
+            return False
+        return True
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is this page's."""
+        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m"})
+
+    def escape(self) -> bool:
+        """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
+        if self.hold.held is not None:
+            self.hold.let_go()
+            return True
+        return self.home.give_up() or self.tool.escape()
+
+    def let_go(self) -> None:
+        """Hands off: the keyboard, the window or the page is gone."""
+        self.hold.let_go(tr("THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
+        self.armed = False
+        self._stop_step()
+
+    def _stop_step(self) -> None:
+        if self.desk.snapshot().state is State.JOG:
+            self.desk.post(JogStop())
+
+    def leave(self) -> None:
+        """The page goes: nothing stays held, asked or half entered."""
+        self.hold.let_go()
+        self._stop_step()
+        self.home.asking, self.armed = False, False
+        self.tool.close()
+        self.tool.half = {}
+        self.desk.clear()

@@ -1,0 +1,77 @@
+"""How far a step goes and how fast a held jog: what can be chosen, in the control's unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.desk.formats import MM_PER_INCH
+from app.desk.offsets.figures import Mode
+from core.machine.model import Machine
+
+INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
+    (0.1, 0.01, 0.001, 0.0001),
+    (1.0, 0.1, 0.01, 0.001),
+    (1.0, 0.5, 0.1, 0.02),
+)
+INCH_SPEEDS, MM_SPEEDS = (1.0, 5.0, 20.0, 50.0), (25.0, 125.0, 500.0, 1250.0)  # a minute
+DEGREE_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # a second
+STEP_SPEED = 20 * MM_PER_INCH / 60  # mm/s: the longest step is over in a third of a second
+STEP_SPEED_C = 60.0  # degrees/s
+C_RAPID = 360.0  # degrees/s
+CONTINUOUS = -1
+
+
+@dataclass(slots=True)
+class Speeds:
+    """What is chosen now; ``step`` CONTINUOUS or one of four lengths, ``speed`` one of four."""
+
+    machine: Machine
+    step: int = CONTINUOUS
+    speed: int = 1
+
+    def next_step(self) -> None:
+        """Continuous, then from the longest step to the shortest, then continuous again."""
+        self.step = self.step + 1 if self.step < len(INCH_STEPS) - 1 else CONTINUOUS
+
+    def next_speed(self) -> None:
+        """Faster, and from the fastest to the slowest."""
+        self.speed = (self.speed + 1) % len(INCH_SPEEDS)
+
+    def distance(self, axis: str, mode: Mode) -> float:
+        """Length of a step, mm or degrees; one of X changes the figure shown, Ø or R, by its length."""
+        if axis == "C":
+            return DEGREE_STEPS[self.step]
+        length = MM_STEPS[self.step] if mode.metric else INCH_STEPS[self.step] * MM_PER_INCH
+        return length / 2 if axis == "X" and mode.diameter else length
+
+    def step_speed(self, axis: str) -> float:
+        """How fast a step goes, mm/s or degrees/s."""
+        return STEP_SPEED_C if axis == "C" else min(STEP_SPEED, self.machine.manual_rapid)
+
+    def velocity(self, axis: str, mode: Mode, *, rapid: bool) -> float:
+        """How fast a held jog goes, mm/s or degrees/s."""
+        if axis == "C":
+            return C_RAPID if rapid else DEGREE_SPEEDS[self.speed]
+        if rapid:
+            return self.machine.manual_rapid
+        slow = MM_SPEEDS[self.speed] if mode.metric else INCH_SPEEDS[self.speed] * MM_PER_INCH
+        return min(slow / 60, self.machine.manual_rapid)
+
+
+def step_words(mode: Mode) -> tuple[str, ...]:
+    """The steps as they are written on their keys."""
+    return tuple(_short(step) for step in (MM_STEPS if mode.metric else INCH_STEPS))
+
+
+def speed_words(mode: Mode) -> tuple[str, ...]:
+    """The speeds as they are written on their keys, a minute."""
+    return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.metric else INCH_SPEEDS))
+
+
+def rapid_word(machine: Machine, mode: Mode) -> str:
+    """The rapid of hand moves a minute."""
+    return f"{machine.manual_rapid * 60 / mode.unit:.0f}"
+
+
+def _short(step: float) -> str:
+    return f"{step:.4f}".rstrip("0").rstrip(".").removeprefix("0")

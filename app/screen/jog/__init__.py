@@ -1,0 +1,1 @@
+"""The Jog page: targets to hold, tool setting, homing."""

@@ -1,0 +1,229 @@
+"""Targets to hold: four directions and C; steps, speeds, homing. A slide moves while a finger stays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPolygonF
+from PySide6.QtWidgets import QWidget
+
+from app.desk.jogging.desk import JogDesk
+from app.desk.jogging.home import Known
+from app.desk.jogging.speeds import CONTINUOUS, rapid_word, speed_words, step_words
+from app.desk.offsets.figures import Mode
+from app.desk.words import tr
+from app.screen.fingers import Control, FingerPanel
+from app.screen.look import CENTRE, LEFT, Look, put
+from core.executor.snapshot import Snapshot
+
+# Axis, sign, column and row of the cross, and where its arrow points (right, down) as the operator sees it.
+TARGETS = (
+    ("X", -1, 1, 0, (0, -1)),
+    ("Z", -1, 0, 1, (-1, 0)),
+    ("Z", 1, 2, 1, (1, 0)),
+    ("X", 1, 1, 2, (0, 1)),
+)
+C_TARGETS = (("C", -1, 0, 2, (0, 0)), ("C", 1, 2, 2, (0, 0)))
+KEYS = {("X", -1): "↑", ("X", 1): "↓", ("Z", -1): "←", ("Z", 1): "→", ("C", -1): "PgDn", ("C", 1): "PgUp"}
+ROW = 5.6  # units: a row of tiles
+
+
+class JogPad(FingerPanel):
+    """Draws the model; every target is as large as the room allows."""
+
+    def __init__(self, look: Look, model: JogDesk, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._model = model
+        self._shown: object = None
+        self._known: dict[str, Known] = {}
+        self._state = ""
+
+    def show_jog(self, snapshot: Snapshot) -> None:
+        """What is chosen, what is held, what knows its position."""
+        model = self._model
+        self._known = model.home.known(snapshot)
+        self._state = snapshot.state.value
+        held = model.hold.held
+        shown = (
+            (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
+            (held.axis, held.velocity) if held else None,
+            (tuple(self._known.items()), model.home.asking, self._state),
+        )
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def draw(self, painter: QPainter) -> None:
+        self.controls.clear()
+        self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
+        u, room = (
+            self.look.u,
+            self.inside().adjusted(-0.4 * self.look.u, 0, 0.4 * self.look.u, 0.3 * self.look.u),
+        )
+        high = ROW * u
+        self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
+        self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
+        foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
+        self._homing(painter, foot)
+        cross = QRectF(room.x(), room.y() + 2 * high, room.width(), foot.y() - room.y() - 2 * high - 0.6 * u)
+        self._cross(painter, cross)
+
+    def _steps(self, painter: QPainter, row: QRectF) -> None:
+        model = self._model
+        unit = tr("STEP MM") if model.hold.mode.metric else tr("STEP IN")
+        words = (tr("CONT"), *step_words(model.hold.mode))
+        chosen = model.speeds.step - CONTINUOUS
+        presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
+        self._tiles(painter, row, (unit, "F2"), words, chosen, presses)
+
+    def _speeds(self, painter: QPainter, row: QRectF) -> None:
+        model, mode = self._model, self._model.hold.mode
+        unit = tr("MM/MIN") if mode.metric else tr("IN/MIN")
+        rapid = f"{tr('RAPID')} {rapid_word(model.machine, mode)}"
+        words = (*speed_words(mode), rapid)
+        chosen = len(words) - 1 if model.armed else model.speeds.speed
+        presses: list[Callable[[], None]] = [
+            *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
+            model.arm,
+        ]
+        self._tiles(painter, row, (unit, "F3"), words, chosen, presses, warn=model.armed)
+
+    def _homing(self, painter: QPainter, row: QRectF) -> None:
+        model = self._model
+        words = [tr("HOME")]
+        presses: list[Callable[[], None]] = [model.home_key]
+        for axis in model.home.axes:
+            words.append(f"{axis.name} {self._known[axis.name].words}" if self._known else axis.name)
+            presses.append(partial(model.home_one, axis.name))
+        lost = frozenset(
+            i for i, known in enumerate(self._known.values(), 1) if known in {Known.LOST, Known.LOOKING}
+        )
+        chosen = 0 if model.home.asking else -1
+        self._tiles(painter, row, ("", ""), tuple(words), chosen, presses, alarmed=lost)
+
+    def _tiles(
+        self,
+        painter: QPainter,
+        row: QRectF,
+        name: tuple[str, str],
+        words: tuple[str, ...],
+        chosen: int,
+        presses: Sequence[Callable[[], None]],
+        *,
+        warn: bool = False,
+        alarmed: frozenset[int] = frozenset(),
+    ) -> None:
+        look, u = self.look, self.look.u
+        left = row.x()
+        if name[0]:
+            left += 8.4 * u
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(name[0], 1.5, 7.8 * u, bold=True))
+            put(painter, QRectF(row.x(), row.y(), 7.8 * u, row.height() / 2), LEFT, name[0])
+            painter.setPen(look.colour("accent"))
+            painter.setFont(look.font(1.6, bold=True))
+            put(painter, QRectF(row.x(), row.center().y(), 7.8 * u, row.height() / 2), LEFT, name[1])
+        shares = [1.0 + 0.11 * max(0, len(word) - 4) for word in words]
+        part = (row.right() - left + 0.6 * u) / sum(shares)
+        for number, (word, share, press) in enumerate(zip(words, shares, presses, strict=True)):
+            box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
+            left += share * part
+            lit = ("pause" if warn else "lit") if number == chosen else ""
+            painter.setPen(look.pen(lit or ("alarm" if number in alarmed else "frame"), 0.16))
+            painter.setBrush(look.colour(lit or "key"))
+            painter.drawRect(box)
+            ink = ("on_state" if warn else "on_lit") if lit else ("alarm" if number in alarmed else "text")
+            painter.setPen(look.colour(ink))
+            painter.setFont(look.fit(word, 2.1, box.width() - 0.8 * u, bold=True))
+            put(painter, box, CENTRE, word)
+            self.controls.append(Control(box, self._presser(press)))
+
+    def _presser(self, press: Callable[[], None]) -> Callable[[QPointF], None]:
+        return lambda _at: press()
+
+    def _cross(self, painter: QPainter, room: QRectF) -> None:
+        u = self.look.u
+        wide, high = room.width() / 3, room.height() / 3
+        targets = TARGETS + (C_TARGETS if self._model.with_c else ())
+        for axis, sign, column, row, arrow in targets:
+            box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.8 * u, high - 0.6 * u)
+            self._target(painter, box, axis, sign, arrow)
+        middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
+        self._middle(painter, middle)
+
+    def _target(self, painter: QPainter, box: QRectF, axis: str, sign: int, arrow: tuple[int, int]) -> None:
+        look, u, held = self.look, self.look.u, self._model.hold.held
+        moving = held is not None and held.axis == axis and held.velocity * sign > 0
+        painter.setPen(look.pen("run" if moving else "accent", 0.24))
+        painter.setBrush(look.colour("run" if moving else "key"))
+        painter.drawRect(box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u))
+        ink = look.colour("on_state" if moving else "text")
+        if arrow != (0, 0):
+            self._arrow(painter, box, arrow, "on_state" if moving else "accent")
+        painter.setPen(ink)
+        painter.setFont(look.font(3.4, bold=True))
+        offset = QRectF(box)
+        if arrow[0]:
+            offset.translate(-arrow[0] * 0.16 * box.width(), 0)
+        if arrow[1]:
+            offset.translate(0, -arrow[1] * 0.16 * box.height())
+        put(painter, offset, CENTRE, f"{axis}{'+' if sign > 0 else '−'}")
+        painter.setPen(look.colour("on_state" if moving else "soft"))
+        painter.setFont(look.font(1.5, bold=True))
+        put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, KEYS[axis, sign])
+        self.controls.append(self._holder(box, axis, sign))
+
+    def _arrow(self, painter: QPainter, box: QRectF, to: tuple[int, int], colour: str) -> None:
+        size = 0.16 * min(box.width(), box.height())
+        centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
+        forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(self.look.colour(colour))
+        painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
+
+    def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
+        """Held from the touch until the finger comes up, or leaves the target."""
+        hold = self._model.hold
+        source = f"finger {axis}{sign}"
+
+        def along(at: QPointF) -> None:
+            if not box.contains(at):
+                hold.release(source)
+
+        return Control(
+            box, lambda _at: self._model.finger(source, axis, sign), along, lambda: hold.release(source)
+        )
+
+    def _middle(self, painter: QPainter, box: QRectF) -> None:
+        """What an arrow does now, in figures."""
+        look, u, model = self.look, self.look.u, self._model
+        mode: Mode = model.hold.mode
+        step = model.speeds.step
+        words = (
+            (tr("STEP"), step_words(mode)[step]) if step != CONTINUOUS else (tr("HELD"), self._speed(mode))
+        )
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6, bold=True))
+        put(painter, QRectF(box.x(), box.y() + 0.1 * box.height(), box.width(), 2.2 * u), CENTRE, words[0])
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(words[1], 3.2, box.width() - u, bold=True))
+        put(painter, box, CENTRE, words[1])
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6, bold=True))
+        unit = tr("mm") if mode.metric else tr("in")
+        put(
+            painter,
+            QRectF(box.x(), box.bottom() - 0.1 * box.height() - 2.2 * u, box.width(), 2.2 * u),
+            CENTRE,
+            unit if step != CONTINUOUS else f"{unit}/min",
+        )
+
+    def _speed(self, mode: Mode) -> str:
+        model = self._model
+        held = model.hold.held
+        rapid = held.rapid if held else model.armed
+        return rapid_word(model.machine, mode) if rapid else speed_words(mode)[model.speeds.speed]

@@ -1,0 +1,195 @@
+"""The Jog page: held moves at the left, tool setting at the right, the question under it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.desk import pages
+from app.desk.jogging.desk import JogDesk
+from app.desk.jogging.tool import TOUCH_X, TOUCH_Z
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.desk.words import tr
+from app.screen.jog.pad import JogPad
+from app.screen.jog.toolpanel import ToolPanel
+from app.screen.offsets.asked import Asked, AskedPanel
+from app.screen.offsets.keypad import KeyPad
+from app.screen.pages import Doings, Host, Page
+from core.executor.snapshot import Snapshot
+from core.machine.model import Machine
+
+Key = Qt.Key
+# Key → axis and sign; X+ is towards the operator.
+ARROWS = {
+    Key.Key_Left: ("Z", -1),
+    Key.Key_Right: ("Z", 1),
+    Key.Key_Down: ("X", 1),
+    Key.Key_Up: ("X", -1),
+    Key.Key_PageUp: ("C", 1),
+    Key.Key_PageDown: ("C", -1),
+}
+CHORDS = (
+    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+)
+WIDE, ASKED = 0.46, 12.0  # share of the pad, height of the question in units
+
+
+class JogPage(Page):
+    """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
+
+    NAME = pages.JOG
+    LABELS = (
+        "MENU",
+        "STEP",
+        "SPEED",
+        "READOUT",
+        "TOUCH X",
+        "TOUCH Z",
+        "ALARMS",
+        "TOOLS",
+        "SECCMP",
+        "UNDO",
+    )
+
+    def __init__(self, host: Host, machine: Machine, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = JogDesk(host.desk, machine)
+        self.pad = JogPad(self.look, self.model, self)
+        self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
+        self.tool = ToolPanel(self.look, self.model, self)
+        self.asked = AskedPanel(self.look, self)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def key_down(self, event: QKeyEvent) -> bool:
+        """The arrows are this page's; any other key ends what is held and then means what it means."""
+        key, model = Key(event.key()), self.model
+        if key not in ARROWS or (key in {Key.Key_PageUp, Key.Key_PageDown} and not model.with_c):
+            if not event.isAutoRepeat():
+                model.hold.other_key()
+            return self._home(event)
+        if event.isAutoRepeat():
+            model.hold.repeated(key.name)
+        elif event.modifiers() & CHORDS:
+            model.hold.other_key()
+        else:
+            axis, sign = ARROWS[key]
+            rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            model.hold.press(key.name, axis, sign, rapid=rapid)
+        return True
+
+    def _home(self, event: QKeyEvent) -> bool:
+        if event.key() != Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORDS:
+            return False
+        self.model.home_key()
+        return True
+
+    def key_up(self, event: QKeyEvent) -> None:
+        """An arrow comes up, or the Shift of a rapid. Releases that a repeating key makes are none."""
+        if event.isAutoRepeat():
+            return
+        key = Key(event.key())
+        if key in ARROWS:
+            self.model.hold.release(key.name)
+        elif key == Key.Key_Shift:
+            self.model.hold.shift_released()
+
+    def let_go(self) -> None:
+        """The keyboard or the window is gone."""
+        self.pad.let_go()
+        self.model.let_go()
+
+    def doings(self) -> Doings:
+        """Steps, speeds, readout, touching off, undo."""
+        model = self.model
+        return {
+            "F2": model.next_step,
+            "F3": model.next_speed,
+            "F4": self.desk.next_readout,
+            "F5": lambda: model.tool.ask(TOUCH_X),
+            "F6": lambda: model.tool.ask(TOUCH_Z),
+            "F8": lambda: self._go(pages.TOOLS),
+            "F9": lambda: self._go(pages.SECCMP),
+            "F10": model.tool.undo,
+        }
+
+    def _go(self, name: str) -> None:
+        self.host.go(name)
+
+    def typed(self, key: str) -> bool:
+        """An entry, the answer to the home key, or a letter that asks something of the tool."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """What is text here, or a letter of this page."""
+        return self.model.takes(key)
+
+    def _touched(self, key: str) -> None:
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
+
+    # --- as every page -------------------------------------------------------------------------------
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt(self.desk.snapshot())
+
+    def opened(self) -> None:
+        """What was changed on another page is no news here."""
+        self.model.tool.ledger.opened()
+
+    def leave(self) -> bool:
+        """Nothing stays held or half entered."""
+        self.pad.let_go()
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """Esc takes back what is open; then it holds the machine, as everywhere."""
+        return self.model.escape()
+
+    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """Renew what is held, show what is so."""
+        if not self._has_keyboard():
+            self.let_go_if_held()
+        self.model.look(snapshot)
+        tool = self.model.tool
+        entering = bool(tool.asked)
+        self.pad.setVisible(not entering)
+        self.numbers.setVisible(entering)
+        self.pad.show_jog(snapshot)
+        self.tool.show_tool(snapshot)
+        foot = tool.note or (
+            tr("Return enters it, Esc leaves it as it was")
+            if entering
+            else tr("F10 takes the last change back")
+        )
+        self.asked.show_asked(Asked("", tool.question, tool.text, tool.old_to_new, foot))
+
+    def _has_keyboard(self) -> bool:
+        """Whether keys still come here: no dialog, no menu, no other window in front."""
+        app = QApplication
+        return (
+            self.window().isActiveWindow()
+            and app.activeModalWidget() is None
+            and app.activePopupWidget() is None
+        )
+
+    def let_go_if_held(self) -> None:
+        """Something lies in front that would take the release."""
+        if self.model.hold.held is not None:
+            self.let_go()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Pad at the left; tool over question at the right."""
+        u, gap = self.look.u, max(4, round(0.7 * self.look.u))
+        left = round(WIDE * self.width())
+        for part in (self.pad, self.numbers):
+            part.setGeometry(0, 0, left, self.height())
+        high, wide = round(ASKED * u), self.width() - left - gap
+        self.tool.setGeometry(left + gap, 0, wide, self.height() - high - gap)
+        self.asked.setGeometry(left + gap, self.height() - high, wide, high)
