@@ -30,7 +30,7 @@ class SpecialPage(Page):
         self.model = model
         self.items = ItemList(self.look, model, self._enter, self)
         self.table = SheetPanel(self.look, self._chosen, self)
-        self.pad = KeyPad(self.look, self._touched, clears=False, parent=self)
+        self.pad = KeyPad(self.look, self._touched, own=None, parent=self)
 
     def _enter(self, number: int) -> None:
         self.model.enter(number)
