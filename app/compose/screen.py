@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -35,6 +36,9 @@ if TYPE_CHECKING:
     from app.desk.picture import Picture
 
 
+GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
+
+
 def samples() -> Path:
     """The folder of the sample programs and their tool offsets."""
     return Path(str(files("resources"))) / "programs"
@@ -45,6 +49,7 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
 
     Raises CommandError for a bad machine file and for a machine that is not simulated.
     """
+    sys.setswitchinterval(GIVE_WAY)
     clock, journal = RealClock(), Journal.at_home()
     desk, executor = desk_and_executor(machine_file, offsets, clock, journal)
     thread, log = ExecutorThread(executor, clock), Log()

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from app.desk.drawing.trail import Trail
 
 SMOOTH_TO = 3_000  # points up to which lines are smoothed, wide and dashed; above that they are pixels
-SMOOTH_SLICE, SLICE = 150, 50_000  # points drawn at a time
+SMOOTH_SLICE, SLICE = 150, 20_000  # points drawn at a time
 BUDGET = 0.006  # seconds a frame may give to drawing
 
 

@@ -1,0 +1,205 @@
+"""A million blocks on the screen: loaded, run and drawn, and Feed Hold pressed meanwhile.
+
+The simulated lathe runs by the real clock on its own thread, as in the shop; the window is drawn without a
+display. Run with
+``python -m tests.benchmarks.bench_screen [BLOCKS]``.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import random
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+os.environ["QT_QPA_PLATFORM"] = "offscreen"
+os.environ["QT_NO_GLIB"] = "1"  # without glib Qt tells before it sleeps that all events are worked off
+
+from PySide6.QtCore import QAbstractEventDispatcher, QEventLoop, QSize
+from PySide6.QtWidgets import QApplication
+
+from app.cli.offset_file import read_offsets
+from app.compose.screen import build_desk
+from app.desk.session import Phase
+from app.screen.look import Look, dress, load_fonts
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import State
+from tests.benchmarks.bench_hold import chords
+
+OFFSETS = "[tool.1]\nx = -1.0\nz = -1.5\n"  # so that four inches towards the chuck are within the travel
+PRESSES = 10
+LOADING = 900.0  # seconds
+TOO_LONG = 0.033  # seconds: two frames of 60 a second
+
+
+class Window(MainWindow):
+    """Remembers when a frame began: by the clock, and by the processor time of this thread."""
+
+    began: tuple[float, float] | None = None
+
+    def refresh(self) -> None:
+        """Once a frame, and after a key."""
+        if self.began is None:
+            self.began = time.perf_counter(), time.thread_time()
+        super().refresh()
+
+
+class Frames:
+    """How long each frame took, from taking the snapshot until the thread sleeps again, all drawn."""
+
+    def __init__(self, window: Window) -> None:
+        self._window = window
+        self.times: list[float] = []
+        self.cpu: list[float] = []
+        QAbstractEventDispatcher.instance().aboutToBlock.connect(self._block)
+
+    def _block(self) -> None:
+        if self._window.began is not None:
+            clock, cpu = self._window.began
+            self.times.append(time.perf_counter() - clock)
+            self.cpu.append(time.thread_time() - cpu)
+            self._window.began = None
+
+    def clear(self) -> None:
+        """Forget them."""
+        self.times, self.cpu = [], []
+
+    def row(self, name: str) -> str:
+        """The figures since the last row."""
+        over = sum(value > TOO_LONG for value in self.times)
+        shown = f"{name:28s}{_figures(self.times)}   {_figures(self.cpu)}   {over} of {len(self.times)}\n"
+        self.clear()
+        return shown
+
+
+def _figures(values: list[float]) -> str:
+    ordered = sorted(values) or [0.0]
+    chosen = (statistics.median(ordered), ordered[int(len(ordered) * 0.99)], ordered[-1])
+    return "".join(f"{value * 1000:7.1f}" for value in chosen)
+
+
+class Bench:
+    """A window on the simulated lathe."""
+
+    def __init__(self, home: Path, size: QSize) -> None:
+        self.app = QApplication.instance() or QApplication(sys.argv[:1])
+        load_fonts()
+        dress(DARK)
+        offsets = home / "offsets.toml"
+        offsets.write_text(OFFSETS)
+        self.desk = build_desk(None, lambda: read_offsets(offsets))
+        self.window = Window(Look(DARK))
+        self.window.resize(size)
+        self.window.show()
+        self.window.open_desk(self.desk)
+        self.window.activateWindow()
+        self.frames = Frames(self.window)
+        self.folder = home / "programs"
+
+    def until(self, true: Callable[[], bool], most: float = 60.0) -> float:
+        """Let the screen work until something is so; the seconds it took."""
+        begun = time.perf_counter()
+        while not true():
+            self.app.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+            if time.perf_counter() - begun > most:
+                raise TimeoutError(f"not so after {most:g} s: {self.desk.snapshot().state.value}")
+        return time.perf_counter() - begun
+
+    def rest(self, seconds: float) -> None:
+        """Let the screen work for a while."""
+        end = time.perf_counter() + seconds
+        self.until(lambda: time.perf_counter() > end, seconds + 10)
+
+    def say(self, text: str) -> None:
+        """One row of the table."""
+        sys.stdout.write(text)
+        sys.stdout.flush()
+
+    def load(self, blocks: int) -> None:
+        """Write, choose, wait until it is proved and drawn."""
+        self.folder.mkdir(exist_ok=True)
+        (self.folder / "many.nc").write_text(chords(blocks))
+        self.rest(0.5)  # the writing was no frame
+        self.frames.clear()
+        self.desk.choose("many")
+        session = self.desk.session
+        took = self.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED}, LOADING)
+        if session.now.errors:
+            raise ValueError(session.now.errors[0].message)
+        self.say(self.frames.row(f"loading, {took:.1f} s"))
+        path = self.window.frame.automatic.path if self.window.frame else None
+        assert path is not None
+        took = self.until(lambda: bool(path.panes) and all(pane.complete for pane in path.panes))
+        self.say(self.frames.row(f"whole path drawn, {took:.2f} s"))
+        for key in ("Zoom in", "Zoom in", "Pan right", "Zoom out", "F5"):
+            self.window.press(key)
+            self.rest(0.3)
+        self.say(self.frames.row("zoom, pan and fit"))
+
+    def start(self) -> None:
+        """Drives on, both palms."""
+        desk = self.desk
+        if desk.snapshot().state is State.DISABLED:
+            desk.enable()
+            self.until(lambda: desk.snapshot().state is State.IDLE)
+        desk.hands.palm("left", down=True)
+        desk.hands.palm("right", down=True)
+        self.until(lambda: desk.snapshot().state is State.RUN, 10)
+        desk.hands.let_go()
+
+    def hold(self) -> tuple[float, float, float]:
+        """Press H; seconds until the screen says so, until it stands, and what is allowed for that."""
+        speed = self.desk.snapshot().velocity
+        begun = time.perf_counter()
+        self.window.press("H")
+        told = self.until(lambda: self.desk.snapshot().state is not State.RUN)
+        while abs(self.desk.snapshot().velocity) > 0.5:
+            self.app.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+        stood = time.perf_counter() - begun
+        self.until(lambda: self.desk.snapshot().state is State.HOLD)
+        return told, stood, speed
+
+
+def main() -> None:
+    """Print the table."""
+    blocks = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
+    chance = random.Random(1)
+    with tempfile.TemporaryDirectory() as home:
+        os.environ["TURNDESK_HOME"] = home
+        bench = Bench(Path(home), QSize(1920, 1080))
+        bench.say(
+            f"{f'{blocks} blocks':28s} a frame by the clock, ms   its own processor time   over 33 ms\n"
+        )
+        bench.say(f"{'':28s}" + 2 * " median    p99   most   " + "\n")
+        bench.load(blocks)
+        bench.start()
+        bench.rest(3)
+        bench.say(bench.frames.row("running"))
+        told, stood, speeds = [], [], []
+        for _ in range(PRESSES):
+            bench.rest(0.2 + chance.random())
+            a, b, speed = bench.hold()
+            told.append(a)
+            stood.append(b)
+            speeds.append(speed)
+            bench.start()
+        bench.say(bench.frames.row("running, held and started"))
+        for name, values in (("hold told on the screen", told), ("hold: the slides stand", stood)):
+            median, most = statistics.median(values) * 1000, max(values) * 1000
+            bench.say(f"{name:28s}{median:8.1f} ms{'':11s}{most:8.1f} ms\n")
+        bench.say(f"from {statistics.median(speeds):.0f} mm/s, {math.ceil(max(speeds))} at most\n")
+        bench.window.press("H")
+        bench.rest(0.5)
+        bench.window.put_away()
+        bench.app.processEvents()
+        bench.desk.close()
+
+
+if __name__ == "__main__":
+    main()
