@@ -1,0 +1,59 @@
+"""A program run whole and run from one of its lines: what comes from that line on, block by block."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from core.interpreter.begin import Begin
+from core.interpreter.blocks import Block
+from core.interpreter.dialects import interpretation
+from core.interpreter.modal import Modal
+from core.interpreter.restart.approach import Choices, Now, begin_at
+from core.interpreter.restart.rebuild import Found, NotGood, Rebuild
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Severity
+from core.language.source import Source
+
+STANDS = (33.0, 44.0)  # where the slides are when the restart is asked for, mm
+TURNED = 500.0  # degrees from where C has to be
+
+
+def all_of(source: Source, setup: Setup) -> list[Block]:
+    """The elementary blocks of a pass that has no errors."""
+    taken = interpretation(source, setup)
+    blocks = list(taken.blocks())
+    errors = [each for each in taken.diagnostics if each.severity is Severity.ERROR]
+    assert not errors, errors
+    return blocks
+
+
+def begun(setup: Setup, found: Found, inside: bool = False) -> Setup:
+    """The circumstances of a restart from where the slides stand.
+
+    A spindle that is no axis has been turned by hand to the same angle: M19 would turn it from there.
+    """
+    point = found.checkpoint
+    angle = point.c + point.modal.offset_c + (TURNED if point.modal.c_locked else 0.0)
+    at = (*STANDS, angle)
+    return replace(setup, start=at, begin=beginning(found, at, inside))
+
+
+def beginning(found: Found, at: tuple[float, ...], inside: bool = False) -> Begin:
+    """A restart at a machine that stands still with its collet as it was."""
+    return begin_at(found, Now(at, Modal()), Choices(inside=inside))
+
+
+def of_each_line(source: Source, setup: Setup) -> list[Found | NotGood]:
+    """What SEARCHTO says of every line, in order."""
+    rebuild = Rebuild(source, setup, lambda _count: None)
+    return [rebuild.find(line) for line in range(1, len(source.lines) + 1)]
+
+
+def told(block: Block) -> dict[str, object]:
+    """Everything about a block that decides what the machine does and shows; whole turns of C apart."""
+    names = [name for name in Block.__slots__ if name != "modal"]
+    everything = {name: getattr(block, name) for name in names}
+    everything["modal"] = block.modal._replace(offset_c=0.0)
+    everything["machine c"] = round(block.mc % 360.0, 6) % 360.0
+    everything["plane"] = repr(block.plane)
+    return everything

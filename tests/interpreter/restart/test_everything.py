@@ -1,0 +1,81 @@
+"""The promise of a restart: from every good line on, every block is the one of the full run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from core.interpreter.actions import AskInput
+from core.interpreter.program import read_program
+from core.interpreter.restart.rebuild import Found
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Severity
+from core.language.source import Source, load_source
+from tests.interpreter.programs import ALL_TOOLS, setup
+from tests.interpreter.restart.again import all_of, begun, of_each_line, told
+from tests.interpreter.test_golden import circumstances
+from tests.worked import FOLDER
+
+ROOT = Path(__file__).parents[3]
+GOLDEN = sorted(path for path in (ROOT / "tests" / "programs").glob("*.nc") if "refuse" not in path.name)
+WORKED = sorted(FOLDER.glob("*.nc")) if FOLDER.is_dir() else []
+SAMPLES = sorted((ROOT / "resources" / "programs").glob("*.nc"))
+
+
+def golden_setup(path: Path) -> Setup:
+    table = path.with_suffix(".expected").read_text().splitlines()
+    return circumstances([line[1:].split() for line in table if line.startswith("#")])
+
+
+def runs(source: Source, given: Setup) -> bool:
+    return not any(d.severity is Severity.ERROR for d in read_program(source).diagnostics) and bool(
+        given.tools
+    )
+
+
+def check(source: Source, given: Setup) -> int:
+    """Compare every good line; how many there were."""
+    full = all_of(source, given)
+    good = [each for each in of_each_line(source, given) if isinstance(each, Found)]
+    for found in good:
+        begin = begun(given, found)
+        assert begin.begin is not None
+        again = all_of(source, begin)[len(begin.begin.way) :]
+        rest = [block for block in full if block.n > found.checkpoint.blocks]
+        if any(isinstance(block.action, AskInput) for block in full):  # the count depends on the answers
+            rest = full[len(full) - len(again) :]
+            again = [replace(block, n=0) for block in again]
+            rest = [replace(block, n=0) for block in rest]
+        assert [told(block) for block in again] == [told(block) for block in rest], found.line
+        assert not again or again[0].line >= found.line or again[0].line in _called(source)
+    return len(good)
+
+
+def _called(source: Source) -> set[int]:
+    return set(range(read_program(source).structure.main_end, len(source.lines) + 1))
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_every_good_line_of_our_golden_programs(path: Path) -> None:
+    source, given = load_source(path), golden_setup(path)
+    assert runs(source, given)
+    check(source, given)
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_every_good_line_of_the_samples(path: Path) -> None:
+    source = load_source(path)
+    assert check(source, setup(tools=ALL_TOOLS)) > len(source.lines) / 3
+
+
+@pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
+@pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
+def test_every_good_line_of_the_worked_examples(path: Path) -> None:
+    source, given = load_source(path), setup(secondary=dict.fromkeys(range(1, 9), (-0.015, -0.015, 0.015)))
+    try:
+        all_of(source, given)
+    except AssertionError as error:
+        pytest.skip(f"needs circumstances of its own: {error}"[:150])
+    check(source, given)

@@ -1,0 +1,145 @@
+"""Lines that are good for going on, lines that are not and why, and what a good one inherits."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.restart.rebuild import Found, NotGood, Rebuild
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source
+from tests.interpreter.programs import INCH, setup
+
+
+def find(text: str, line: int, **given: object) -> Found | NotGood:
+    return Rebuild(Source("PART", text), setup(**given), lambda _count: None).find(line)  # type: ignore[arg-type]
+
+
+PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
+LOOP = "G90G94F300\nX1Z1\nLS3\nG91X-.1\nZ-.1\nLF\nG90\nX1Z1\nM30\n"
+NOSE = "G90G94F300\nX1Z1\nG41\nX.5Z.2D1\nZ-.5\nX1\nG40\nZ1\nM30\n"
+CONTOUR = "G90G94F300\nX1Z.1\nG75I.1U.01F10\nX.5Z0\nZ-.5\nX.9\nRF\nZ1\nM30\n"
+CORNER = "G90G94F100\nX1Z1\nX.5C.05\nM08\nZ-.5\nX1\nM30\n"
+CALLED = "G90G94F300\nX1Z1\nM98P1\nX2\nM30\n}1\nZ.5\nZ1\nM99\n"
+PLANE = "G90G94F300\nX-.5Z.1\nM19\n(~PLXC)\n(X.5Y.1)\n(END)\nM05\nM30\n"
+
+
+def test_everything_that_a_line_inherits() -> None:
+    found = find(PLAIN, 7, tools={1: ToolOffset(-10.0, -20.0)})
+    assert isinstance(found, Found)
+    point, modal = found.checkpoint, found.checkpoint.modal
+    assert point.machine == pytest.approx((-10.0 + 0.5 * INCH, -20.0 - 0.5 * INCH))
+    assert (modal.diameter, modal.tool, modal.spindle, modal.rpm, modal.coolant) == (True, 1, 1, 900.0, True)
+    assert (modal.per_rev, modal.feed) == (True, pytest.approx(0.005 * INCH))
+    assert point.first_feed == pytest.approx(300 * INCH / 60)  # it goes on to count as a rapid
+    assert found.clear.z == pytest.approx(-20.0 + 0.1 * INCH)
+    assert found.clear.x[1] == pytest.approx((-10.0 + 0.5 * INCH, -10.0 + 0.5 * INCH))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "why", "before", "after"),
+    [
+        (LOOP, 4, "Line 4 is inside the loop of lines 3 to 6.", 3, 7),
+        (LOOP, 6, "Line 6 is inside the loop of lines 3 to 6.", 3, 7),
+        (NOSE, 5, "Line 5 is under the nose compensation that begins on line 3.", 3, 8),
+        (NOSE, 7, "Line 7 is under the nose compensation that begins on line 3.", 3, 8),
+        (CONTOUR, 5, "Line 5 describes the contour of line 3.", 3, 8),
+        (CORNER, 4, "Line 4 is in the corner of line 3.", 3, 6),
+        (CORNER, 5, "Line 5 is in the corner of line 3.", 3, 6),
+        (CALLED, 7, "Line 7 is in subroutine 1: the line that calls it may be good.", 5, 0),
+        (PLANE, 5, "Line 5 is in the plane switching that begins on line 4.", 4, 7),
+        (PLAIN, 99, "There is no line 99; the program has 8.", 8, 0),
+        ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
+    ],
+)
+def test_lines_that_are_not_good_and_the_nearest_that_are(
+    text: str, line: int, why: str, before: int, after: int
+) -> None:
+    answer = find(text, line, secondary={1: (-0.015, -0.015, 0.015)})
+    assert isinstance(answer, NotGood)
+    assert answer.why == why
+    assert (answer.before, answer.after) == ((0 if before == 2 else before), after)
+
+
+@pytest.mark.parametrize("line", [1, 2])
+def test_nothing_has_moved_yet(line: int) -> None:
+    answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
+    assert isinstance(answer, NotGood)
+    assert answer.why.startswith(f"Nothing has moved before line {line}")
+    assert (answer.before, answer.after) == (0, 4)
+
+
+def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are_known() -> None:
+    text = "G91G94F300\nX.1Z.1\nX.1\nG90X1\nG91Z.1\nG90Z1\nG91X.1\nX.2\nM30\n"
+    said = {line: find(text, line) for line in range(3, 9)}
+    for line in (3, 4, 5, 6):
+        answer = said[line]
+        assert isinstance(answer, NotGood)
+        assert "depends on where they stood at Cycle Start" in answer.why
+        assert answer.after == 7
+    assert isinstance(said[7], Found)
+    assert isinstance(said[8], Found)  # incremental, from a place that is known
+
+
+def test_a_preset_at_an_unknown_place_stays_unknown() -> None:
+    text = "G90G94F300\nG92X0Z0\nX1Z1\nX2\nT1\nX1Z1\nX2\nM30\n"
+    answer = find(text, 4)
+    assert isinstance(answer, NotGood)
+    assert answer.after == 7
+    assert isinstance(find(text, 7), Found)
+
+
+def test_what_an_input_answered_is_not_guessed() -> None:
+    sub = "}1\nZ.5\nM99\n"
+    text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
+    answer = find(text, 4)
+    assert isinstance(answer, NotGood)
+    assert answer.why == "Line 4 depends on the input that line 3 asks."
+    assert (answer.before, answer.after) == (3, 6)  # behind Z2 both answers lead to one place
+    assert isinstance(find(text, 3), Found)
+    assert isinstance(find(text, 6), Found)
+
+
+def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
+    text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
+    answer = find(text, 6)
+    assert isinstance(answer, NotGood)
+    assert "what the input of line 4 answered is not known" in answer.why
+
+
+def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
+    text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
+    answer = find(text, 7)
+    assert isinstance(answer, NotGood)
+    assert "what input 3 answered on line 4 is not known" in answer.why
+
+
+def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
+    answer = find("G90G94F300\nX1Z1\nM97I3C0P1\nX2\nM30\n}1\nM30\nM99\n", 4)
+    assert isinstance(answer, NotGood)
+    broken = find("G90G94F300\nX1Z1\nX1R9\nX2\nX3\nM30\n", 5)
+    assert isinstance(broken, NotGood)
+    assert broken.why == "The program has errors before line 5."
+
+
+def test_loops_are_gone_through_and_asks_go_on_from_each_other() -> None:
+    text = "G90G94F300\nX1Z1\nLS50\nG91X-.01\nZ-.01\nLF\nG90\nX1Z1\nM30\n"
+    rebuild = Rebuild(Source("PART", text), setup(), lambda _count: None)
+    first, later, earlier = rebuild.find(3), rebuild.find(7), rebuild.find(3)
+    assert isinstance(first, Found)
+    assert isinstance(later, Found)
+    assert later.checkpoint.x == pytest.approx(0.5 * INCH)
+    assert later.checkpoint.blocks == 101
+    assert earlier == first
+
+
+def test_the_work_is_given_up_when_nobody_wants_it_any_more() -> None:
+    class GivenUpError(Exception):
+        pass
+
+    def watch(count: float) -> None:
+        if count > 5000:
+            raise GivenUpError
+
+    text = "G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n"
+    with pytest.raises(GivenUpError):
+        Rebuild(Source("PART", text), setup(), watch).find(7)
