@@ -74,6 +74,10 @@ def _table_of(dialect: Dialect) -> tuple[str, Callable[[Block, float], str]]:
         from app.cli import shown_klartext
 
         return shown_klartext.HEAD, shown_klartext.row
+    if dialect is Dialect.SINUMERIK:
+        from app.cli import shown_sinumerik
+
+        return shown_sinumerik.HEAD, shown_sinumerik.row
     return _HEAD, _row
 
 

@@ -82,7 +82,12 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
     try:
-        return load_source(path, dialect)
+        source = load_source(path, dialect)
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
         raise CommandError(str(error).replace(path.name, str(path), 1)) from error
+    if dialect is not Dialect.SINUMERIK:
+        return source
+    from core.language.sinumerik.sections import with_subprograms
+
+    return with_subprograms(source, [path.parent])

@@ -15,6 +15,7 @@ from app.cli.progress import Progress
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from app.desk.headless import Outcome
+    from core.language.dialect import Dialect
     from core.language.source import Source
     from core.proving.report import Report
 
@@ -61,15 +62,15 @@ def _run(args: argparse.Namespace, around: Circumstances, source: Source, report
     with (
         EventLog.new(path.name) as log,
         Progress(f"running {path.name}", report.times.cycle) as progress,
-    ):
-        play = headless(
+        headless(
             around.machine,
             inputs=inputs,
             realtime=args.realtime,
             log=log,
             say=lambda text: _say(path, text),
             progress=progress.reach,
-        )
+        ) as play,
+    ):
         outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)
     if outcome.why:
         sys.stderr.write(f"turndesk: {path}: {outcome.state}: {outcome.why}\n")
@@ -84,20 +85,28 @@ def _say(path: Path, text: str) -> None:
 def _refused(args: argparse.Namespace, why: str, report: Report) -> int:
     sys.stderr.write(f"turndesk: {why}\n")
     if args.json:
-        _write_line({"state": "refused", "final": _place(report, None), **_figures(None), "events": ""})
+        _write_line(
+            {
+                "state": "refused",
+                "final": _place(report, None),
+                **_figures(None, report.dialect),
+                "events": "",
+            }
+        )
     return EXIT_ERRORS
 
 
 def _write(args: argparse.Namespace, path: Path, outcome: Outcome, report: Report, events: str) -> None:
     final = _place(report, outcome)
-    figures = _figures(outcome)
+    figures = _figures(outcome, report.dialect)
     if args.json:
         _write_line({"state": outcome.state, "final": final, **figures, "events": events})
         return
+    unit = "in" if report.dialect == "omniturn" else "mm"
     sys.stdout.write(
         f"{path}: {outcome.state} after {outcome.elapsed:.2f} s (proved: {report.times.cycle:.2f} s)\n"
-        f"  at X radius {final['x']:.5f}  Z {final['z']:.5f} in;"
-        f" following error at most {figures['max_following_error']:.5f} in,"
+        f"  at X radius {final['x']:.5f}  Z {final['z']:.5f} {unit};"
+        f" following error at most {figures['max_following_error']:.5f} {unit},"
         f" {figures['underruns']} underruns; log {events}\n"
     )
 
@@ -107,8 +116,9 @@ def _write_line(line: dict[str, object]) -> None:
 
 
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
-    """Where the tip stands in the frame of the last move; X as a radius, inches."""
-    from app.cli.shown import degrees, inches
+    """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
+    from app.cli.shown import degrees, length_of
+    from core.language.dialect import Dialect
 
     if outcome is None:
         return {"x": 0.0, "z": 0.0, "c": 0.0}
@@ -116,11 +126,14 @@ def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
     x, z, c = demand[0], demand[1], demand[-1]
     shift_x = report.machine_final[0] - report.final[0]
     shift_z = report.machine_final[1] - report.final[1]
-    return {"x": inches(x - shift_x), "z": inches(z - shift_z), "c": degrees(c)}
+    if report.dialect is Dialect.SINUMERIK:
+        c -= report.machine_final[2] - report.final[2]
+    length = length_of(report.dialect)
+    return {"x": length(x - shift_x), "z": length(z - shift_z), "c": degrees(c)}
 
 
-def _figures(outcome: Outcome | None) -> dict[str, object]:
-    from app.cli.shown import inches, seconds
+def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
+    from app.cli.shown import length_of, seconds
 
     if outcome is None:
         return {"elapsed_s": 0.0, "alarms": [], "underruns": 0, "max_following_error": 0.0}
@@ -132,5 +145,5 @@ def _figures(outcome: Outcome | None) -> dict[str, object]:
             for a in snapshot.alarms
         ],
         "underruns": snapshot.underruns,
-        "max_following_error": inches(snapshot.max_following_error),
+        "max_following_error": length_of(dialect)(snapshot.max_following_error),
     }

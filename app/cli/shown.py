@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from core.language.dialect import Dialect
@@ -27,6 +28,11 @@ def inches(mm: float) -> float:
 def millimetres(mm: float) -> float:
     """A length as it is, to a billionth."""
     return round(mm, 9) + 0.0
+
+
+def length_of(dialect: Dialect) -> Callable[[float], float]:
+    """How lengths are shown to whoever programs in this language: OmniTurn counts in inches, others in mm."""
+    return inches if dialect is Dialect.OMNITURN else millimetres
 
 
 def per_minute(mm_s: float) -> float:
@@ -62,8 +68,7 @@ def report_json(file: str, report: Report) -> Json:
     Lengths are inches for OmniTurn programs, mm for the others.
     """
     reach, times = report.reach, report.times
-    inch = report.dialect is Dialect.OMNITURN
-    length = inches if inch else millimetres
+    inch, length = report.dialect is Dialect.OMNITURN, length_of(report.dialect)
     return {
         "file": file,
         "dialect": str(report.dialect),

@@ -9,6 +9,11 @@ from app.cli.shown import Json, degrees, millimetres, seconds
 if TYPE_CHECKING:
     from core.interpreter.blocks import Block
 
+HEAD = (
+    "    n  line  kind             X          Z          C        dC"
+    "              feed      rpm       t  block\n"
+)
+
 _TURN = 360.0
 _PER_MINUTE = 60.0
 _M_PER_MIN = 60.0 / 1000.0  # of mm/s
@@ -42,6 +47,18 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
         "t0": seconds(t0),
         "t1": seconds(t1),
     }
+
+
+def row(block: Block, t0: float) -> str:
+    """One elementary block in the table for a person; X as the program counts it, C of the program."""
+    feed, mode = _feed(block)
+    x = block.x * (2.0 if block.modal.diameter else 1.0)
+    shown = "" if feed is None else f"{feed:.2f} {mode}"
+    place = f"{x:10.3f} {block.z:10.3f} {_angle(block.c, block):10.3f}"
+    return (
+        f"{block.n:5d} {block.line:5d}  {block.kind:10s}{place}"
+        f" {block.c - block.c0:+9.3f} {shown:>17s}{block.rpm:9.0f}{t0:8.2f}  {block.text}\n"
+    )
 
 
 def _feed(block: Block) -> tuple[float | None, str | None]:

@@ -12,6 +12,7 @@ from app.cli.errors import CommandError
 from app.cli.expand import report_diagnostics
 from app.cli.options import add_program_options, circumstances, read_source
 from app.cli.progress import Progress
+from core.language.dialect import Dialect
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
@@ -40,7 +41,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the setpoints as CSV: slides of a lathe in inches (X a radius), of a mill in mm; degrees.
+    """Write the setpoints as CSV: slides under OmniTurn in inches (X a radius), otherwise in mm; degrees.
 
     1 when the program has errors.
     """
@@ -48,8 +49,9 @@ def run(args: argparse.Namespace) -> int:
 
     path = Path(args.file)
     around = circumstances(args)
-    timeline = Timeline.of(read_source(path, args), around.setup, around.machine)
-    table = _Table(around.machine)
+    source = read_source(path, args)
+    timeline = Timeline.of(source, around.setup, around.machine)
+    table = _Table(around.machine, inch=source.dialect is Dialect.OMNITURN)
     if args.out is None:
         _write(timeline, table, args.dt, sys.stdout.write, path)
     else:
@@ -60,11 +62,10 @@ def run(args: argparse.Namespace) -> int:
 class _Table:
     """The columns of a machine: time, its axes in their order, the spindle, the line."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, *, inch: bool) -> None:
         from app.cli.shown import MM_PER_INCH
 
         names = ",".join(axis.name.lower() for axis in machine.axes)
-        inch = machine.kind == "lathe"
         self.header = f"t,{names},spindle_deg,line\n"
         self._scales = [1.0 if axis.rotary or not inch else MM_PER_INCH for axis in machine.axes]
         self._places = [5 if axis.rotary else 7 if inch else 6 for axis in machine.axes]

@@ -39,11 +39,13 @@ def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
     circumstances = (
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
+        sorted(setup.zero.items()),
         sorted(setup.limits.m_outputs.items()),
         (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
         (setup.begin.key if setup.begin else "", part_of),
+        [(each.name, each.text) for each in source.subprograms],
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     text.update(repr(circumstances).encode())

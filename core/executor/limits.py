@@ -17,7 +17,7 @@ def check_block(block: Block, machine: Machine) -> None:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise TroubleError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
-    if block.c != block.c0 and block.modal.spindle and machine.c_enabled and not machine.c_own_drive:
+    if block.c != block.c0 and block.modal.spindle and machine.spindle_is_c:
         raise TroubleError("c-is-spindle", f"line {block.line} moves C while the spindle turns", block.line)
     for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
         _check(block, axis, low, high)

@@ -11,7 +11,7 @@ from core.machine.model import Machine
 
 def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
     """An error for each block that moves C while the spindle, which is this machine's C, turns."""
-    if machine.c_own_drive or not machine.c_enabled:
+    if not machine.spindle_is_c:
         return
     for block in blocks:
         if block.c != block.c0 and block.modal.spindle:
