@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from types import TracebackType
 from typing import TextIO
 
 from app.cli.errors import CommandError
-from app.compose.simulated import simulated
+from app.compose.backends import Connected, connect, played
 from app.desk.headless import HeadlessRun
 from app.desk.home import home
 from core.executor.executor import Executor
@@ -53,6 +54,7 @@ class EventLog:
         self._file.write(json.dumps(line) + "\n")
 
 
+@contextmanager
 def headless(
     machine: Machine,
     *,
@@ -61,19 +63,49 @@ def headless(
     log: EventLog,
     say: Callable[[str], None],
     progress: Callable[[float], None],
-) -> HeadlessRun:
-    """An executor on the simulated lathe with these inputs, and somebody to press its buttons.
+) -> Iterator[HeadlessRun]:
+    """An executor on the machine with these inputs, and somebody to press its buttons.
 
-    Raises CommandError for a machine that is not simulated and for an input it does not have.
+    A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
+    and for inputs that it does not have or that are wires and not to be set.
     """
-    if machine.backend != "sim":
-        raise CommandError(f"{machine.source}: only simulated machines can be run yet, not {machine.backend}")
-    clock = RealClock() if realtime else StepClock()
-    simulation = simulated(machine, clock)
+    clock = RealClock() if realtime or not played(machine) else StepClock()
+    try:
+        connected = connect(machine, clock)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
+    try:
+        _set_inputs(connected, inputs)
+        executor = Executor(machine, connected.ports, log.add)
+        yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
+        executor.shut()
+    finally:
+        connected.close()
+
+
+def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:
+    """How a cycle is started where no command may: by the station on the screen, or by a person."""
+    panel = connected.panel
+    if machine.backend == "sim" or not machine.interlocks.two_hand_start:
+        return None
+    if panel is None:
+        return lambda: say("press both palm buttons")
+
+    def press() -> None:
+        panel.press_left()
+        panel.press_right()
+        panel.release_left()
+        panel.release_right()
+
+    return press
+
+
+def _set_inputs(connected: Connected, inputs: Mapping[str, bool]) -> None:
+    if inputs and connected.set_input is None:
+        raise CommandError("--inputs: this machine is not simulated; its inputs are wires")
     try:
         for name, on in inputs.items():
-            simulation.machine.set_input(name, on)
+            assert connected.set_input is not None
+            connected.set_input(name, on)
     except DriverError as error:
         raise CommandError(f"--inputs: {error}") from error
-    executor = Executor(machine, simulation.ports, log.add)
-    return HeadlessRun(executor, clock, say, progress)

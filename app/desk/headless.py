@@ -54,11 +54,14 @@ class HeadlessRun:
         clock: Ticks,
         say: Callable[[str], None],
         progress: Callable[[float], None],
+        palms: Callable[[], None] | None = None,
     ) -> None:
+        """``palms`` presses both palm buttons, or asks a person to, where a command starts nothing."""
         self._executor = executor
         self._clock = clock
         self._say = say
         self._progress = progress
+        self._palms = palms
         self._last_move = 0.0
 
     def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
@@ -66,13 +69,23 @@ class HeadlessRun:
         self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
         self._executor.post(SetSwitch("optional_stop", optional_stop))
         self._executor.post(LoadJob(job, proof))
-        self._until(lambda s: s.state is not State.IDLE or bool(s.start_refused), CycleStart(), tries=20)
+        self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused))
         if self._executor.snapshot.state in UNDER_WAY:
             return self._watch()
         return self._ended()
 
+    def _start(self, reached: Callable[[Snapshot], bool]) -> None:
+        if self._palms is None:
+            self._until(reached, CycleStart(), tries=20)
+        else:
+            self._palms()
+            self._wait(reached, tries=round(PATIENCE / TICK))
+
     def _until(self, reached: Callable[[Snapshot], bool], command: Command, tries: int) -> None:
         self._executor.post(command)
+        self._wait(reached, tries)
+
+    def _wait(self, reached: Callable[[Snapshot], bool], tries: int) -> None:
         for _ in range(tries):
             self._step()
             if reached(self._executor.snapshot):
@@ -101,7 +114,7 @@ class HeadlessRun:
     def _started_again(self) -> bool:
         """Press Cycle Start until it goes on: a press just after the last one counts as its bounce."""
         for _ in range(_PRESSES):
-            self._until(lambda s: s.state is not State.PROGRAM_STOP, CycleStart(), tries=20)
+            self._start(lambda s: s.state is not State.PROGRAM_STOP)
             if self._executor.snapshot.state is not State.PROGRAM_STOP:
                 return True
         return False

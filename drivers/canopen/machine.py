@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import Clock, DriverError, Stop
+from core.ports import Clock, DriverError, MachinePorts, Stop
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
-from drivers.canopen.spindle import CanopenSpindle
+from drivers.canopen.spindle import CanopenSpindle, NoSpindle
 from drivers.canopen.terminals import CanopenIO
 
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
@@ -34,6 +34,17 @@ class CanopenMachine:
         except DriverError:
             self.bus.close()
             raise
+
+    @property
+    def ports(self) -> MachinePorts:
+        """What the executor drives; the terminals are the operator station too."""
+        return MachinePorts(
+            clock=self.clock,
+            axes=self.axes,
+            spindle=self.spindle or NoSpindle(),
+            io=self.io,
+            station=self.io,
+        )
 
     def tick(self) -> None:
         """One round: take in, supervise, feed, send, SYNC. Call it every few milliseconds."""

@@ -7,14 +7,17 @@ import time
 
 
 class RealClock:
-    """Seconds of the monotonic clock since it was made."""
+    """Seconds of the monotonic clock since it was made, or since ``zero`` of that clock.
 
-    def __init__(self) -> None:
-        self._zero = time.monotonic()
+    The monotonic clock is one for all processes, so two of these with the same zero agree.
+    """
+
+    def __init__(self, zero: float | None = None) -> None:
+        self.zero = time.monotonic() if zero is None else zero
 
     def now(self) -> float:
         """Seconds since this clock was made."""
-        return time.monotonic() - self._zero
+        return time.monotonic() - self.zero
 
     def sleep_until(self, t: float) -> None:
         """Wait until ``t``; returns at once when that is past."""

@@ -1,0 +1,70 @@
+"""From a machine file to ports: in this process, or through the feeder's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.compose.canopen import own_process
+from app.compose.driven import driven, has_station
+from app.compose.simulated import simulated
+from app.desk.station import StationPanel
+from core.machine.model import Machine
+from core.ports import Clock, DriverError, MachinePorts
+from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.hands import FeederHands
+from drivers.feeder.links import LoopLink
+from drivers.feeder.server import Feeder
+from drivers.simulated import RealClock
+
+
+@dataclass(frozen=True, slots=True)
+class Connected:
+    """The ports of a machine. ``panel``: the station on the screen, None where the machine has its own."""
+
+    ports: MachinePorts
+    panel: StationPanel | None
+    set_input: Callable[[str, bool], None] | None  # of a simulated machine
+    close: Callable[[], None]
+
+
+def connect(machine: Machine, clock: Clock) -> Connected:
+    """Everything the executor needs. Raises DriverError for what does not answer."""
+    if machine.backend == "sim" and not machine.hardware.feeder:
+        simulation = simulated(machine, clock)
+        return Connected(simulation.ports, simulation.machine, simulation.machine.set_input, lambda: None)
+    if machine.backend not in {"sim", "canopen"}:
+        raise DriverError(f"{machine.source}: there is no driver for backend {machine.backend} yet")
+    line, close = _line(machine, clock)
+    try:
+        ports = feeder_ports(line)
+    except DriverError:
+        close()
+        raise
+    hands = FeederHands(line)
+    panel = hands if played(machine) or not has_station(machine) else None
+    return Connected(ports, panel, hands.set_input if played(machine) else None, close)
+
+
+def played(machine: Machine) -> bool:
+    """Whether the machine is simulated, on a virtual bus or on none."""
+    bus = machine.hardware.canopen
+    return machine.backend == "sim" or (
+        machine.backend == "canopen" and bus is not None and not own_process(bus)
+    )
+
+
+def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
+    """The feeder in its own process where time is real, else the same messages in this thread."""
+    if isinstance(clock, RealClock) and not _virtual(machine):
+        from app.compose.feeder import FeederProcess
+
+        process = FeederProcess(machine, clock)
+        return process.line, process.close
+    owned = driven(machine, clock)
+    return Line(LoopLink(Feeder(owned)), clock), owned.close
+
+
+def _virtual(machine: Machine) -> bool:
+    """A bus that cannot be reached from another process."""
+    return machine.backend == "canopen" and played(machine)

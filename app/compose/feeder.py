@@ -1,0 +1,82 @@
+"""Starts the feeder's process, and is it: ``python -m app.compose.feeder FD ZERO``, machine on stdin."""
+
+from __future__ import annotations
+
+import pickle
+import socket
+import subprocess
+import sys
+
+from app.compose.driven import driven
+from core.machine.model import Machine
+from core.ports import Clock, DriverError
+from drivers.feeder.client import Line
+from drivers.feeder.links import SocketLink
+from drivers.feeder.loop import real_time, serve
+from drivers.feeder.wire import NOTHING, Inbox, Message, packed, text
+from drivers.simulated import RealClock
+
+_START = 20.0  # s for the first answer: the process has to start and to configure every drive
+_END = 10.0
+
+
+class FeederProcess:
+    """A feeder in its own process, and the line to it."""
+
+    def __init__(self, machine: Machine, clock: RealClock) -> None:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            command = [sys.executable, "-m", "app.compose.feeder", str(theirs.fileno()), repr(clock.zero)]
+            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, pass_fds=(theirs.fileno(),))
+        assert self.process.stdin is not None
+        with self.process.stdin as pipe:
+            pipe.write(pickle.dumps(machine))
+        self._link = SocketLink(ours)
+        ready = self._first(ours)
+        if why := text(ready.head, "error"):
+            self.close()
+            raise DriverError(why)
+        self.line = Line(self._link, clock)
+
+    def close(self) -> None:
+        """The feeder stops what is left and ends."""
+        self._link.close()
+        try:
+            self.process.wait(_END)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+    def _first(self, sock: socket.socket) -> Message:
+        """The feeder's own first word: it is ready, or why not."""
+        inbox = Inbox()
+        sock.settimeout(_START)
+        try:
+            while data := sock.recv(1 << 16):
+                for message in inbox.feed(data):
+                    return message
+        except TimeoutError:
+            return Message({"error": "the feeder's process does not come up"}, NOTHING)
+        return Message(
+            {"error": "the feeder's process has ended at its start; see its message above"}, NOTHING
+        )
+
+
+def main(arguments: list[str]) -> int:
+    """The process: connect, say so, serve until the control has gone."""
+    sock = socket.socket(fileno=int(arguments[0]))
+    clock: Clock = RealClock(float(arguments[1]))
+    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    warnings = real_time()
+    try:
+        machine_driven = driven(machine, clock)
+    except DriverError as error:
+        sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
+        return 1
+    sock.sendall(packed(Message({"ready": True}, NOTHING)))
+    serve(sock, machine_driven, warnings)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,185 @@
+"""The feeder: answers the control, keeps the drivers going, stops the machine when the control is gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Protocol
+
+import numpy as np
+
+from core.ports import DriverError, MachinePorts, Stop
+from drivers.feeder.wire import NOTHING, Message, cam_of, number, segments, text
+
+SILENT = 0.2  # s without a word after which the control counts as stalled
+_NOTES = 50
+
+
+class Driven(Protocol):
+    """A set of drivers that one loop owns. ``hands`` is a simulated machine's handle, where it is one."""
+
+    @property
+    def ports(self) -> MachinePorts: ...
+
+    @property
+    def hands(self) -> object | None: ...
+
+    def tick(self) -> None:
+        """Called every few milliseconds; raises nothing."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class Feeder:
+    """``handle`` one message, ``tick`` between them. All by one thread.
+
+    A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
+    outputs go to their safe states. ``orphaned``: it will never speak again; at rest the drives go off too.
+    """
+
+    def __init__(self, driven: Driven, warnings: Sequence[str] = ()) -> None:
+        self._driven = driven
+        self._ports = driven.ports
+        self._warnings = list(warnings)
+        self._heard = self._ports.clock.now()
+        self._parted = False
+        self._notes: list[str] = []
+        self.orphaned = False
+        self.done = False  # orphaned, at rest, switched off
+        self._answers: Mapping[str, Callable[[Message], Message]] = {
+            "hello": self._hello,
+            "look": self._look,
+            "splice": self._splice,
+            "demand": self._demand,
+            "horizon": lambda _: _value(self._ports.axes.horizon()),
+            "mesh": self._mesh,
+            "do": self._act,
+            "hand": self._hand,
+        }
+
+    def handle(self, message: Message) -> Message:
+        """The answer; what the drivers refuse comes back as ``error``."""
+        self._hear()
+        answer = self._answers.get(text(message.head, "do"))
+        if answer is None:
+            return _refused("the feeder does not know this request; are both of the same version?")
+        try:
+            return answer(message)
+        except DriverError as error:
+            return _refused(str(error))
+
+    def tick(self) -> None:
+        """Drivers first, then whether the control still speaks."""
+        self._driven.tick()
+        if self.orphaned or self._ports.clock.now() - self._heard > SILENT:
+            self._without_control()
+
+    def _hear(self) -> None:
+        now = self._ports.clock.now()
+        if now - self._heard > SILENT:
+            self._note(f"the control was silent for {now - self._heard:.2f} s")
+        self._heard = now
+        self._parted = False
+
+    def _without_control(self) -> None:
+        """The queue ends at rest by itself; what does not, is stopped once it is over."""
+        axes = self._ports.axes
+        if axes.sample().moving or axes.horizon() > axes.now():
+            return
+        if not self._parted:
+            self._parted = True
+            self._note("the control is silent: spindle stopped, outputs safe")
+            self._carefully(lambda: self._ports.spindle.run(0.0), self._ports.io.safe)
+        if self.orphaned and not self.done:
+            self._carefully(lambda: axes.stop(Stop.RAMP_OFF))
+            self.done = True
+
+    def _carefully(self, *steps: Callable[[], None]) -> None:
+        for step in steps:
+            try:
+                step()
+            except DriverError as error:
+                self._note(f"while stopping: {error}")
+
+    def _note(self, what: str) -> None:
+        self._notes = [*self._notes[-_NOTES:], what]
+
+    # --- answers ------------------------------------------------------------------------------------------
+
+    def _hello(self, _message: Message) -> Message:
+        axes = self._ports.axes
+        head = {
+            "axes": axes.axes,
+            "commit": axes.commit,
+            "gear": self._ports.gear is not None,
+            "warnings": [*self._warnings, *self._ports.warnings],
+        }
+        return Message(head, NOTHING)
+
+    def _look(self, _message: Message) -> Message:
+        ports, sample = self._ports, self._ports.axes.sample()
+        geared = ports.gear.geared() if ports.gear is not None else None
+        head: dict[str, object] = {
+            "sample": sample._asdict(),
+            "speed": ports.spindle.speed(),
+            "angle": ports.spindle.angle(),
+            "spindle": ports.spindle.fault(),
+            "inputs": dict(ports.io.inputs()),
+            "outputs": dict(ports.io.outputs()),
+            "station": asdict(ports.station.snapshot()),
+            "geared": geared,
+            "notes": self._notes,
+        }
+        self._notes = []
+        return Message(head, NOTHING)
+
+    def _splice(self, message: Message) -> Message:
+        self._ports.axes.splice(segments(message.numbers, len(self._ports.axes.axes)))
+        return _value(0.0)
+
+    def _demand(self, message: Message) -> Message:
+        p, v = self._ports.axes.demand_at(number(message.head, "t"))
+        return Message({}, np.array([*p, *v]))
+
+    def _mesh(self, message: Message) -> Message:
+        if self._ports.gear is None:
+            raise DriverError("this driver cannot follow the spindle")
+        self._ports.gear.mesh(cam_of(message, len(self._ports.axes.axes)))
+        return _value(0.0)
+
+    def _act(self, message: Message) -> Message:
+        ports, head = self._ports, message.head
+        on = head.get("on") is True
+        acts: dict[str, Callable[[], None]] = {
+            "enable": lambda: ports.axes.enable(on),
+            "stop": lambda: ports.axes.stop(Stop(text(head, "how"))),
+            "home": lambda: ports.axes.home(text(head, "name")),
+            "clear_fault": ports.axes.clear_fault,
+            "run": lambda: ports.spindle.run(number(head, "rpm")),
+            "coast": ports.spindle.coast,
+            "write": lambda: ports.io.write(text(head, "name"), on),
+            "safe": ports.io.safe,
+        }
+        act = acts.get(text(head, "what"))
+        if act is None:
+            raise DriverError("the feeder does not know this order; are both of the same version?")
+        act()
+        return _value(0.0)
+
+    def _hand(self, message: Message) -> Message:
+        """A hand at the simulated station, by the name of its method."""
+        hands, name = self._driven.hands, text(message.head, "name")
+        act = None if name.startswith("_") or hands is None else getattr(hands, name, None)
+        values = message.head.get("values")
+        if not callable(act) or not isinstance(values, list):
+            raise DriverError("this machine has no simulated station")
+        return Message({"value": act(*values)}, NOTHING)
+
+
+def _value(value: float) -> Message:
+    return Message({"value": value}, NOTHING)
+
+
+def _refused(why: str) -> Message:
+    return Message({"error": why}, NOTHING)

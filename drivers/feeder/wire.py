@@ -1,0 +1,120 @@
+"""One message on the socket: two lengths, a JSON head, and numbers as they lie in memory."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from core.ports import Cam, DriverError, FloatArray, Segments
+
+_LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
+LARGEST = 64_000_000  # bytes; more is no message
+
+
+class Message(NamedTuple):
+    """What is asked or answered, and the numbers that belong to it, one flat row."""
+
+    head: Mapping[str, object]
+    numbers: FloatArray
+
+
+NOTHING: FloatArray = np.empty(0)
+
+
+def packed(message: Message) -> bytes:
+    """The bytes of one message."""
+    head = json.dumps(message.head).encode()
+    numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
+    return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
+
+
+class Inbox:
+    """Bytes in, whole messages out."""
+
+    def __init__(self) -> None:
+        self._bytes = bytearray()
+
+    def feed(self, data: bytes) -> Iterator[Message]:
+        """Every message that is whole now. Raises DriverError for what is none."""
+        self._bytes += data
+        while len(self._bytes) >= _LENGTHS.size:
+            head, numbers = _LENGTHS.unpack_from(self._bytes)
+            end = _LENGTHS.size + head + numbers
+            if end > LARGEST or numbers % 8:
+                raise DriverError("the feeder's socket carries something that is no message")
+            if len(self._bytes) < end:
+                return
+            text = bytes(self._bytes[_LENGTHS.size : _LENGTHS.size + head])
+            row = np.frombuffer(bytes(self._bytes[_LENGTHS.size + head : end]), dtype="<f8")
+            del self._bytes[:end]
+            yield Message(_head(text), row)
+
+
+def _head(text: bytes) -> Mapping[str, object]:
+    try:
+        head = json.loads(text)
+    except ValueError as error:
+        raise DriverError("the feeder's socket carries something that is no message") from error
+    if not isinstance(head, dict):
+        raise DriverError("the feeder's socket carries something that is no message")
+    return head
+
+
+def rows(segments: Segments | None) -> FloatArray:
+    """Segments in one row: t, dt, p, v, a."""
+    return NOTHING if segments is None else np.concatenate([part.ravel() for part in segments])
+
+
+def segments(numbers: FloatArray, axes: int) -> Segments:
+    """The segments of one row. Raises DriverError for a row of another length."""
+    width = 2 + 3 * axes
+    count, left = divmod(len(numbers), width)
+    if left or not count:
+        raise DriverError("setpoints were damaged on their way to the feeder")
+    cuts = np.cumsum([count, count, count * axes, count * axes])
+    t, dt, p, v, a = np.split(numbers, cuts)
+    return Segments(t, dt, p.reshape(count, axes), v.reshape(count, axes), a.reshape(count, axes))
+
+
+def cam_message(cam: Cam) -> Message:
+    """A request to follow the spindle."""
+    way = rows(cam.way)
+    head = {"do": "mesh", "zero": cam.zero, "sign": cam.sign, "way": len(way)}
+    return Message(head, np.concatenate([way, rows(cam.then)]))
+
+
+def number(head: Mapping[str, object], key: str) -> float:
+    """A number of the head. Raises DriverError where there is none."""
+    value = head.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise DriverError(f"the feeder was sent no number as {key}")
+    return float(value)
+
+
+def text(head: Mapping[str, object], key: str) -> str:
+    """A text of the head; empty where there is none."""
+    value = head.get(key)
+    return value if isinstance(value, str) else ""
+
+
+def cam_of(message: Message, axes: int) -> Cam:
+    """The cam of a request. Raises DriverError."""
+    split = int(number(message.head, "way"))
+    way, then = message.numbers[:split], message.numbers[split:]
+    return Cam(
+        number(message.head, "zero"),
+        number(message.head, "sign"),
+        segments(way, axes),
+        segments(then, axes) if len(then) else None,
+    )
+
+
+def floats(values: object) -> tuple[float, ...]:
+    """A list of numbers as it comes out of JSON. Raises DriverError."""
+    if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
+        raise DriverError("the feeder answered no numbers")
+    return tuple(float(v) for v in values)
