@@ -8,9 +8,10 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from core.store import database, offsets, programs, records, runs
+from core.store import database, offsets, programs, records, runs, zero
 from core.store.errors import StoreError
 from core.store.rows import Change, EventRow, Kind, ProgramRow, RunRow, SecondaryRow, ToolRow, VersionRow
+from core.store.zero import ZeroChange, ZeroRow
 
 
 class StoreReader:
@@ -46,6 +47,16 @@ class StoreReader:
         """Changes of offsets, newest first."""
         with self.read() as connection:
             return offsets.history(connection, kind, limit)
+
+    def zero_offsets(self) -> dict[int, ZeroRow]:
+        """The settable offsets G54…G59 that have been set."""
+        with self.read() as connection:
+            return zero.current(connection)
+
+    def zero_history(self, limit: int = 100) -> tuple[ZeroChange, ...]:
+        """Changes of G54…G59, newest first."""
+        with self.read() as connection:
+            return zero.history(connection, limit)
 
     def programs(self) -> tuple[ProgramRow, ...]:
         """All programs by name."""

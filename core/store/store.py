@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from core.store import offsets, programs, records, runs, toolset
+from core.store import offsets, programs, records, runs, toolset, zero
 from core.store.errors import StoreError
 from core.store.offsets import Reason
 from core.store.opening import Opened, open_to_read, open_to_write
@@ -17,6 +17,7 @@ from core.store.reading import StoreReader
 from core.store.rows import Change, EventRow, Kind, Row, SecondaryRow, ToolRow, Value, utc_now
 from core.store.toolset import Touch
 from core.store.writer import Operation, StoreWriter
+from core.store.zero import ZeroChange, ZeroRow
 
 __all__ = ["Store", "StoreError"]
 
@@ -107,6 +108,21 @@ class Store(StoreReader):
         StoreError when there is none.
         """
         return self.write(lambda c: offsets.undo(c, Reason(why, who), kind))
+
+    def set_zero(
+        self, code: int, why: str, values: Mapping[str, float], *, who: str = "operator"
+    ) -> Future[ZeroRow]:
+        """Sets what ``values`` names of G54…G59: mm, X a radius, C in degrees; the rest stays."""
+        wanted = dict(values)
+        return self.write(lambda c: zero.change(c, code, Reason(why, who), wanted))
+
+    def clear_zero(self, why: str, *, who: str = "operator") -> Future[int]:
+        """All of G54…G59 at once, as one step of their history; answers how many were set."""
+        return self.write(lambda c: zero.clear(c, Reason(why, who)))
+
+    def undo_zero(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[ZeroChange, ...]]:
+        """Takes the last change of G54…G59 back; again: the one before. StoreError when there is none."""
+        return self.write(lambda c: zero.undo(c, Reason(why, who)))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
