@@ -27,6 +27,7 @@ class Jogger:
         self._bench = bench
         self._axis = -1
         self.stepping = False
+        self._short = False  # the step was stopped before its end
 
     @property
     def axis(self) -> str:
@@ -110,11 +111,10 @@ class Jogger:
         return moves
 
     def stop(self) -> None:
-        """The lease is given back, or taken away; a step ends short, and that is said."""
+        """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
         if self._axis < 0:
             return
-        if self.stepping:
-            self._bench.say("refused", f"{self.axis} was stopped before the end of its step")
+        self._short = self._short or self.stepping
         amax = self._bench.machine.axes[self._axis].amax
         self._splice(self._axis, lambda _start, _p, v: ride.ride(v, 0.0, amax, 0.0, math.inf))
         self.stepping = False
@@ -125,12 +125,14 @@ class Jogger:
         horizon = axes.horizon()
         if horizon > axes.now() + 1e-9:
             return False
+        if self._short:
+            self._bench.say("refused", f"{self.axis} was stopped before the end of its step")
         self.forget()
         return True
 
     def forget(self) -> None:
         """Nothing is jogged any more: it has come to rest, or something else has stopped it."""
-        self._axis, self.stepping = -1, False
+        self._axis, self.stepping, self._short = -1, False, False
 
     def _splice(self, index: int, rides: Callable[[float, float, float], list[Piece]]) -> bool:
         """Queue what ``rides`` makes of (start, position, velocity); later when the clock was faster.

@@ -50,10 +50,11 @@ class JogHold:
     mode: Mode = field(default_factory=Mode)
     held: Held | None = None
     down: set[str] = field(default_factory=set)  # keys and fingers that were pressed and not let go yet
+    _ended: str = ""  # why the last one ended, to be said once more when the slide rests
 
     def press(self, source: str, axis: str, sign: int, *, rapid: bool) -> None:
         """A key or finger goes down on a direction."""
-        others = self.down - {source}
+        others, self._ended = self.down - {source}, ""
         self.down.add(source)
         if others or self.held is not None:
             self.stop(tr("TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE"))
@@ -113,6 +114,7 @@ class JogHold:
             self.held = None
             self.post(JogStop())
         if why:
+            self._ended = why
             self.say(why)
 
     def look(self, snapshot: Snapshot) -> None:
@@ -120,6 +122,7 @@ class JogHold:
         self.mode = Mode(snapshot.modal.metric, snapshot.modal.diameter)
         held, now = self.held, self.clock()
         if held is None:
+            self._say_again(snapshot)
             return
         away, held.looked = now - held.looked, now
         if away > self.lease:
@@ -132,6 +135,12 @@ class JogHold:
         elif held.moving or snapshot.state is not State.IDLE or now - held.since > BEGINS:
             self.held = None  # the machine has ended it, or never began
             self.post(JogStop())
+
+    def _say_again(self, snapshot: Snapshot) -> None:
+        """An answer goes when the state changes; this one came while the slide still moved."""
+        if self._ended and snapshot.state is not State.JOG:
+            self.say(self._ended)
+            self._ended = ""
 
     def _renew(self, held: Held, now: float) -> None:
         if now - held.posted >= self.lease / RENEWED:

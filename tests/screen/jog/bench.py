@@ -1,0 +1,159 @@
+"""The Jog page on the executor and the simulated lathe: keys from Qt, time from the test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.compose.screen import desk_and_executor
+from app.desk.desk import Desk
+from app.desk.offsets.book import OffsetBook
+from app.screen.frame import Frame
+from app.screen.jog.page import JogPage
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.executor import Executor
+from core.executor.snapshot import Snapshot, State
+from core.store.store import Store
+from drivers.simulated import StepClock
+
+Key = Qt.Key
+TICK = 0.01
+INCH = 25.4
+NONE = Qt.KeyboardModifier.NoModifier
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+def shipped(folder: Path, *, absolute: bool) -> str:
+    """The shipped machine file; not ``absolute``: its slides only count, and Z is homed before X."""
+    text = files("resources").joinpath("machines", "gt75.toml").read_text(encoding="utf-8")
+    if not absolute:
+        parts = text.split("absolute = true", 2)
+        homes = [f"absolute = false\nhome = {{ order = {order}, speed = 60 }}" for order in (2, 1)]
+        text = parts[0] + homes[0] + parts[1] + homes[1] + parts[2]
+    path = folder / "lathe.toml"
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+@dataclass
+class JogBench:
+    """One window in front of one lathe."""
+
+    window: MainWindow
+    desk: Desk
+    executor: Executor
+    clock: StepClock
+    store: Store
+
+    @property
+    def frame(self) -> Frame:
+        """What the operator looks at."""
+        assert self.window.frame is not None
+        return self.window.frame
+
+    @property
+    def page(self) -> JogPage:
+        """The Jog page in front."""
+        page = self.frame.page
+        assert isinstance(page, JogPage)
+        return page
+
+    @property
+    def shot(self) -> Snapshot:
+        """The machine of now."""
+        return self.executor.snapshot
+
+    def run(self, seconds: float, *, screen: bool = True) -> None:
+        """So much time on the machine, and on the screen unless it stands still."""
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.clock.advance(TICK)
+            self.executor.tick()
+            if screen:
+                self.window.refresh()
+
+    def until(self, true: Callable[[], bool], limit: float = 20.0) -> None:
+        """Run until something is so."""
+        end = self.clock.now() + limit
+        while not true():
+            assert self.clock.now() < end, f"not within {limit} s: {self.shot.state}, {self.prompt}"
+            self.run(TICK)
+
+    def rests(self) -> None:
+        """Run until the machine is ready again."""
+        self.until(lambda: self.shot.state is State.IDLE and not self.page.model.hold.held)
+
+    def saved(self) -> None:
+        """Wait for the disk, then look."""
+        self.store.write(lambda _connection: None).result(5.0)
+        self.run(2 * TICK)
+
+    # --- hands ---------------------------------------------------------------------------------------
+
+    def key(self, key: Key, modifier: Qt.KeyboardModifier = NONE) -> None:
+        """Press and let go."""
+        QTest.keyClick(self.window, key, modifier)
+
+    def down(self, key: Key, modifier: Qt.KeyboardModifier = NONE) -> None:
+        """Press and keep."""
+        QTest.keyPress(self.window, key, modifier)
+
+    def up(self, key: Key, modifier: Qt.KeyboardModifier = NONE) -> None:
+        """Let go."""
+        QTest.keyRelease(self.window, key, modifier)
+
+    def repeats(self, key: Key) -> None:
+        """What X11 makes of a key that is held: a release and a press, both marked as repeats."""
+        for kind in (QEvent.Type.KeyRelease, QEvent.Type.KeyPress):
+            QApplication.sendEvent(self.window, QKeyEvent(kind, key, NONE, "", autorep=True))
+
+    def type(self, text: str) -> None:
+        """Type, without Return."""
+        QTest.keyClicks(self.window, text)
+
+    def enter(self, text: str) -> None:
+        """Type and press Return."""
+        self.type(text)
+        self.key(Key.Key_Return)
+
+    @property
+    def prompt(self) -> str:
+        """The prompt line."""
+        self.window.refresh()
+        return self.frame.prompt.text
+
+
+def bench_on(folder: Path, *, absolute: bool = True) -> JogBench:
+    """Desk, lathe and window; the drives are on and the Jog page is open."""
+    clock = StepClock()
+    desk, executor = desk_and_executor(shipped(folder, absolute=absolute), lambda: ({}, {}), clock)
+    store = Store.open(folder / "home")
+    desk.book = OffsetBook(store)
+    desk.hands.clock = clock.now
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    bench = JogBench(window, desk, executor, clock, store)
+    bench.executor.tick()
+    window.open_desk(desk)
+    window.show()
+    return bench
+
+
+def opened(bench: JogBench) -> None:
+    """Drives on, Jog page in front."""
+    bench.window.activateWindow()
+    bench.run(2 * TICK)
+    bench.key(Key.Key_D)
+    bench.run(5 * TICK)
+    bench.key(Key.Key_F1)
+    bench.key(Key.Key_F5)
+    bench.run(TICK)

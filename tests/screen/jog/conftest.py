@@ -1,0 +1,31 @@
+"""A lathe with the Jog page open, and one whose slides have to be homed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from tests.screen.jog.bench import JogBench, bench_on, opened
+
+
+def _open(qtbot: QtBot, folder: Path, *, absolute: bool) -> Iterator[JogBench]:
+    bench = bench_on(folder, absolute=absolute)
+    qtbot.waitExposed(bench.window)
+    opened(bench)
+    yield bench
+    bench.window.put_away()
+    bench.desk.close()
+    bench.store.close()
+
+
+@pytest.fixture
+def jog(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
+    yield from _open(qtbot, tmp_path, absolute=True)
+
+
+@pytest.fixture
+def lost(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
+    yield from _open(qtbot, tmp_path, absolute=False)

@@ -1,0 +1,270 @@
+"""The known accidents of hand moves, by key events on the real executor: the slide stops and stays so."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QDialog
+from pytestqt.qtbot import QtBot
+
+from app.desk import pages
+from core.executor.snapshot import State
+from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+
+SLOW = 5 * INCH / 60  # mm/s: the speed that is chosen at first
+AMAX = 120 * INCH
+LEASE = 0.2
+RUN_ON = LEASE * SLOW + SLOW * SLOW / (2 * AMAX) + 0.03 * SLOW + 0.002
+
+
+def moving(jog: JogBench, key: Key = Key.Key_Left) -> float:
+    """An arrow is held and the slide moves; where it is."""
+    jog.down(key)
+    jog.run(0.5)
+    assert jog.shot.state is State.JOG
+    assert jog.shot.demand[1] < -0.3 * SLOW
+    return jog.shot.demand[1]
+
+
+def stands(jog: JogBench, at: float, run_on: float = RUN_ON) -> None:
+    """It comes to rest within what a lease allows, and nothing moves it again."""
+    jog.run(0.5)
+    assert jog.shot.state is not State.JOG
+    rest = jog.shot.demand[1]
+    assert at - rest <= run_on
+    jog.run(1.0)
+    assert jog.shot.demand[1] == rest
+    assert jog.shot.alarms == ()
+
+
+@pytest.mark.parametrize(
+    ("key", "axis", "sign"),
+    [
+        (Key.Key_Left, 1, -1),
+        (Key.Key_Right, 1, 1),
+        (Key.Key_Down, 0, 1),
+        (Key.Key_Up, 0, -1),
+        (Key.Key_PageUp, 2, 1),
+        (Key.Key_PageDown, 2, -1),
+    ],
+)
+def test_each_arrow_moves_its_axis_while_it_is_held(jog: JogBench, key: Key, axis: int, sign: int) -> None:
+    jog.down(key)
+    jog.run(1.0)
+    speed = 15.0 if axis == 2 else SLOW
+    assert sign * jog.shot.demand[axis] == pytest.approx(speed * 0.97, rel=0.05)
+    jog.up(key)
+    jog.rests()
+    assert [place for at, place in enumerate(jog.shot.demand) if at != axis] == [0.0, 0.0]
+
+
+def test_the_release_ends_it_at_once(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.up(Key.Key_Left)
+    stands(jog, at, 0.06 * SLOW)
+
+
+def test_the_pairs_of_a_repeating_key_neither_end_it_nor_begin_it_again(jog: JogBench) -> None:
+    moving(jog)
+    for _ in range(20):
+        jog.repeats(Key.Key_Left)
+        jog.run(0.03)
+    assert jog.shot.state is State.JOG
+    at = jog.shot.demand[1]
+    jog.up(Key.Key_Left)
+    jog.repeats(Key.Key_Left)
+    stands(jog, at)
+
+
+def test_a_missed_release_ends_with_the_silence_of_the_key(jog: JogBench) -> None:
+    moving(jog)
+    jog.repeats(Key.Key_Left)
+    jog.run(0.55)
+    stands(jog, jog.shot.demand[1])
+    assert "SILENT" in jog.prompt
+
+
+def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None:
+    at = moving(jog)
+    other = QDialog()
+    with qtbot.waitActive(other):
+        other.show()
+        other.activateWindow()
+    stands(jog, at)
+    other.close()
+    other.deleteLater()
+    jog.window.activateWindow()
+    qtbot.waitUntil(jog.window.isActiveWindow)
+    jog.run(0.3)
+    assert "KEYBOARD WENT ELSEWHERE" in jog.prompt
+    jog.up(Key.Key_Left)
+    moving_again = jog.shot.demand[1]
+    jog.down(Key.Key_Left)
+    jog.run(0.5)
+    assert jog.shot.demand[1] < moving_again - 0.3 * SLOW  # recovered: the next press moves
+    jog.up(Key.Key_Left)
+
+
+def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
+    at = moving(jog)
+    dialog = QDialog(jog.window)
+    dialog.setModal(True)
+    with qtbot.waitExposed(dialog):
+        dialog.show()
+    stands(jog, at)
+    dialog.close()
+    dialog.deleteLater()
+
+
+def test_the_page_changes(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.key(Key.Key_F8)
+    assert jog.frame.page.NAME == pages.TOOLS
+    stands(jog, at)
+
+
+def test_the_increment_changes_while_held(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.key(Key.Key_F2)
+    stands(jog, at)
+    assert jog.page.model.speeds.step == 0
+
+
+def test_the_speed_changes_while_held(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.key(Key.Key_F3)
+    stands(jog, at)
+
+
+@pytest.mark.parametrize("key", [Key.Key_S, Key.Key_F7, Key.Key_T, Key.Key_Shift, Key.Key_Control])
+def test_any_other_key(jog: JogBench, key: Key) -> None:
+    at = moving(jog)
+    jog.key(key)
+    stands(jog, at)
+
+
+@pytest.mark.parametrize("key", [Key.Key_H, Key.Key_Space, Key.Key_Escape, Key.Key_E])
+def test_what_a_hand_hits_in_a_hurry(jog: JogBench, key: Key) -> None:
+    at = moving(jog)
+    jog.key(key)
+    stands(jog, at)
+
+
+def test_two_arrows_at_once(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.down(Key.Key_Up)
+    stands(jog, at)
+    assert jog.shot.demand[0] == 0.0
+    assert "TWO AT ONCE" in jog.prompt
+    jog.up(Key.Key_Left)
+    jog.up(Key.Key_Up)
+
+
+def test_the_other_direction_while_moving(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.down(Key.Key_Right)
+    stands(jog, at)
+    jog.up(Key.Key_Left)
+    jog.run(0.3)
+    stands(jog, jog.shot.demand[1])  # the one that is still down does not begin by itself
+    jog.up(Key.Key_Right)
+
+
+def test_a_screen_that_stands_still(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.run(2.0, screen=False)
+    assert jog.shot.state is State.IDLE
+    assert at - jog.shot.demand[1] <= RUN_ON
+    stands(jog, at)
+    assert jog.page.model.hold.held is None
+
+
+def test_a_rapid_whose_shift_comes_up_first(jog: JogBench) -> None:
+    jog.down(Key.Key_Shift)
+    jog.down(Key.Key_Left, SHIFT)
+    jog.run(0.4)
+    assert jog.shot.velocity == pytest.approx(100 * INCH / 60, rel=0.05)
+    at = jog.shot.demand[1]
+    jog.up(Key.Key_Shift)
+    fast = 100 * INCH / 60
+    stands(jog, at, 0.06 * fast + fast * fast / (2 * AMAX))
+    jog.up(Key.Key_Left)
+
+
+def test_arrows_in_an_entry_move_nothing(jog: JogBench) -> None:
+    jog.type("t")
+    jog.down(Key.Key_Left)
+    jog.run(0.5)
+    assert jog.shot.demand == (0.0, 0.0, 0.0)
+    assert "AN ENTRY IS OPEN" in jog.prompt
+    jog.up(Key.Key_Left)
+    jog.key(Key.Key_Escape)
+    moving(jog)
+    jog.up(Key.Key_Left)
+
+
+def test_a_chord_moves_nothing(jog: JogBench) -> None:
+    jog.down(Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
+    jog.run(0.5)
+    assert jog.shot.demand == (0.0, 0.0, 0.0)
+    jog.up(Key.Key_Left)
+
+
+def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
+    jog.down(Key.Key_Right, SHIFT)
+    jog.run(5.0)
+    assert jog.shot.state is State.IDLE
+    assert jog.shot.demand[1] == pytest.approx(6 * INCH - 0.01, abs=1e-6)
+    jog.up(Key.Key_Right)
+    jog.down(Key.Key_Right)
+    jog.run(1.0)
+    assert jog.prompt == "REFUSED: jog: Z is at the end of its travel in +"
+    jog.up(Key.Key_Right)
+
+
+def test_with_the_drives_off_it_says_why(jog: JogBench) -> None:
+    jog.key(Key.Key_E)
+    jog.run(0.1)
+    jog.key(Key.Key_E, SHIFT)
+    jog.run(0.1)
+    jog.down(Key.Key_Left)
+    jog.run(0.3)
+    assert jog.prompt == "THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"
+    jog.up(Key.Key_Left)
+
+
+# --- fingers and the mouse ---------------------------------------------------------------------------------
+
+
+def target(jog: JogBench, number: int) -> QPoint:
+    """The middle of one of the six targets, in the order in which they are drawn."""
+    jog.window.grab()
+    controls = jog.page.pad.controls[-6:]
+    return controls[number].box.center().toPoint()
+
+
+def test_a_finger_moves_while_it_stays(jog: JogBench) -> None:
+    left = target(jog, 1)
+    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=left)
+    jog.run(0.5)
+    assert jog.shot.demand[1] < -0.3 * SLOW
+    at = jog.shot.demand[1]
+    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=left)
+    stands(jog, at)
+
+
+def test_a_finger_that_slides_off_the_target(jog: JogBench) -> None:
+    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+    jog.run(0.5)
+    at = jog.shot.demand[1]
+    QTest.mouseMove(jog.page.pad, pos=target(jog, 2))
+    stands(jog, at)
+    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 2))
+
+
+def test_a_finger_and_a_key_at_once(jog: JogBench) -> None:
+    at = moving(jog)
+    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+    stands(jog, at)
+    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))

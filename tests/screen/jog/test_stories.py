@@ -1,0 +1,262 @@
+"""Setting up by keys alone: steps to a position, two tools by touch-off, homing, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.snapshot import State
+from core.store.rows import ToolRow
+from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+
+
+def step_to(jog: JogBench, key: Key, step: int, presses: int) -> None:
+    """Choose a step by F2 and press so often."""
+    while jog.page.model.speeds.step != step:
+        jog.key(Key.Key_F2)
+    for _ in range(presses):
+        jog.key(key)
+        jog.run(0.02)
+        jog.rests()
+
+
+def test_steps_lead_to_a_position(jog: JogBench) -> None:
+    step_to(jog, Key.Key_Down, 0, 3)  # .3
+    step_to(jog, Key.Key_Down, 1, 2)  # .02
+    step_to(jog, Key.Key_Up, 2, 1)  # .001 back
+    step_to(jog, Key.Key_Down, 3, 5)  # .0005
+    step_to(jog, Key.Key_Left, 0, 1)
+    assert jog.shot.demand[0] == pytest.approx(0.3195 * INCH, abs=1e-9)
+    assert jog.shot.demand[1] == pytest.approx(-0.1 * INCH, abs=1e-9)
+    assert jog.frame.head.view is not None
+    assert jog.frame.head.view.position.axes[0].value == "0.31950"
+
+
+def test_a_step_that_is_held_is_one_step(jog: JogBench) -> None:
+    jog.key(Key.Key_F2)
+    jog.down(Key.Key_Left)
+    for _ in range(40):
+        jog.repeats(Key.Key_Left)
+        jog.run(0.03)
+    jog.up(Key.Key_Left)
+    assert jog.shot.demand[1] == pytest.approx(-0.1 * INCH, abs=1e-9)
+
+
+def test_a_step_is_cut_short_by_the_page_and_that_is_said(jog: JogBench) -> None:
+    jog.key(Key.Key_F2)
+    jog.key(Key.Key_Left)
+    jog.run(0.1)
+    jog.key(Key.Key_F8)
+    jog.run(0.5)
+    assert jog.shot.state is State.IDLE
+    assert jog.shot.demand[1] > -0.09 * INCH
+    assert "stopped before the end of its step" in jog.prompt
+
+
+def touch(jog: JogBench, key: str, answer: str) -> None:
+    jog.type(key)
+    jog.run(0.02)
+    jog.enter(answer)
+    jog.saved()
+
+
+def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
+    """T1 at home, T2 1 in nearer in X and .5 in further in Z; the figures are worked out by hand."""
+    jog.type("t")
+    jog.enter("1")
+    touch(jog, "x", ".5-.002")
+    assert "T1 IS SET WHEN Z IS TOUCHED TOO" in jog.prompt
+    assert jog.store.tools() == {}
+    touch(jog, "z", "0")
+    assert jog.prompt == "T1 SAVED"
+    # the tip stands at diameter .498 with the slide at home: part zero is .249 further in
+    assert jog.store.tools()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
+    assert jog.store.tools()[1].z == 0.0
+    step_to(jog, Key.Key_Up, 0, 10)
+    step_to(jog, Key.Key_Right, 0, 5)
+    jog.type("t")
+    jog.enter("2")
+    touch(jog, "x", ".75")
+    touch(jog, "z", ".1")
+    second = jog.store.tools()[2]
+    assert second.x == pytest.approx((-1.0 - 0.375) * INCH, abs=0.0013)
+    assert second.z == pytest.approx((0.5 - 0.1) * INCH, abs=0.0013)
+    assert jog.page.model.tool.tip(jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
+    assert [change.why for change in jog.store.history()] == ["touched off, new tool"] * 2
+
+
+def set_two(jog: JogBench) -> None:
+    jog.store.set_tool(1, "x", x=-5.0, z=-50.0, wear_x=0.1)
+    jog.store.set_tool(2, "x", x=3.0, z=-40.0).result(5)
+    jog.desk.book.__post_init__()
+    jog.type("t")
+    jog.enter("1")
+
+
+def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> None:
+    set_two(jog)
+    jog.type("x")
+    jog.type("1")
+    jog.run(0.02)
+    # radius .5 in; was −5 mm = −.19685 in
+    assert jog.page.asked.asked.change == "X  −0.19685  →  −0.50000"
+    jog.key(Key.Key_Return)
+    jog.saved()
+    assert jog.store.tools()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
+    assert jog.store.tools()[1].wear_x == 0.0
+    assert jog.store.tools()[2].x == 3.0
+    jog.key(Key.Key_F10)
+    jog.saved()
+    assert jog.store.tools()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
+
+
+def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
+    set_two(jog)
+    jog.type("m")
+    jog.saved()
+    jog.type("z")
+    jog.run(0.02)
+    assert "IS THE MASTER: ALL TOOLS FOLLOW" in jog.page.asked.asked.foot
+    jog.enter("1")
+    jog.saved()
+    # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
+    assert jog.store.tools()[1].z == pytest.approx(-25.4, abs=1e-9)
+    assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
+    jog.type("z")
+    jog.type("l")
+    jog.enter("0")
+    jog.saved()
+    assert jog.store.tools()[1].z == pytest.approx(0.0, abs=1e-9)
+    assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
+
+
+def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
+    """The position display goes by the new offset as soon as it is saved."""
+    set_two(jog)
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F5)
+    before = jog.executor.snapshot.modal
+    jog.executor._conductor.standing.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
+    jog.run(0.05)
+    touch(jog, "x", "1")
+    jog.run(0.05)
+    assert jog.frame.head.view is not None
+    assert jog.frame.head.view.position.axes[0].value == "0.50000"
+    assert jog.frame.head.view.tool == "T1"
+
+
+def test_fields_of_a_tool(jog: JogBench) -> None:
+    set_two(jog)
+    touch(jog, "n", ".4/25.4")
+    touch(jog, "q", "3")
+    touch(jog, "k", "Hardened END")
+    touch(jog, "w", "-.001")
+    assert jog.page.asked.asked.question == "T1  WEAR Z?"
+    jog.enter("")
+    row = jog.store.tools()[1]
+    assert row.nose_radius == pytest.approx(0.4)
+    assert (row.quadrant, row.remark) == (3, "Hardened END")
+    assert row.wear_x == pytest.approx(-0.0254)
+    assert jog.shot.state is State.IDLE  # H, E and D were letters of the remark
+
+
+@pytest.mark.parametrize(
+    ("key", "answer", "why"),
+    [
+        ("x", "1,5", "REFUSED: , in 1,5 is no number"),
+        ("x", "", "REFUSED: nothing is entered"),
+        ("x", "200", "REFUSED: X would be out of range"),
+        ("q", "11", "REFUSED: tip quadrant takes 0…9"),
+        ("w", ".2", "REFUSED: wear X would become +0.20000 in; it may be -0.1…0.1"),
+    ],
+)
+def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:
+    set_two(jog)
+    before = jog.store.tools()
+    jog.type(key)
+    jog.enter(answer)
+    assert jog.prompt.startswith(why)
+    jog.saved()
+    assert jog.store.tools() == before
+    assert jog.page.model.tool.asked
+
+
+def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
+    jog.type("x")
+    assert jog.prompt == "WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST"
+    jog.type("t")
+    jog.enter("33")
+    assert jog.prompt.startswith("REFUSED: T33 does not exist")
+
+
+# --- homing ------------------------------------------------------------------------------------------------
+
+
+def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> None:
+    assert lost.prompt == "X AND Z NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME"
+    lost.key(Key.Key_Home)
+    assert lost.prompt.startswith("HOME Z, THEN X: PRESS HOME ONCE MORE FOR ALL")
+    lost.run(0.5)
+    assert lost.shot.state is State.IDLE
+    lost.key(Key.Key_Home)
+    lost.run(0.05)
+    assert lost.shot.state is State.HOME
+    seen = []
+
+    def done() -> bool:
+        seen.append(tuple(known.value for known in lost.page.model.home.known(lost.shot).values())[:2])
+        return lost.shot.state is State.IDLE
+
+    lost.until(done)
+    assert list(dict.fromkeys(seen)) == [("NOT HOMED", "HOMING"), ("HOMING", "HOMED"), ("HOMED", "HOMED")]
+    lost.key(Key.Key_Home)
+    assert lost.prompt == "EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"
+
+
+def test_one_axis_alone(lost: JogBench) -> None:
+    lost.key(Key.Key_Home)
+    lost.type("x")
+    lost.until(lambda: lost.shot.homed[0])
+    lost.rests()
+    assert not lost.shot.homed[1]
+
+
+def test_another_key_takes_the_question_back(lost: JogBench) -> None:
+    lost.key(Key.Key_Home)
+    lost.key(Key.Key_Escape)
+    lost.key(Key.Key_Home)
+    lost.down(Key.Key_Left)
+    lost.run(0.3)
+    assert lost.shot.demand[1] == 0.0  # the arrow took it back, and is pressed again to jog
+    lost.up(Key.Key_Left)
+    lost.run(0.5)
+    assert lost.shot.state is State.IDLE
+    assert not any(lost.shot.homed[:2])
+
+
+def test_an_unhomed_axis_is_jogged_slowly_and_not_touched_off(lost: JogBench) -> None:
+    fastest = 0.0
+    lost.down(Key.Key_Right, SHIFT)
+    for _ in range(50):
+        lost.run(0.01)
+        fastest = max(fastest, lost.shot.velocity)
+    lost.up(Key.Key_Right)
+    assert fastest == pytest.approx(0.1 * 100 * INCH / 60, rel=0.06)
+    lost.type("t")
+    lost.enter("1")
+    lost.rests()
+    lost.type("x")
+    assert lost.prompt == "X IS NOT HOMED: ITS POSITION MEANS NOTHING YET"
+
+
+def test_hold_ends_homing(lost: JogBench) -> None:
+    lost.down(Key.Key_Left)
+    lost.run(1.0)
+    lost.up(Key.Key_Left)
+    lost.rests()
+    lost.key(Key.Key_Home)
+    lost.key(Key.Key_Home)
+    lost.run(0.05)
+    lost.key(Key.Key_H)
+    lost.run(0.5)
+    assert lost.shot.state is State.IDLE
+    assert not lost.shot.homed[1]
