@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.drawing.spots import measuring_words
 from app.desk.prompts import MOVING
 from app.desk.session import Loaded
 from app.desk.view import View
@@ -64,6 +65,10 @@ class AutomaticPage(Page):
         """The question for a file goes with the page."""
         self.files.dismiss()
         return True
+
+    def prompt(self) -> str:
+        """The keys of measuring; while something moves it is told what stops it, as ever."""
+        return measuring_words() if self.path.ruler is not None and not self._moving else ""
 
     def escape(self) -> bool:
         """Ends measuring; while something moves it holds the feed instead, as everywhere."""

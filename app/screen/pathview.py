@@ -212,6 +212,7 @@ class PathView(Panel):
             self._measure_in(self.panes[-1])
             self.setFocus()
         elif not wanted and self.ruler is not None:
+            self.ruler.end()
             self.ruler = None
             self.setMouseTracking(False)
             if self.hasFocus():

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.desk.drawing.approach import Leg
-from app.desk.drawing.features import Kind, Spot
+from app.desk.drawing.spots import Kind, Spot
 from app.desk.picture import Picture, Sketch
 from app.screen.look import Look
 from app.screen.path.aspects import Aspect, Tip

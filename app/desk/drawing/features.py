@@ -5,33 +5,14 @@ No answer here takes longer than a look at every point once, so that a key may a
 
 from __future__ import annotations
 
-from enum import IntEnum
-from typing import NamedTuple
-
 import numpy as np
 
+from app.desk.drawing.spots import Kind, Spot
 from app.desk.drawing.trail import Bounds, Floats, Stroke, Trail
 
 MOST_CROSSED = 300  # stretches in sight up to which crossings are looked for
 APART = 1e-6  # mm: nearer points are one
 WIDE = 1.2  # how far aside of an arrow key's direction a point may lie, of its distance along it
-
-
-class Kind(IntEnum):
-    """What a point is; of two in one place the first is told."""
-
-    END = 0
-    CENTRE = 1
-    CROSSING = 2
-    FREE = 3  # anywhere
-
-
-class Spot(NamedTuple):
-    """A point of a trail."""
-
-    z: float
-    x: float
-    kind: Kind = Kind.FREE
 
 
 class Features:

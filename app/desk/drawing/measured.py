@@ -5,20 +5,10 @@ from __future__ import annotations
 import math
 
 from app.desk import formats
-from app.desk.drawing.features import Kind, Spot
+from app.desk.drawing.spots import Spot
 from app.desk.words import tr
 
 Row = tuple[str, str]
-
-
-def kind_words(kind: Kind) -> str:
-    """What the cursor stands on."""
-    return {
-        Kind.END: tr("END"),
-        Kind.CENTRE: tr("CENTRE"),
-        Kind.CROSSING: tr("CROSSING"),
-        Kind.FREE: tr("FREE"),
-    }[kind]
 
 
 def between_on_path(start: Spot, end: Spot, metric: bool) -> list[Row]:

@@ -33,12 +33,7 @@ class Doing(NamedTuple):
     act: Callable[[], None]
 
 
-PROMPTS = {
-    Mode.FIND: words.FINDING,
-    Mode.GO_TO: words.GOING,
-    Mode.HISTORY: words.CHOOSING,
-    Mode.LOOK: words.LOOKING,
-}
+PROMPTS = {Mode.FIND: words.FINDING, Mode.GO_TO: words.GOING, Mode.HISTORY: words.CHOOSING}
 """What the prompt line says while nothing else is to be said."""
 
 

@@ -12,6 +12,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.drawing.spots import measuring_words
 from app.desk.editing import words
 from app.desk.editing.editor import Editor, Stage
 from app.desk.editing.entering import enter
@@ -107,6 +108,8 @@ class EditorPage(Page):
             return self.editor.notice
         if self._moving:
             return words.RUNS_OLD
+        if self._mode is Mode.LOOK:
+            return measuring_words()
         if self._mode in PROMPTS:
             return PROMPTS[self._mode]
         line = self.field.line

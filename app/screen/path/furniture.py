@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPen
@@ -15,7 +16,15 @@ from app.screen.path.plot import Frame, scale_length
 
 BUTTON = (4.8, 4.4, 5.0)  # units: width, height, from one to the next
 
-Button = tuple[str, Press]
+
+class Button(NamedTuple):
+    """``lit`` while what it switches is on."""
+
+    sign: str
+    press: Press
+    lit: bool = False
+
+
 Entry = tuple[str, QPen]
 
 
@@ -28,12 +37,12 @@ def draw_buttons(
 ) -> None:
     """A column at the right, as many as there is room for."""
     wide, high, step = (k * look.u for k in BUTTON)
-    for number, (sign, press) in enumerate(buttons):
+    for number, (sign, press, lit) in enumerate(buttons):
         box = QRectF(room.right() - wide - look.u, room.y() + 0.8 * look.u + number * step, wide, high)
         if box.bottom() > room.bottom() - 2.4 * look.u:
             return
-        painter.fillRect(box, look.colour("key"))
-        painter.setPen(look.colour("text"))
+        painter.fillRect(box, look.colour("lit" if lit else "key"))
+        painter.setPen(look.colour("on_lit" if lit else "text"))
         painter.setFont(look.fit(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * look.u, bold=True))
         put(painter, box, CENTRE, sign)
         place(box, press)

@@ -10,7 +10,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from app.desk.drawing import measured
-from app.desk.drawing.features import Features, Kind, Spot
+from app.desk.drawing.features import Features
+from app.desk.drawing.spots import Kind, Spot, kind_words
 from app.screen.look import LEFT, RIGHT, Look, put
 from app.screen.path.aspects import Aspect
 from app.screen.path.pane import Pane
@@ -26,6 +27,7 @@ class Measure:
 
     def __init__(self, pane: Pane) -> None:
         self.pane = pane
+        self._free = not pane.by_hand  # whether the view goes back to the whole part in the end
         self._features = Features(pane.trail)
         self.first: Spot | None = None
         self.second: Spot | None = None
@@ -55,6 +57,11 @@ class Measure:
         else:
             return False
         return True
+
+    def end(self) -> None:
+        """Look at the whole part again, where one did before."""
+        if self._free:
+            self.pane.fit()
 
     def point(self, at: QPointF) -> None:
         """The pointer is at a place of the widget: the cross goes to a point near it, or there."""
@@ -154,7 +161,7 @@ class Measure:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         row = QRectF(box.x() + 0.8 * u, box.y() + 0.3 * u, box.width() - 1.6 * u, high)
-        self._row(painter, row, (measured.kind_words(self.cursor.kind), unit), "soft")
+        self._row(painter, row, (kind_words(self.cursor.kind), unit), "soft")
         for pair in rows:
             row.translate(0, high)
             self._row(painter, row, pair, "text")

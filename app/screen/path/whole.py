@@ -56,14 +56,15 @@ def _name_of(pane: Pane) -> str:
 
 
 def _buttons(view: PathView) -> list[furniture.Button]:
-    found: list[furniture.Button] = [
-        ("+", lambda: view.zoom(1)),
-        ("−", lambda: view.zoom(-1)),
-        (tr("FIT"), view.fit),
-        (tr("MEAS"), view.measure),
+    button = furniture.Button
+    found = [
+        button("+", lambda: view.zoom(1)),
+        button("−", lambda: view.zoom(-1)),
+        button(tr("FIT"), view.fit),
+        button(tr("MEAS"), view.measure, view.ruler is not None),
     ]
     if view.several:
-        found.append((tr("VIEW"), view.next_view))
+        found.append(button(tr("VIEW"), view.next_view))
     return found
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.desk.drawing.features import MOST_CROSSED, Features, Kind, Spot, crossings, point_at
+from app.desk.drawing.features import MOST_CROSSED, Features, crossings, point_at
+from app.desk.drawing.spots import Kind, Spot
 from app.desk.drawing.trail import Stroke
 from tests.desk.drawing.made import trail
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from app.desk.drawing.features import Kind, Spot
 from app.desk.drawing.measured import (
     between_on_face,
     between_on_path,
     between_on_side,
-    kind_words,
     place_on_face,
     place_on_path,
     place_on_side,
 )
+from app.desk.drawing.spots import Kind, Spot, kind_words
 
 
 def test_three_four_five_in_inch() -> None:
