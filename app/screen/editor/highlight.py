@@ -5,7 +5,11 @@ from __future__ import annotations
 from PySide6.QtGui import QFont, QSyntaxHighlighter, QTextCharFormat, QTextDocument
 
 from app.screen.look import Look
+from core.language.diagnostics import ProgramError
 from core.language.omniturn import Line, Word, lex_line
+from core.language.omniturn.plane import ends_program, lex_plane, plane_entry
+
+PLAIN, IN_PLANE = 0, 1  # states that lines hand on
 
 # What a letter is of, and the palette's colour for it; weight tells codes from coordinates without colour.
 _CODES = frozenset({"G", "M"})
@@ -25,7 +29,7 @@ def ink_of(word: Word) -> tuple[str, bool]:
 
 
 class Highlighter(QSyntaxHighlighter):
-    """One line at a time: no line of this language depends on another one."""
+    """One line at a time; all that a line hands on to the next is whether it stands in a plane."""
 
     def __init__(self, look: Look, document: QTextDocument) -> None:
         super().__init__(document)
@@ -41,7 +45,30 @@ class Highlighter(QSyntaxHighlighter):
             self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
-        """Qt's call for a line that has changed."""
+        """Qt's call for a line that has changed, and for the next where the state it hands on has."""
+        inside = self.previousBlockState() == IN_PLANE and not ends_program(text)
+        entry = not inside and plane_entry(text) is not None
+        self.setCurrentBlockState(IN_PLANE if inside or entry else PLAIN)
+        if entry:
+            self.setFormat(0, len(text), self._format("accent", True))
+        elif inside:
+            self._plane(text)
+        else:
+            self._plain(text)
+
+    def _plane(self, text: str) -> None:
+        try:
+            line = lex_plane(1, text)
+        except ProgramError as fault:
+            self.setFormat(max(0, fault.diagnostic.column - 1), 1, self._format("alarm", True))
+            return
+        if line.name == "END":
+            self.setCurrentBlockState(PLAIN)
+            self.setFormat(0, len(text), self._format("accent", True))
+        for word in line.words.values():
+            self.setFormat(word.column - 1, _length(text, word), self._format(*ink_of(word)))
+
+    def _plain(self, text: str) -> None:
         line = lex_line(1, text)
         for word in line.words:
             self.setFormat(word.column - 1, _length(text, word), self._format(*ink_of(word)))

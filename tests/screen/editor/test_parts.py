@@ -53,6 +53,24 @@ def test_words_are_coloured_as_the_lexer_reads_them(field: TextField) -> None:
     ]
 
 
+def test_statements_of_a_plane_are_no_comments(field: TextField) -> None:
+    field.put_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", afresh=True)
+    field.dress()
+    assert inks(field, 2) == [("(~PLXC)", DARK.accent)]
+    assert inks(field, 3)[1:4] == [("X.5", DARK.text), ("Y.2I.1J0", DARK.text), ("F8", DARK.run)]
+    assert ("?", DARK.alarm) in inks(field, 4) or ("X", DARK.alarm) in inks(field, 4)
+    assert inks(field, 5) == [("(END)", DARK.accent)]
+    assert inks(field, 6) == [("(DONE)", DARK.soft)]
+
+
+def test_a_plane_that_is_taken_out_leaves_comments(field: TextField) -> None:
+    field.put_text("(~PLXC)\n(X.5)", afresh=True)
+    field.dress()
+    assert inks(field, 2) == [("X.5", DARK.text)]
+    field.replace_at((1,), 1, "")  # the mark of the entry
+    assert inks(field, 2) == [("(X.5)", DARK.soft)]
+
+
 def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: TextField) -> None:
     field.put_text("X1?", afresh=True)
     field.dress()
