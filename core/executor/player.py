@@ -23,6 +23,7 @@ from core.ports import AxisSink, DriverError, Gear, Segments
 
 _AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 _SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
+_LEAST = 0.2  # of the acceleration: what braking has in short chords at least
 _TRIES = 3
 _PATIENCE = 0.02  # s added to the lead when a plan came too late
 
@@ -91,7 +92,7 @@ class Player:
     def add(self, blocks: Iterable[Block]) -> None:
         """More of the stretch; planned with the next ``go``."""
         assert self._stretch is not None
-        self._stretch.add(blocks)
+        self._stretch.add(blocks, self._reached())
 
     def forget(self) -> None:
         """The stretch is over, or nothing of it holds any more."""
@@ -186,6 +187,15 @@ class Player:
         if self._pass is not None:
             return [each for each in self._pass.blocks if each.n > block.n]
         return self._stretch.behind(block.n) if self._stretch else []
+
+    def _reached(self) -> float:
+        """Distance before which the motion under way can come to rest, from when it can be changed on."""
+        t = self._lead(self._axes.now()) + _TRIES * _PATIENCE
+        track = self._tracks.at(t)
+        if track is None:
+            return -np.inf
+        s, v = track.state(t)
+        return s + v * v / (2.0 * _LEAST * self._limits.plane_acceleration)
 
     def _lead(self, now: float) -> float:
         return now + self._axes.commit + 1.5 * self._cost

@@ -29,10 +29,10 @@ class Stretch:
         self._blocks: dict[int, Block] = {}
         self.first_block: Block | None = None
 
-    def add(self, blocks: Iterable[Block]) -> None:
-        """Append."""
+    def add(self, blocks: Iterable[Block], reached: float = -np.inf) -> None:
+        """Append; ``reached`` as for ``PathBuilder.add``."""
         new = list(blocks)
-        self._builder.add(new)
+        self._builder.add(new, reached)
         for block in new:
             self.first_block = self.first_block or block
             self._blocks[block.n] = block

@@ -29,7 +29,7 @@ def piece_limits(
         return cap, cap, corner
     turns = corner_turns(pieces)
     single = corner_caps(pieces, turns, limits)
-    asked = _asked(pieces, speeds, turns, single, limits)
+    asked = _asked(pieces, speeds, turns, single, limits, more=more)
     corner[1:-1] = single
     # A step of the velocity at one joint stays within amax·interval: the queue of the drives takes no more.
     corner[1:-1][asked.joint] = np.minimum(asked.squared, step_caps(turns[asked.joint], limits))
@@ -81,12 +81,16 @@ def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Floa
     """Square of the speed (n-1,) at each joint, standing for itself, mm²/s²; endless where nothing turns.
 
     One interval: v·|Δu| ≤ amax·interval. Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean
-    length, which for chords of a circle is its centripetal limit whatever the length of the chords.
+    length, which for chords of a circle is its centripetal limit whatever the length of the chords. A second
+    corner within the interval: v²·|Δu|/ℓ ≤ amax, ℓ the shorter neighbour. Two such corners take
+    (2 - ℓ/vT)·ℓ/vT of amax together, which is never more than all of it.
     """
     amax = limits.accelerations
-    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])[:, None]
+    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    share = amax * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
     curved = np.full(turns.shape, np.inf)
-    np.divide(CENTRIPETAL_SHARE * amax * mean, turns, out=curved, where=turns > 0.0)
+    np.divide(share, turns, out=curved, where=turns > 0.0)
     caps: FloatArray = np.minimum(step_caps(turns, limits), curved.min(axis=1))
     return caps
 
@@ -100,7 +104,13 @@ def step_caps(turns: FloatArray, limits: MotionLimits) -> FloatArray:
 
 
 def _asked(
-    pieces: Pieces, speeds: FloatArray, turns: FloatArray, single: FloatArray, limits: MotionLimits
+    pieces: Pieces,
+    speeds: FloatArray,
+    turns: FloatArray,
+    single: FloatArray,
+    limits: MotionLimits,
+    *,
+    more: bool,
 ) -> Asked:
     """What short chords ask over an interval, of the joints that would be slow or ask much by themselves."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
@@ -109,7 +119,7 @@ def _asked(
     much = (alone > _MUCH * limits.accelerations).any(axis=1) | (single < fastest**2)
     joints = np.flatnonzero(much & (mean < fastest * limits.interval))
     given = Asked(joints, single[joints], alone[joints])
-    return asked_over_intervals(pieces, given, fastest[joints], limits)
+    return asked_over_intervals(pieces, given, fastest[joints], limits, more=more)
 
 
 def spare_for_chords(

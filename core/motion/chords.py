@@ -26,12 +26,15 @@ class Asked(NamedTuple):
     acceleration: FloatArray
 
 
-def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limits: MotionLimits) -> Asked:
+def asked_over_intervals(
+    pieces: Pieces, alone: Asked, fastest: FloatArray, limits: MotionLimits, *, more: bool
+) -> Asked:
     """What the path asks round the joints of ``alone``, which may be run at ``fastest`` (k,) mm/s.
 
     ``alone`` tells their limits if each stood for itself; no joint gets less. Joint i lies between the pieces
-    i and i+1. Where the pieces end within an interval of a joint it stands for itself and takes all it may,
-    so that what a plan builds on only grows with the path.
+    i and i+1. The path is taken to go straight on at both ends; but where ``more`` pieces will follow, joints
+    within an interval of the end stand for themselves and take all they may, so that what a plan builds on
+    only grows with the path.
     """
     if not len(alone.joint):
         return alone
@@ -47,7 +50,8 @@ def asked_over_intervals(pieces: Pieces, alone: Asked, fastest: FloatArray, limi
     ratio = (asked / share).max(axis=2)
     over = ratio > 1.0
     squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
-    squared[(at - fastest * limits.interval < s[0]) | (at + fastest * limits.interval > s[-1])] = 0.0
+    if more:
+        squared[at + fastest * limits.interval > s[-1]] = 0.0
     better = np.maximum(squared, alone.squared)
     taken = np.where((speeds**2 <= better)[:, :, None], asked, 0.0).max(axis=0, initial=0.0)
     taken[squared < fastest**2] = share
@@ -65,5 +69,4 @@ def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: Flo
 
 def _points(pieces: Pieces, s: FloatArray, where: FloatArray) -> FloatArray:
     index = np.clip(np.searchsorted(s, where, side="right") - 1, 0, len(pieces) - 1)
-    found = pieces[index]
-    return found.point(np.clip(where - s[index], 0.0, found.length))
+    return pieces[index].point(where - s[index])

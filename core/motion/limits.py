@@ -29,6 +29,8 @@ class AxisLike(Protocol):
     def vmax(self) -> float: ...
     @property
     def amax(self) -> float: ...
+    @property
+    def count(self) -> float: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,8 @@ class MotionLimits:
     ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
     ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
     of a limit that the law does not have yet; docs/decisions/0003-time-law.md says where it will act.
+    ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved;
+    0 leaves every joint where it is written.
 
     Raises MotionError where a figure is not positive and finite.
     """
@@ -46,12 +50,15 @@ class MotionLimits:
     amax: tuple[float, ...] = (3048.0, 3048.0, 12000.0)
     interval: float = 0.001
     jerk: None = None
+    grain: float = 0.0
 
     def __post_init__(self) -> None:
         for name in (f.name for f in fields(self) if f.name in {"vmax", "amax"}):
             for number, value in enumerate(getattr(self, name), start=1):
                 _demand_positive(f"{name} of axis {number}", value)
         _demand_positive("interval", self.interval)
+        if not 0.0 <= self.grain < math.inf:
+            raise MotionError(f"The step of the slides is {self.grain} mm; give a positive number, or 0.")
 
     @classmethod
     def of(cls, axes: Sequence[AxisLike], interval: float) -> MotionLimits:
@@ -60,6 +67,7 @@ class MotionLimits:
             vmax=tuple(axis.vmax for axis in axes),
             amax=tuple(axis.amax for axis in axes),
             interval=interval,
+            grain=max(axis.count for axis in axes[:2]),
         )
 
     @property

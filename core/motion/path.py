@@ -13,6 +13,7 @@ from core.motion.limits import FloatArray, IntArray, MotionLimits
 from core.motion.mapped import parts_of, with_parts
 from core.motion.pieces import Pieces, joined, make_pieces
 from core.motion.rates import by_radius, constant_rates, split_by_radius
+from core.motion.rounding import SUPPORT, ends_in_chord, regrown, unrounded
 from core.motion.words import MotionBlock, Words, read_words
 
 GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
@@ -26,7 +27,8 @@ class Path:
     dropped what lies behind. ``cap`` (n,) mm/s and ``a`` (n,) mm/s² are the limits along the pieces,
     ``corner`` (n+1,) the squared speed limits of the joints, endless at both ends. Block i, whose number is
     ``blocks[i]``, owns the pieces ``first[i]:first[i+1]``, none when it has no length. ``start`` (axes,) is
-    the point where the path begins.
+    the point where the path begins. The last ``loose`` joints may yet move, by the step of the words, when
+    more blocks come in.
     """
 
     pieces: Pieces
@@ -38,6 +40,7 @@ class Path:
     first: IntArray
     start: FloatArray
     limits: MotionLimits
+    loose: int = 0
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -86,6 +89,7 @@ class PathBuilder:
         self.rpm_max = rpm_max
         self._closed = False
         self._parts: list[Pieces] = []
+        self._written: Pieces | None = None  # the last pieces as the words have them
         self._blocks: list[IntArray] = []
         self._counts: list[IntArray] = []
         self._start: FloatArray | None = None
@@ -98,8 +102,12 @@ class PathBuilder:
         """Whether there is anything to make a path of."""
         return self._start is not None
 
-    def add(self, blocks: Iterable[MotionBlock]) -> None:
-        """Append blocks that move. Raises MotionError, and adds nothing, when one of them cannot be moved."""
+    def add(self, blocks: Iterable[MotionBlock], reached: float = -np.inf) -> None:
+        """Append blocks that move. Raises MotionError, and adds nothing, when one of them cannot be moved.
+
+        ``reached`` is the distance before which a motion under way can still come to rest. Where it comes
+        near the end no joint of the path so far is moved any more.
+        """
         batch = list(blocks)
         if not batch:
             return
@@ -111,10 +119,23 @@ class PathBuilder:
         if self._start is None:
             self._start = words.start[0].copy()
         self._end = words.end[-1].copy()
-        self._parts.append(pieces)
+        self._append(pieces, reached)
         self._blocks.append(words.n.astype(np.int64))
         self._counts.append(counts)
         self._path = None
+
+    def _append(self, new: Pieces, reached: float) -> None:
+        """Join on; joints of short chords before the old end are moved to where the new ones say."""
+        if self._written is None or not self._parts:
+            self._parts, self._written = [unrounded(new, self._limits)], new[-2 * SUPPORT :]
+            return
+        known = joined(self._parts)
+        end = self._s0 + float(known.length.sum())
+        redo = min(SUPPORT, len(known), len(self._written))
+        if reached > end - float(known.length[len(known) - redo :].sum()):
+            redo = 0
+        self._parts = [known[: len(known) - redo], regrown(known, self._written, new, redo, self._limits)]
+        self._written = joined([self._written, new])[-2 * SUPPORT :]
 
     def path(self) -> Path:
         """The path of all blocks that were added and not dropped. Raises MotionError before the first."""
@@ -161,6 +182,7 @@ class PathBuilder:
             first=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
             start=self._start,
             limits=self._limits,
+            loose=SUPPORT if not self._closed and ends_in_chord(pieces, self._limits) else 0,
         )
 
 

@@ -75,6 +75,7 @@ def settled_joints(path: Path, start_s: float | None = None) -> int:
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
     # Joints of short chords near the end may yet be allowed more.
     known = int(np.searchsorted(path.s[first : first + len(limit)], path.s[-1] - path.reach, side="right"))
+    known = min(known, len(limit) - path.loose)
     limit, gain = limit[:known], run.gain[: max(known - 1, 0)]
     if known < 2:
         return -1

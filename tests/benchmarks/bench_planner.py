@@ -1,7 +1,7 @@
 """What planning costs and how near its time is to the ideal: ``python -m tests.benchmarks.bench_planner``.
 
 Half a circle of R 50 mm in 0.02 mm chords at 100 mm/s, no tolerance spent, and the same circle run through
-many times. Ideal is the way at full feed with one slide's ramp up and down; on a slant both slides
+many times; then with words rounded to a step, as programs have them. Ideal is the way at full feed with one slide's ramp up and down; on a slant both slides
 ramp together, so that a path may end a little faster.
 """
 
@@ -18,10 +18,12 @@ from core.motion.limits import MotionLimits
 from core.motion.path import build_path
 from core.motion.plan import plan
 from core.motion.timeline import ChunkPlanner
-from tests.motion.moves import chords
+from tests.motion.moves import chords, rounded_chords
 
 RADIUS, CHORD, FEED, PAIRS = 50.0, 0.02, 100.0, 7
 LIMITS = MotionLimits()
+STEPPED = MotionLimits(grain=0.00127)
+GRIDS = (0.001, 0.00127, 0.00254, 0.005)  # mm; the second and third are .00005 and .0001 in
 
 
 def median_ms(work: Callable[[], object], times: int) -> float:
@@ -50,6 +52,15 @@ def row(count: int, times: int) -> str:
     )
 
 
+def rounded(grid: float) -> str:
+    """One line of the second table: with words as written, and with joints moved by the machine's step."""
+    blocks = rounded_chords(round(math.pi * RADIUS / CHORD), FEED, grid)
+    ideal = math.pi * RADIUS / FEED + FEED / LIMITS.plane_acceleration
+    written, moved = (plan(build_path(blocks, limits)).duration for limits in (LIMITS, STEPPED))
+    building = median_ms(lambda: build_path(blocks, STEPPED), PAIRS)
+    return f"{grid:>9} {written / ideal:>11.4f} {moved / ideal:>11.4f} {building:>9.1f}\n"
+
+
 def _in_windows(blocks: list[Block]) -> None:
     planner = ChunkPlanner(LIMITS)
     for _ in planner.add(blocks):
@@ -59,10 +70,13 @@ def _in_windows(blocks: list[Block]) -> None:
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     sys.stdout.write("   pieces   planned s     ideal s    ratio   plan ms  build ms  windows ms\n")
     for count, times in ((round(math.pi * RADIUS / CHORD), PAIRS), (100_000, PAIRS), (1_000_000, 3)):
         sys.stdout.write(row(count, times))
+    sys.stdout.write("grid, mm  as written       moved  build ms\n")
+    for grid in GRIDS:
+        sys.stdout.write(rounded(grid))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,141 @@
+"""Joints of short chords within the step to which their words were rounded.
+
+A program tells points to a step, and in chords of a hundredth that turns the direction to and fro at every
+joint, far more than the curve does that was chopped. No drive needs that: a joint is moved, by one step at
+most on each axis, to where its neighbours say the curve is. Ends of runs of chords, corners, arcs, long lines
+and turns of other axes stay where they are written.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from core.motion.limits import BoolArray, FloatArray, IntArray, MotionLimits
+from core.motion.pieces import Pieces, joined
+
+_AROUND = 6  # joints on either side of which the mean is taken, four times
+_BACK = 6  # and over which what would be more than a step is taken back, twice
+SUPPORT = 4 * _AROUND + 4 * _BACK + 2  # joints on either side that have a say
+_SHARE = 0.25  # of a chord by which its ends may be moved at most
+_TURNS = 4.0  # steps over the length of a chord: more than rounding can turn it
+
+
+def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
+    """The pieces with joints moved by ``limits.grain`` at most on each slide; both ends stay."""
+    inner = _free(pieces, limits)
+    if not inner.any():
+        return pieces
+    joints = np.vstack([pieces.start, pieces.point(pieces.length)[-1:]])
+    free = np.concatenate([[False], inner, [False]])
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    allowed = np.zeros(len(free))
+    allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
+    s = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    joints[:, :2] = _eased(joints[:, :2], s, _clear(free), allowed[:, None])
+    return moved(pieces, joints, free)
+
+
+def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
+    """Lines between ``joints`` (n+1, axes) where an end of theirs is ``free`` (n+1,)."""
+    touched = np.flatnonzero(free[:-1] | free[1:])
+    start, direction, length = pieces.start.copy(), pieces.direction.copy(), pieces.length.copy()
+    way = joints[touched + 1, :2] - joints[touched, :2]
+    length[touched] = np.hypot(way[:, 0], way[:, 1])
+    start[touched, :2] = joints[touched, :2]
+    direction[touched, :2] = way / length[touched, None]
+    return dataclasses.replace(pieces, start=start, direction=direction, length=length)
+
+
+def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: MotionLimits) -> Pieces:
+    """The last ``redo`` pieces of ``known``, their joints where ``new`` ones behind say, and the new ones.
+
+    ``written`` are the last pieces of ``known`` as their words have them, at least SUPPORT more than ``redo``
+    where there are as many.
+    """
+    both = joined([written, new])
+    eased = unrounded(both, limits)[len(written) - redo :]
+    begin = known.point(known.length)[-1] if redo == 0 else known.start[len(known) - redo]
+    if not len(eased) or (eased.start[0] == begin).all():
+        return eased
+    joints = np.vstack([eased.start, eased.point(eased.length)[-1:]])
+    joints[0] = begin
+    return moved(eased, joints, np.arange(len(joints)) == 0)
+
+
+def ends_in_chord(pieces: Pieces, limits: MotionLimits) -> bool:
+    """Whether the end may yet become a joint that is moved."""
+    return len(pieces) > 0 and bool(_chords(pieces[-1:], limits)[0])
+
+
+def _chords(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+    """Lines (n,) of the slides that are short enough to feel the rounding of their ends."""
+    # Longer lines turn by so little that no speed is too high for the joint.
+    longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
+    alone = (pieces.curvature == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
+    chords: BoolArray = alone & (pieces.length < longest) & pieces.direction[:, :2].any(axis=1)
+    return chords
+
+
+def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+    """Joints (n-1,) between two chords that are short enough to feel the rounding, and turn no more."""
+    if limits.grain <= 0.0 or len(pieces) < 3:
+        return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
+    chord = _chords(pieces, limits)
+    turn = np.abs(np.diff(pieces.direction[:, :2], axis=0)).max(axis=1)
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    rounding = turn * shorter <= _TURNS * limits.grain
+    free: BoolArray = chord[:-1] & chord[1:] & rounding & (pieces.rapid[:-1] == pieces.rapid[1:])
+    return free
+
+
+def _clear(free: BoolArray) -> IntArray:
+    """How many joints on either side of each (n+1,) are as free as it is."""
+    at = np.arange(len(free))
+    before = at - np.maximum.accumulate(np.where(free, -1, at))
+    behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
+    clear: IntArray = np.minimum(before, behind)
+    return clear
+
+
+def _eased(joints: FloatArray, s: FloatArray, clear: IntArray, allowed: FloatArray) -> FloatArray:
+    """Joints (n+1, 2) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most."""
+    around, back = np.minimum(clear, _AROUND), np.minimum(clear, _BACK)
+    once = _mean(_mean(joints, s, around), s, around)
+    # A mean cuts the curve short by some height; what the mean of the mean cuts off more is as much.
+    eased = 2.0 * once - _mean(_mean(once, s, around), s, around)
+    for _ in range(2):
+        over = np.clip(eased, joints - allowed, joints + allowed) - eased
+        for sign in (1.0, -1.0):
+            most = _largest(np.maximum(sign * over, 0.0), _BACK)
+            eased = eased + sign * _window_mean(most, back)
+    return np.clip(eased, joints - allowed, joints + allowed)
+
+
+def _mean(joints: FloatArray, s: FloatArray, around: IntArray) -> FloatArray:
+    """Mean of the joints ``around`` each, carried along their line to its own distance: a line stays one."""
+    at = np.arange(len(s))
+    low, high = at - around, at + around
+    span = np.maximum(s[high] - s[low], 1e-12)
+    slope = (joints[high] - joints[low]) / span[:, None]
+    off = s - _window_mean(s[:, None], around)[:, 0]
+    carried: FloatArray = _window_mean(joints, around) + slope * off[:, None]
+    return carried
+
+
+def _window_mean(values: FloatArray, around: IntArray) -> FloatArray:
+    """Mean (k, m) of the values ``around`` each."""
+    base = values[0]
+    sums = np.vstack([np.zeros_like(base)[None], np.cumsum(values - base, axis=0)])
+    at = np.arange(len(values))
+    mean: FloatArray = base + (sums[at + around + 1] - sums[at - around]) / (2 * around + 1)[:, None]
+    return mean
+
+
+def _largest(values: FloatArray, around: int) -> FloatArray:
+    """Largest (k, m) of the values ``around`` each."""
+    padded = np.pad(values, ((around, around), (0, 0)))
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * around + 1, axis=0)
+    largest: FloatArray = windows.max(axis=2)
+    return largest

@@ -1,0 +1,174 @@
+"""Joints of short chords: moved by the step of the words at most, to where the curve is."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.interpreter.blocks import Block
+from core.motion.limits import FloatArray
+from core.motion.path import Path, PathBuilder, build_path
+from core.motion.plan import plan
+from core.motion.profile import Profile
+from core.motion.rounding import SUPPORT
+from core.motion.timeline import ChunkPlanner
+from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
+
+GRAIN = 0.00127  # mm: the step of the shipped lathe, .00005 in
+STEPPED = dataclasses.replace(LIMITS, grain=GRAIN)
+
+
+def joints(path: Path) -> FloatArray:
+    return np.vstack([path.pieces.start, path.point(path.s[-1:])])
+
+
+def written(blocks: list[Block]) -> FloatArray:
+    return joints(build_path(blocks, LIMITS))
+
+
+def felt(profile: Profile, dt: float) -> float:
+    """Largest second difference of setpoints ``dt`` apart, as a share of the acceleration."""
+    worst = 0.0
+    for begin in (0.0, 0.3 * dt, 0.7 * dt):
+        p = profile.position(np.arange(begin, profile.duration, dt))
+        worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max(initial=0.0)))
+    return worst / dt**2 / A
+
+
+@pytest.mark.parametrize("grid", [0.0001, 0.001, 0.00127, 0.00254])
+def test_rounded_chords_are_as_fast_as_their_circle(grid: float) -> None:
+    """R 50 mm in 0.02 mm chords at 100 mm/s, words of 4 and 3 places of a mm, of .00005 and .0001 in."""
+    profile = plan(build_path(rounded_chords(7854, 100.0, grid), STEPPED))
+    assert profile.duration < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
+    assert felt(profile, T) < 1.02
+    assert felt(profile, T / 2) < 1.05
+
+
+@pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
+def test_no_joint_leaves_its_word_by_more_than_a_step(grid: float) -> None:
+    blocks = rounded_chords(3000, 100.0, grid)
+    off = joints(build_path(blocks, STEPPED)) - written(blocks)
+    assert np.abs(off).max() <= GRAIN + 1e-12
+    assert np.abs(off).max() > 0.3 * GRAIN
+    assert off[[0, -1]] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
+def test_the_path_is_nearer_to_the_curve_than_the_words(grid: float) -> None:
+    blocks = rounded_chords(3000, 100.0, grid)
+    off, before = (
+        np.abs(np.hypot(*each[100:-100, :2].T) - 50.0)
+        for each in (joints(build_path(blocks, STEPPED)), written(blocks))
+    )
+    assert off.max() < before.max()
+    assert off.mean() < 0.5 * before.mean()
+
+
+def test_exact_chords_of_a_small_circle_hardly_move() -> None:
+    blocks = chords(2.0, math.pi, 400, 30.0)
+    off = np.abs(joints(build_path(blocks, STEPPED)) - written(blocks))
+    assert off[50:-50].max() < 0.01 * GRAIN
+    assert off.max() < 0.4 * GRAIN
+
+
+def test_a_corner_between_chords_stays() -> None:
+    there = [(0.0, 0.02 * i) for i in range(200)]
+    across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
+    blocks = polyline([*there, *across], 100.0)
+    assert joints(build_path(blocks, STEPPED)) == pytest.approx(written(blocks), abs=1e-12)
+
+
+def test_a_straight_line_of_uneven_chords_stays_where_it_is() -> None:
+    ends = np.cumsum(np.random.default_rng(1).uniform(0.01, 0.15, 300))
+    blocks = polyline([(0.3 * z, z) for z in [0.0, *ends.tolist()]], 60.0)
+    off = joints(build_path(blocks, STEPPED)) - written(blocks)
+    across = off[:, 0] - 0.3 * off[:, 1]
+    assert np.abs(across).max() < 1e-12
+
+
+@settings(max_examples=60, deadline=None)
+@given(programs())
+def test_nothing_but_short_chords_is_touched(blocks: list[Block]) -> None:
+    """Of lines and arcs of all lengths only a joint between two of 0.02 mm that hardly turn may move."""
+    path, as_written = build_path(blocks, STEPPED), build_path(blocks, LIMITS)
+    off = np.abs(joints(path) - joints(as_written)).max(axis=1)
+    assert off.max() <= GRAIN + 1e-12
+    short = (as_written.pieces.length < 0.05) & (as_written.pieces.curvature == 0.0)
+    between = np.concatenate([[False], short[:-1] & short[1:], [False]])
+    assert (off[~between] < 1e-12).all()
+    assert path.blocks.tolist() == as_written.blocks.tolist()
+    assert plan(path).end_s == path.s[-1]
+
+
+@pytest.mark.parametrize("kind", ["arc", "rapid", "long"])
+def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
+    blocks = rounded_chords(300, 60.0, 0.001)
+    last = blocks[-1]
+    here, to = (last.x, last.z), (last.x + 0.4, last.z)
+    other = {
+        "arc": arc(here, to, (last.x + 0.2, last.z), 60.0, n=301),
+        "rapid": dataclasses.replace(line(here, (last.x + 0.02, last.z), 60.0, n=301), kind="rapid"),
+        "long": line(here, to, 60.0, n=301),
+    }[kind]
+    path = build_path([*blocks, other], STEPPED)
+    assert path.block_span(301)[0] == pytest.approx(path.s[300])
+    assert joints(path)[300, :2] == pytest.approx(here, abs=0)
+
+
+@pytest.mark.parametrize("window", [90, 300, 2000])
+def test_windows_equal_the_whole(window: int) -> None:
+    blocks = rounded_chords(1500, 100.0, 0.00127)
+    whole = plan(build_path(blocks, STEPPED))
+    planner = ChunkPlanner(STEPPED, window=window)
+    chunks = [*planner.add(blocks), *planner.finish()]
+    assert chunks[-1].t1[-1] == pytest.approx(whole.duration, rel=1e-3)
+    assert [n for chunk in chunks for n in chunk.n.tolist()] == [b.n for b in blocks]
+    for before, after in pairwise(chunks):
+        ends, begins = (before.profile.position(before.profile.duration), after.profile.position(0.0))
+        assert ends == pytest.approx(begins, abs=1e-9)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10_000), st.sampled_from([0.001, 0.00127, 0.00254, 0.004]))
+def test_a_path_that_grows_does_not_move_under_the_slides(seed: int, grid: float) -> None:
+    """Blocks come in and are dropped at any moment, also in the middle of the last braking."""
+    chance = np.random.default_rng(seed)
+    blocks = rounded_chords(700, 100.0, grid)
+    builder, at = PathBuilder(STEPPED), 40
+    builder.add(blocks[:at])
+    profile = plan(builder.path())
+    while at < len(blocks):
+        (s,), (v,) = profile.at(float(chance.random()) * profile.duration)
+        here = builder.path().point(np.array([s]))
+        builder.drop_before(int(builder.path().blocks[profile.path.piece_at(np.array([s]))[0]]))
+        count = int(chance.integers(1, 150))
+        builder.add(blocks[at : at + count], s + v * v / (2.0 * 0.2 * A))
+        at += count
+        assert builder.path().point(np.array([s])) == pytest.approx(here, abs=1e-9)
+        profile = plan(builder.path(), start_s=s, start_v=v)
+    assert profile.position(profile.duration)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
+
+
+def test_what_comes_in_late_still_smooths_the_old_end() -> None:
+    blocks = rounded_chords(600, 100.0, 0.00127)
+    whole = joints(build_path(blocks, STEPPED))
+    builder = PathBuilder(STEPPED)
+    for part in range(0, 600, 150):
+        builder.add(blocks[part : part + 150])
+    builder.close()
+    assert joints(builder.path()) == pytest.approx(whole, abs=1e-9)
+
+
+def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> None:
+    blocks = rounded_chords(400, 100.0, 0.00127)
+    builder = PathBuilder(STEPPED)
+    builder.add(blocks[:200])
+    before = joints(builder.path())
+    builder.add(blocks[200:], float(builder.path().s[-1 - SUPPORT // 2]))
+    assert joints(builder.path())[:201] == pytest.approx(before, abs=0)
