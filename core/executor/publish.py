@@ -70,6 +70,7 @@ class Publisher:
             starts=standing.starts,
             prepared=standing.prepared.digest if standing.prepared else "",
             lines=counters.lines,
+            interrupted=_interrupted(conductor),
             tool_open=standing.tool_open,
             start_refused=standing.start_refused,
         )
@@ -83,6 +84,12 @@ class Publisher:
         if dt > 0.0:
             self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
         return self._velocity
+
+
+def _interrupted(conductor: Conductor) -> int:
+    """The line at which the loaded program was given up."""
+    job, (name, line) = conductor.standing.job, conductor.standing.interrupted
+    return line if job is not None and job.source.name == name else 0
 
 
 def _feed(block: Block | None, modal: Modal) -> float:

@@ -53,6 +53,8 @@ class Rounds:
         if standing.starts is Starts.RESTART:
             standing.starts = Starts.PROGRAM
         standing.prepared = standing.prepared_proof = None
+        if not self._line:
+            standing.interrupted = ("", 0)
         self._open(job)
         self._enter(State.RUN)
         bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
@@ -76,6 +78,8 @@ class Rounds:
         if self.cycle is not None:
             left = self.cycle.modal
             self._stand(interrupted(left) if self._line else given_up(left))
+            if not self._line and self.standing.job is not None and self._bench.line:
+                self.standing.interrupted = (self.standing.job.source.name, self._bench.line)
         self.cycle = self._source = None
         self._bench.line = 0
         self.player.forget()
@@ -127,6 +131,8 @@ class Rounds:
         left = self.cycle.modal if self.cycle is not None else self.standing.modal
         self.forget()
         self._stand(left)
+        if not self._line:
+            self.standing.interrupted = ("", 0)
         self._enter(State.IDLE)
 
     def _end_functions(self) -> None:

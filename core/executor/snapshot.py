@@ -93,6 +93,7 @@ class Snapshot:
     proof_wanted: bool = False  # a job is loaded that no proof covers
     starts: Starts = Starts.PROGRAM  # what Cycle Start begins
     prepared: str = ""  # digest of the line or restart that Cycle Start would begin
+    interrupted: int = 0  # last line of the loaded program when it was given up, 0: it was not
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     start_refused: str = ""  # why the last Cycle Start did nothing

@@ -158,8 +158,9 @@ class SpindleControl:
     def _send(self, rpm: float, now: float) -> None:
         if abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0):
             return
-        if abs(rpm) < abs(self.command) or rpm * self.command < 0.0:
-            self._fell = (now, max(abs(self.measured), abs(self.command)))
+        fastest = max(abs(self.measured), abs(self.command))  # measured: it may still coast from an E-stop
+        if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
+            self._fell = (now, fastest)
         if abs(rpm - self.command) > self._model.at_speed * abs(rpm):
             self._in_band_since = None
         self.command = rpm

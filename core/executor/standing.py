@@ -33,5 +33,6 @@ class Standing:
     starts: Starts = Starts.PROGRAM
     prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
     prepared_proof: Proof | None = None
+    interrupted: tuple[str, int] = ("", 0)  # program that was given up, and its last line
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     modal: Modal = field(default_factory=Modal)  # in force while no program is under way

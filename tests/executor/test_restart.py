@@ -1,0 +1,219 @@
+"""A restart on the machine: the way there in lathe order, everything restored, nothing started unasked."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.proof import proof_of
+from core.executor.commands import CycleStart, LoadJob, Prepare, Reset
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import Snapshot, Starts, State
+from core.interpreter.restart.approach import Choices, Now, begin_at
+from core.interpreter.restart.rebuild import Found, Rebuild
+from core.proving.prove import prove
+from tests.executor.lines import TOOLS, mdi
+from tests.executor.rig import INCH, Rig
+
+PART = (
+    "G90G94F300G72\nT1\nX1.2Z.2\nM03S900\nM08\nX.8\nG95F.005Z-.2\nZ-.4\nX1.2\nG94F300Z.2\nM09\nM05\n"
+    "X2Z2\nM30\n"
+)
+
+
+def restart_job(rig: Rig, line: int, choices: Choices | None = None) -> Job:
+    """The job that goes on from a line of the loaded program at the machine as it stands."""
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line)
+    assert isinstance(found, Found)
+    at = rig.shot.demand
+    begin = begin_at(found, Now(at, rig.shot.modal), choices or Choices())
+    return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole.digest)
+
+
+def prepare(rig: Rig, job: Job) -> None:
+    report = prove(job.source, job.setup, rig.machine)
+    assert not report.errors, report.errors
+    rig.post(Prepare(Starts.RESTART, job, proof_of(job, report)))
+
+
+def restart(rig: Rig, line: int, choices: Choices | None = None) -> None:
+    rig.run(0.4)
+    prepare(rig, restart_job(rig, line, choices))
+    rig.post(CycleStart())
+    assert not rig.shot.start_refused, rig.shot.start_refused
+
+
+def broken_off(rig: Rig, at_z: float = -0.3) -> None:
+    """The part is begun, and the E-stop is hit in the middle of the cut."""
+    rig.start(PART, TOOLS)
+    rig.until_true(lambda shot: shot.line == 8 and shot.actual[1] < -50.8 + at_z * INCH)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+
+
+def test_the_line_that_was_running_is_offered_and_forgotten_when_the_part_is_done() -> None:
+    rig = Rig()
+    broken_off(rig)
+    assert rig.shot.interrupted == 8
+    mdi(rig, "G90")
+    assert rig.shot.interrupted == 8
+    restart(rig, 8)
+    assert rig.shot.interrupted == 0
+    rig.until(State.IDLE)
+    assert rig.shot.interrupted == 0
+    assert rig.shot.parts == 1
+
+
+def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
+    rig = Rig()
+    broken_off(rig)
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
+    restart(rig, 8)
+    rig.until(State.IDLE)
+    way = [shot for shot in seen if shot.block_text in {"X", "Z"}]
+    x = [round((shot.demand[0] + 12.7) / INCH, 4) for shot in way]
+    z = [round((shot.demand[1] + 50.8) / INCH, 4) for shot in way]
+    assert max(x) == pytest.approx(0.6, abs=1e-3)  # X1.2 is where the program stood off the part
+    assert max(z) == pytest.approx(0.2, abs=1e-3)
+    out = next(i for i, value in enumerate(z) if value > z[0] + 0.01)
+    assert x[out] == pytest.approx(0.6, abs=1e-3)  # X is off the part before Z goes
+    assert way[-1].demand[1] == pytest.approx(-50.8 - 0.2 * INCH, abs=0.01)  # Z stands before X goes in
+    cut = [shot for shot in seen if shot.line == 8 and shot.block_text == "Z-.4"]
+    assert cut[0].modal.diameter
+    assert cut[0].modal.per_rev
+    assert all(shot.rpm_actual == pytest.approx(900, rel=0.06) for shot in cut)
+    assert "coolant" in cut[0].outputs
+    assert rig.shot.actual[:2] == pytest.approx((-12.7 + INCH, -50.8 + 2 * INCH), abs=0.01)
+
+
+def test_the_last_leg_waits_for_the_spindle() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    rig.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    assert rig.shot.actual[0] + 12.7 == pytest.approx(0.6 * INCH, abs=0.01)
+
+
+def test_coolant_that_is_not_confirmed_stays_off() -> None:
+    rig = Rig()
+    broken_off(rig)
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
+    restart(rig, 8, Choices(coolant=False))
+    rig.until(State.IDLE)
+    assert not any("coolant" in shot.outputs for shot in seen)
+
+
+def test_the_spindle_of_mdi_is_stopped_where_the_line_has_none() -> None:
+    rig = Rig()
+    broken_off(rig)
+    mdi(rig, "M04S500", "M08")
+    restart(rig, 13)
+    rig.until_true(lambda shot: shot.line == 13 and shot.block_text == "Z")
+    assert rig.shot.rpm_command == 0.0
+    assert "coolant" not in rig.shot.outputs
+    rig.until(State.IDLE)
+
+
+def test_a_program_is_repeated_from_its_first_line_after_a_restart() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.executor._bench.switches.cycle_repeat = True
+    restart(rig, 8)
+    rig.until_true(lambda shot: shot.parts == 1)
+    rig.until_true(lambda shot: shot.line == 3)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+
+
+def test_the_next_start_is_the_whole_program_again() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 13)
+    rig.until(State.IDLE)
+    assert rig.shot.starts is Starts.PROGRAM
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.line == 3)
+
+
+def refused(rig: Rig) -> str:
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state is State.IDLE
+    return rig.shot.start_refused
+
+
+def test_no_start_from_another_place_than_was_proved() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    mdi(rig, "G91", "Z.01F50")
+    prepare(rig, job)
+    assert refused(rig) == "the slides have moved since this was proved: search for the line again"
+
+
+def test_no_start_with_the_collet_otherwise() -> None:
+    rig = Rig()
+    broken_off(rig)
+    mdi(rig, "M13")
+    prepare(rig, restart_job(rig, 8))
+    assert refused(rig) == "the collet is open and must be closed at line 8: use MDI"
+
+
+def test_no_start_of_a_program_that_was_loaded_anew() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    rig.load(PART + "(OTHER)\n", TOOLS)
+    prepare(rig, job)
+    assert refused(rig) == "the program was loaded anew: search for the line again"
+
+
+def test_loading_a_program_takes_a_prepared_restart_back() -> None:
+    rig = Rig()
+    broken_off(rig)
+    prepare(rig, restart_job(rig, 8))
+    assert rig.shot.starts is Starts.RESTART
+    rig.load(PART, TOOLS)
+    assert (rig.shot.starts, rig.shot.prepared) == (Starts.PROGRAM, "")
+
+
+def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    begin = job.setup.begin
+    assert begin is not None
+    far = tuple(step._replace(z=500.0) if getattr(step, "z", None) else step for step in begin.way)
+    setup = replace(job.setup, begin=begin._replace(way=far))
+    report = prove(job.source, setup, rig.machine)
+    assert any("beyond the travel limit" in each.message for each in report.errors)
+
+
+def test_an_unproved_restart_does_not_start() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    rig.post(Prepare(Starts.RESTART, job))
+    assert refused(rig) == "the program is not proved yet"
+    rig.post(Prepare(Starts.RESTART, job, Proof("another", ())))
+    assert refused(rig).startswith("the proof belongs to another program")
+
+
+def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    job = rig.executor._conductor.standing.job
+    assert job is not None
+    rig.post(Prepare(Starts.RESTART, job))
+    assert "is under way" in rig.said("refused")[-1]
+    rig.post(LoadJob(job))
+    assert rig.shot.starts is Starts.PROGRAM
