@@ -1,8 +1,8 @@
 """What planning costs and how near its time is to the ideal: ``python -m tests.benchmarks.bench_planner``.
 
 Half a circle of R 50 mm in 0.02 mm chords at 100 mm/s, no tolerance spent, and the same circle run through
-many times; then with words rounded to a step, as programs have them. Ideal is the way at full feed with one slide's ramp up and down; on a slant both slides
-ramp together, so that a path may end a little faster.
+many times; then with words rounded to a step, as programs have them. Ideal is the way at full feed with one
+slide's ramp up and down; on a slant both slides ramp together, so that a path may end a little faster.
 """
 
 from __future__ import annotations
