@@ -21,7 +21,9 @@ from core.geometry.frames import (
     applied,
     cross,
     dot,
+    minus,
     product,
+    scaled,
     transposed,
     turned,
 )
@@ -136,8 +138,8 @@ def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, flo
 
 def _angle(axis: Vector, start: Vector, end: Vector) -> float:
     """Degrees about ``axis`` from one direction to another, as seen along the axis."""
-    aside = dot(start, end) - dot(axis, start) * dot(axis, end)
-    return math.degrees(math.atan2(dot(axis, cross(start, end)), aside))
+    p, q = (minus(each, scaled(axis, dot(axis, each))) for each in (start, end))
+    return math.degrees(math.atan2(dot(axis, cross(p, q)), dot(p, q)))
 
 
 def _wrapped(angle: float) -> float:

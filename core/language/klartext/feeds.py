@@ -40,7 +40,7 @@ def retract(cursor: Cursor) -> Retract | None:
 
 def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tuple[AxisWord, ...]:
     """All axis words that stand here, each letter once. Raises ProgramError for a doubled one."""
-    pattern = re.compile(rf"({'I?' if incremental else ''})([{letters}])(?![A-Z]|\s*$)")
+    pattern = re.compile(rf"({'I?' if incremental else ''})([{letters}])(?=\s*[+\-0-9.,Q])")
     found: list[AxisWord] = []
     while True:
         column, match = cursor.column, cursor.take(pattern)

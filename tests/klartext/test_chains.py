@@ -1,0 +1,164 @@
+"""Machines of other kinds: one rotary axis, B-C tables, heads, a head over a table. One rule for all."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import random
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from core.geometry.frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
+from core.geometry.kinematics import Kinematics, Rotary
+from core.geometry.swivel import Side, choose, solutions
+from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
+
+Array = npt.NDArray[np.float64]
+
+A_HEAD = Rotary("A", False, X_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
+B_HEAD = Rotary("B", False, Y_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
+C_HEAD = Rotary("C", False, Z_AXIS, (0.0, 30.0, 0.0), -360.0, 360.0)
+B_TABLE = Rotary("B", True, Y_AXIS, (310.0, 0.0, -430.0), -120.0, 120.0)
+
+
+def machine(*chain: Rotary) -> Kinematics:
+    return Kinematics(SLIDES, chain, ORIGIN)
+
+
+CHAINS = {
+    "A-C table": machine(C, A),
+    "B-C table": machine(C, B_TABLE),
+    "A head over C table": machine(C, A_HEAD),
+    "C fork head, A at the tool": machine(C_HEAD, A_HEAD),
+    "C head, B at the tool": machine(C_HEAD, B_HEAD),
+    "A table under B head": machine(A, B_HEAD),
+}
+
+
+def rotation(axis: Vector, degrees: float) -> Array:
+    """Rodrigues by the exponential's series: independent of the product's own."""
+    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
+    t = math.radians(degrees)
+    return np.asarray(np.eye(3) + math.sin(t) * k + (1 - math.cos(t)) * (k @ k))
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_forward_of_inverse_is_the_frame(name: str) -> None:
+    chain, dice = CHAINS[name], random.Random(7)
+    for _ in range(300):
+        frame = product(
+            turned(Z_AXIS, dice.uniform(-180, 180)),
+            turned(X_AXIS, dice.uniform(0.0, 179.0)),
+            turned(Z_AXIS, dice.uniform(-180, 180)),
+        )
+        found = solutions(chain, frame)
+        assert len(found) == 2
+        for solution in found:
+            back = product(chain.frame(solution.angles), turned(Z_AXIS, solution.spin))
+            assert np.abs(np.array(back) - np.array(frame)).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
+    """The tool axis as the machine sees it, and the plane's normal carried along by the tables, are one."""
+    chain = CHAINS[name]
+    frame = from_points(*CHAMFERS[2])
+    found = choose(chain, frame, {})
+    assert found is not None
+    table = np.eye(3)
+    tool = np.array(Z_AXIS)
+    for axis in reversed(chain.rotaries):
+        if axis.table:
+            table = table @ rotation(axis.direction, -found.angles[axis.name])
+        else:
+            tool = rotation(axis.direction, found.angles[axis.name]) @ tool
+    assert np.allclose(table @ np.array(frame)[:, 2], tool, atol=1e-12)
+    assert np.allclose(chain.tool_axis(found.angles), tool, atol=1e-12)
+
+
+def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
+    """A fork head, a tool of 80 mm: the tip, carried from the nose about both lines, is where it should."""
+    chain = CHAINS["C fork head, A at the tool"]
+    frame = from_points(*CHAMFERS[2])
+    found = choose(chain, frame, {})
+    assert found is not None
+    a, c = found.angles["A"], found.angles["C"]
+    q = np.array((50.0, -7.0, 3.0))
+    slides = np.array(chain.place(found.angles, frame, (90.0, 0.0, 0.0), 80.0).machine((50.0, -7.0, 3.0)))
+    pivot_a, pivot_c = np.array(A_HEAD.point), np.array(C_HEAD.point)
+    tip = pivot_a + rotation(X_AXIS, a) @ (np.array((0, 0, -80.0)) - pivot_a)
+    tip = pivot_c + rotation(Z_AXIS, c) @ (tip - pivot_c)
+    wanted = np.array(ORIGIN) + np.array((90.0, 0.0, 0.0)) + np.array(frame) @ q
+    assert slides + tip == pytest.approx(wanted, abs=1e-9)
+
+
+def test_a_longer_tool_lifts_the_slides_of_a_table_machine() -> None:
+    short, long = AC.place({"A": 45.0}), AC.place({"A": 45.0}, tool_length=80.0)
+    low, high = short.machine((1.0, 2.0, 3.0)), long.machine((1.0, 2.0, 3.0))
+    assert np.subtract(high, low) == pytest.approx((0.0, 0.0, 80.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(("chamfer", "a", "spin"), [(1, 45.0, 0.0), (3, -45.0, 180.0)])
+def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spin: float) -> None:
+    found = choose(machine(A), from_points(*CHAMFERS[chamfer]), {})
+    assert found is not None
+    assert found.angles["A"] == pytest.approx(a)
+    assert abs(found.spin) == pytest.approx(spin)
+
+
+@pytest.mark.parametrize("chamfer", [2, 4])
+def test_one_rotary_axis_does_not_reach_the_others(chamfer: int) -> None:
+    assert choose(machine(A), from_points(*CHAMFERS[chamfer]), {}) is None
+
+
+def test_one_rotary_axis_has_one_side() -> None:
+    frame = from_points(*CHAMFERS[1])
+    assert choose(machine(A), frame, {}, Side.SYM_PLUS) is not None
+    assert choose(machine(A), frame, {}, Side.SYM_MINUS) is None
+
+
+def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
+    flat = turned(Z_AXIS, 30.0)
+    standing, turning = choose(machine(C), flat, {}), choose(machine(C), flat, {}, table_rot=True)
+    assert standing is not None
+    assert turning is not None
+    assert (standing.angles["C"], standing.spin) == pytest.approx((0.0, 30.0))
+    assert (turning.angles["C"], turning.spin) == pytest.approx((30.0, 0.0))
+    assert choose(machine(C), from_points(*CHAMFERS[1]), {}) is None
+
+
+def test_c_above_a_only_spins_about_the_tool() -> None:
+    """Workpiece, A, C: Rx(A) Rz(C)."""
+    found = choose(machine(A, C), from_points(*CHAMFERS[1]), {})
+    assert found is not None
+    assert (found.angles["A"], found.angles["C"], found.spin) == pytest.approx((45.0, 0.0, 0.0))
+    assert choose(machine(A, C), from_points(*CHAMFERS[2]), {}) is None
+
+
+def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
+    limited = dataclasses.replace(C, modulo=False, low=-360.0, high=360.0)
+    chain, frame = machine(limited, A), from_points(*CHAMFERS[2])
+    for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
+        found = choose(chain, frame, {"A": 45.0, "C": present}, Side.SYM_PLUS)
+        assert found is not None
+        assert found.angles["C"] == pytest.approx(wanted)
+
+
+def test_a_reversed_axis_counts_the_other_way() -> None:
+    backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
+    found = choose(machine(C, backwards), from_points(*CHAMFERS[1]), {}, Side.SYM_MINUS)
+    assert found is not None
+    assert (found.angles["A"], found.angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
+
+
+def test_a_machine_without_rotary_axes_knows_its_own_plane_alone() -> None:
+    assert choose(machine(), turned(Z_AXIS, 30.0), {}) is not None
+    assert choose(machine(), from_points(*CHAMFERS[1]), {}) is None
+
+
+def test_the_basic_rotation_turns_the_workpiece_about_its_zero() -> None:
+    turned_part = dataclasses.replace(AC, basic_rotation=90.0)
+    place = turned_part.place({}, turned_part.basic)
+    assert place.machine((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))

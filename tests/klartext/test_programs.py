@@ -1,0 +1,254 @@
+"""Whole programs: the chamfers of the manuals by axis angles and by points, flow, functions, inches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.interpreter.actions import (
+    Action,
+    Coolant,
+    ProgramEnd,
+    ProgramStop,
+    SpindleRun,
+    SpindleStop,
+    ToolChange,
+)
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.setup import ToolOffset
+from core.language.klartext import read_line
+from core.language.klartext.written import written
+from tests.klartext.chamfers import AXIAL, POINTS, SYM_MINUS
+from tests.klartext.running import Ran, run, run_file
+from tests.klartext.test_frames import STANDS
+
+
+def machine(ran: Ran) -> np.ndarray:
+    rows = [block.travel.end for block in ran.blocks if block.travel is not None]
+    return np.array(rows)
+
+
+def rotary(block: Block) -> list[float]:
+    """The rotary axes that are there, as shown."""
+    assert block.swivel is not None
+    return [angle for angle in block.swivel.rotary if angle is not None]
+
+
+def cuts(ran: Ran) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Start and end of every feed move on the workpiece."""
+    found = []
+    for block in ran.blocks:
+        if block.kind is Kind.FEED and block.swivel is not None:
+            r, o = np.array(block.swivel.frame), np.array(block.swivel.datum)
+            found.append((o + r @ np.array(block.swivel.start), o + r @ np.array(block.swivel.end)))
+    return found
+
+
+def test_both_programs_go_the_same_way_on_the_machine() -> None:
+    axial, points = run_file(AXIAL), run_file(POINTS)
+    assert not axial.diagnostics
+    assert not points.diagnostics
+    assert machine(axial) == pytest.approx(machine(points), abs=1e-9)
+    assert [block.kind for block in axial.blocks] == [block.kind for block in points.blocks]
+
+
+def test_the_cuts_start_and_end_where_the_tables_say() -> None:
+    """With nothing left to turn, a point of the plane is the machine's place of the datum plus its words."""
+    ran = run_file(AXIAL)
+    feeds = [block for block in ran.blocks if block.kind is Kind.FEED]
+    assert len(feeds) == 8
+    for chamfer, (down, along) in enumerate(zip(feeds[::2], feeds[1::2], strict=True), start=1):
+        (a, c, _), _, origin = STANDS[chamfer][0]
+        for block, q in ((down, (-12.0, -7.071, 0.0)), (along, (112.0, -7.071, 0.0))):
+            assert block.swivel is not None
+            assert block.swivel.slides == pytest.approx(np.add(origin, q), abs=6e-5)
+            assert rotary(block) == pytest.approx((a, c))
+            assert block.swivel.end == pytest.approx(q, abs=1e-9)
+    first = feeds[0].swivel
+    assert first is not None
+    assert first.slides == pytest.approx((218.0, 278.2843, -352.2183), abs=6e-5)
+
+
+def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
+    plus, minus = run_file(POINTS), run_file(SYM_MINUS)
+    assert not minus.errors
+    for here, there in zip(cuts(plus), cuts(minus), strict=True):
+        assert np.allclose(here, there, atol=1e-9)
+    feeds = [block for block in minus.blocks if block.kind is Kind.FEED]
+    for chamfer in STANDS:
+        swivel = feeds[2 * chamfer - 1].swivel
+        (a, c, _), _, origin = STANDS[chamfer][1]
+        assert swivel is not None
+        assert rotary(feeds[2 * chamfer - 1]) == pytest.approx((a, c))
+        turned = (-112.0, 7.071, 0.0)  # half a turn about the tool is left over
+        assert swivel.slides == pytest.approx(np.add(origin, turned), abs=6e-5)
+
+
+def test_the_cuts_lie_on_the_chamfers() -> None:
+    """Chamfer 1 runs at y 5, z -5 from x -12 to 112; the others are that line about the block's centre."""
+    ends = [np.array((-12.0, 5.0, -5.0)), np.array((112.0, 5.0, -5.0))]
+    quarter = np.array(((0, -1, 0), (1, 0, 0), (0, 0, 1)))
+    centre = np.array((50.0, 50.0, 0.0))
+    for start, end in cuts(run_file(AXIAL))[1::2]:
+        assert np.allclose((start, end), ends, atol=1e-4)  # 7.071 for 7.0710678
+        ends = [centre + quarter @ (each - centre) for each in ends]
+
+
+def test_an_end_at_the_bottom_is_no_second_end() -> None:
+    ran = run_file(AXIAL)
+    assert sum(isinstance(block.action, ProgramEnd) for block in ran.blocks) == 1
+    assert ran.state.at["C"] == pytest.approx(360.0)
+    assert ran.state.at["A"] == 0.0
+
+
+def test_every_line_is_written_as_it_is_read() -> None:
+    for text in (*AXIAL.splitlines(), *POINTS.splitlines()):
+        line = read_line(1, text)
+        again = read_line(1, written(line))
+        assert again.error is None
+        assert written(again) == written(line)
+
+
+# --- flow ------------------------------------------------------------------------------------------------
+
+
+def xs(ran: Ran) -> list[float]:
+    return [round(ran.axes(block)["X"] - 230.0, 6) for block in ran.blocks if block.kind is Kind.RAPID]
+
+
+def test_a_section_is_repeated() -> None:
+    ran = run("LBL 5\nL IX+10 FMAX\nCALL LBL 5 REP 3", start=(230.0, 0.0, 0.0, 0.0, 0.0))
+    assert xs(ran) == [10.0, 20.0, 30.0, 40.0]
+
+
+def test_repeats_within_a_subprogram_begin_anew() -> None:
+    text = 'CALL LBL "ROW"\nCALL LBL "ROW"\nM30\nLBL "ROW"\nLBL 5\nL IX+10 FMAX\nCALL LBL 5 REP 1\nLBL 0'
+    ran = run(text, start=(230.0, 0.0, 0.0, 0.0, 0.0))
+    assert xs(ran) == [10.0, 20.0, 30.0, 40.0]
+
+
+def test_a_subprogram_within_a_subprogram() -> None:
+    text = "CALL LBL 1\nM30\nLBL 1\nL X+1 FMAX\nCALL LBL 2\nL X+3 FMAX\nLBL 0\nLBL 2\nL X+2 FMAX\nLBL 0"
+    assert xs(run(text)) == [1.0, 2.0, 3.0]
+
+
+def test_skipped_blocks() -> None:
+    text = "/L X+1 FMAX\n/ 12 L X+2 FMAX\n13 / L X+3 FMAX\nL X+4 FMAX"
+    assert xs(run(text)) == [1.0, 2.0, 3.0, 4.0]
+    assert xs(run(text, block_delete=True)) == [4.0]
+
+
+def test_parameters() -> None:
+    ran = run("Q1 = +10\nFN 0: Q2 = -Q1\nL X+Q1 Y-Q2 FMAX\nL XQ2 FMAX")
+    assert xs(ran) == [10.0, -10.0]
+    assert ran.state.at["Y"] == pytest.approx(220.0)
+
+
+def test_structure_and_comments_do_nothing() -> None:
+    ran = run("* - FIRST SIDE ; really\n; only a comment\n\nL X+1 FMAX ; go")
+    assert xs(ran) == [1.0]
+
+
+# --- tools, spindle, functions ---------------------------------------------------------------------------
+
+
+def actions(ran: Ran) -> list[Action]:
+    return [block.action for block in ran.blocks if block.action is not None]
+
+
+def test_functions_before_and_behind_the_motion() -> None:
+    ran = run("L X+1 FMAX M3 M8\nL X+2 FMAX M5 M9")
+    kinds = [block.kind if block.action is None else type(block.action).__name__ for block in ran.blocks]
+    wanted = ["ToolChange", "SpindleRun", "Coolant", "rapid", "rapid", "SpindleStop", "Coolant", "ProgramEnd"]
+    assert kinds == wanted
+
+
+def test_a_second_tool_stops_the_spindle_and_waits_for_whoever_changes_it() -> None:
+    tools = {1: ToolOffset(), 2: ToolOffset(z=80.0)}
+    ran = run("L Z+100 FMAX M13\nTOOL CALL 2 Z S1000 DL+0.5\nL Z+100 FMAX", tools=tools)
+    assert actions(ran) == [
+        ToolChange(1),
+        SpindleRun(3000.0),
+        Coolant(on=True),
+        SpindleStop(),
+        ToolChange(2),
+        ProgramStop(optional=False, message="TOOL 2"),
+        ProgramEnd(reset=True),
+    ]
+    assert ran.state.at["Z"] == pytest.approx(-350.0 + 100.0 + 80.5)
+
+
+def test_a_call_without_a_tool_changes_the_speed_of_the_running_spindle() -> None:
+    ran = run("L X+1 FMAX M4\nTOOL CALL S1500")
+    assert actions(ran)[1:3] == [SpindleRun(-3000.0), SpindleRun(-1500.0)]
+
+
+def test_a_tool_that_nobody_measured_is_warned_of() -> None:
+    ran = run("L X+1 FMAX", tools={})
+    assert ran.warned == ["tool-offset-missing"]
+
+
+def test_stops() -> None:
+    ran = run("STOP ; TURN THE PART\nM1 ; LOOK\nM0 ; WAIT")
+    stops = [action for action in actions(ran) if isinstance(action, ProgramStop)]
+    assert stops == [
+        ProgramStop(optional=False, message="TURN THE PART"),
+        ProgramStop(optional=True, message="LOOK"),
+        ProgramStop(optional=False, message="WAIT"),
+    ]
+
+
+def test_m91_counts_in_the_machine_and_ignores_the_plane_for_its_block() -> None:
+    ran = run("PLANE AXIAL A+45 TURN FMAX\nL Z-5 R0 FMAX M91\nL X+100 Y+20 FMAX M91\nL X+0 Y+0 Z+0 FMAX")
+    moves = [ran.axes(block) for block in ran.blocks if block.kind is Kind.RAPID]
+    assert [moves[0][axis] for axis in "XYZ"] == [0.0, 0.0, -5.0]
+    assert [moves[1][axis] for axis in "XYZ"] == [100.0, 20.0, -5.0]
+    assert [moves[2][axis] for axis in "XYZ"] == pytest.approx((230.0, 278.2843, -345.1472), abs=6e-5)
+
+
+def test_m140_goes_back_along_the_tool() -> None:
+    ran = run("PLANE AXIAL A+45 TURN FMAX\nL Z+10 FMAX\nL IX+5 FMAX M140 MB 30\nM140 MB MAX F6000")
+    z = [ran.axes(block)["Z"] for block in ran.blocks if block.moves]
+    assert z[2] - z[1] == pytest.approx(30.0)
+    assert z[-1] == pytest.approx(-0.001)
+    assert ran.blocks[-2].feed == pytest.approx(100.0)
+
+
+def test_a_cut_with_the_spindle_at_rest_is_warned_of_once() -> None:
+    assert run("L X+1 F100\nL X+2").warned == ["spindle-stopped"]
+
+
+# --- rotary axes by L, inches ----------------------------------------------------------------------------
+
+
+def test_rotary_moves_take_the_short_way_and_incremental_ones_what_is_written() -> None:
+    ran = run("L C+270 FMAX\nL IC+450 FMAX\nL A+10 C+0 FMAX")
+    assert [ran.axes(block)["C"] for block in ran.blocks if block.moves] == [-90.0, 360.0, 360.0]
+
+
+def test_the_feed_of_rotary_axes_alone_is_degrees_a_minute() -> None:
+    ran = run("M3\nL A+30 C+40 F600")
+    block = ran.blocks[-2]
+    assert block.travel is not None
+    assert block.feed == pytest.approx(10.0)
+    assert block.travel.length == pytest.approx(50.0)
+    mixed = run("M3\nL X+0 Y+0 Z+100 FMAX\nL IX+30 IY+40 C+90 F600").blocks[-2]
+    assert mixed.travel is not None
+    assert mixed.feed == pytest.approx(10.0)
+    assert mixed.travel.length == pytest.approx(50.0)
+
+
+def test_inch_programs_count_lengths_in_inches_and_feeds_in_tenths_a_minute() -> None:
+    ran = run("L X+1 Y+0 Z+0 FMAX M3\nL IX+1 F100\nPLANE AXIAL A+45 TURN MB 2 F600\nL A+0 F300", unit="INCH")
+    moves = [block for block in ran.blocks if block.moves]
+    assert ran.axes(moves[0])["X"] == pytest.approx(230.0 + 25.4)
+    assert moves[1].feed == pytest.approx(10.0 * 25.4 / 60.0)  # 100 tenths of an inch are 10 in/min
+    assert ran.axes(moves[2])["Z"] == pytest.approx(-350.0 + 50.8)
+    assert moves[3].feed == pytest.approx(10.0)  # degrees stay degrees
+    assert moves[4].feed == pytest.approx(5.0)
+    assert not ran.state.modal.metric
+
+
+def test_points_and_datum_in_inches() -> None:
+    ran = run("TRANS DATUM AXIS X+1\nL X+0 Y+0 Z+0 FMAX", unit="INCH")
+    assert ran.state.at["X"] == pytest.approx(255.4)

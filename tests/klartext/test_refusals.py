@@ -1,0 +1,208 @@
+"""What is refused, by the name the control gives it, and that nothing has moved or changed then."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.geometry.kinematics import Kinematics
+from tests.klartext.running import TOOL, run, run_file, whole
+from tests.klartext.table import AC, ORIGIN, SLIDES, A
+
+ANGLE = "Entered angle not permitted"
+INPUT = "Input value incorrect"
+PLANE = "Plane wrongly defined"
+SYNTAX = "Syntax error"
+FEED = "Feed rate is missing"
+UNSUPPORTED = "Not supported"
+TAIL = "TURN MB MAX FMAX"
+FLAT = "P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+0 P2Z+0"
+
+
+def points(*third: object) -> str:
+    x, y, z = third
+    return f"PLANE POINTS {FLAT} P3X{x} P3Y{y} P3Z{z} {TAIL}"
+
+
+@pytest.mark.parametrize(
+    ("block", "code", "names"),
+    [
+        (f"PLANE POINTS P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+0 P3X+0 P3Y+1 P3Z+1 {TAIL}", SYNTAX, "P2Z is missing"),
+        (f"PLANE POINTS {FLAT} P3X+0 P3Y+1 P3Z+1", SYNTAX, "MOVE, TURN or STAY"),
+        (f"PLANE POINTS P1X+1 P1Y+1 P1Z+1 P2X+1 P2Y+1 P2Z+1 P3X+0 P3Y+1 P3Z+1 {TAIL}", PLANE, "second"),
+        (points("+0", "+0", "+0"), PLANE, "third"),
+        (f"PLANE POINTS {FLAT.replace('P2X+1', 'P2X+0')} P3X+0 P3Y+0 P3Z+0 {TAIL}", PLANE, "same"),
+        (points("+5", "+0", "+0"), PLANE, "one line"),
+        (points("-5", "+0", "+0"), PLANE, "one line"),
+        (points("+1000", "+0.0001", "+0"), PLANE, "one line"),
+        (points("+0", "-1", "+0"), ANGLE, "this plane"),
+        (points("+0", "+1", "+1").replace("P1X+0", "P1X+1000000000"), INPUT, "P1X"),
+        (f"{points('+0', '+1', '-1')} SYM+ SEQ-", SYNTAX, "SYM or SEQ"),
+        (f"{points('+0', '+1', '-1')} COORD ROT TABLE ROT", SYNTAX, "COORD ROT"),
+        ("PLANE AXIAL TURN FMAX", SYNTAX, "axis angle"),
+        ("PLANE AXIAL B+10 TURN FMAX", "Wrong axis programmed", "B"),
+        ("PLANE AXIAL A+45 A+30 TURN FMAX", SYNTAX, "A stands twice"),
+        ("PLANE AXIAL A+45 IA+30 TURN FMAX", SYNTAX, "IA stands twice"),
+        ("PLANE AXIAL A+121 TURN FMAX", ANGLE, "A +121"),
+        ("PLANE AXIAL A+100000000 TURN FMAX", INPUT, "A "),
+        ("PLANE AXIAL C-100000000 TURN FMAX", INPUT, "C "),
+        (f"PLANE AXIAL A+45 {TAIL} SYM+ SEQ-", SYNTAX, "SYM or SEQ"),
+        ("PLANE AXIAL A+45 STAY MB MAX", SYNTAX, "MB"),
+        ("PLANE AXIAL A+45 STAY FMAX", SYNTAX, "F"),
+        ("PLANE AXIAL A+45 STAY DIST50", SYNTAX, "DIST"),
+        ("PLANE AXIAL A+45 TURN DIST50 FMAX", SYNTAX, "DIST"),
+        ("PLANE AXIAL A+45 TURN MOVE FMAX", SYNTAX, "MOVE"),
+        ("PLANE AXIAL A+45 FMAX", SYNTAX, "MOVE, TURN or STAY"),
+        ("PLANE AXIAL A+45 TURN MB FMAX", SYNTAX, "MB has no number"),
+        ("PLANE AXIAL A+45 TURN F0", INPUT, "F"),
+        ("PLANE AXIAL A+45 TURN MB-5 FMAX", INPUT, "MB"),
+        ("PLANE AXIAL A+45 MOVE DIST-5 FMAX", INPUT, "DIST"),
+        ("PLANE AXIAL A+45 TURN FMAX Q5", SYNTAX, "Q5"),
+        ("PLANE AXIAL A+Q7 TURN FMAX", "Q parameter not defined", "Q7"),
+        ("PLANE SPATIAL SPA+45 SPC+0 TURN FMAX", SYNTAX, "SPB is missing"),
+        ("PLANE SPATIAL SPA+360 SPB+0 SPC+0 TURN FMAX", INPUT, "SPA"),
+        ("PLANE RELATIV TURN FMAX", SYNTAX, "one of SPA"),
+        ("PLANE RELATIV SPA+1 SPB+1 TURN FMAX", SYNTAX, "one of SPA"),
+        ("PLANE RESET SYM+", SYNTAX, "MOVE, TURN or STAY"),
+        ("PLANE RESET TURN FMAX SYM+", SYNTAX, "SYM+"),
+        ("PLANE TURN FMAX", SYNTAX, "AXIAL"),
+        ("PLANE VECTOR BX+0 BY-1 BZ+0 NX+0 NY+0 NZ+1 TURN FMAX", UNSUPPORTED, "PLANE VECTOR"),
+        ("PLANE EULER EULPR+1 EULNU+1 EULROT+1 TURN FMAX", UNSUPPORTED, "PLANE EULER"),
+        ("PLANE PROJECTED PROPR+1 PROMIN+1 ROT+1 TURN FMAX", UNSUPPORTED, "PLANE PROJECTED"),
+        ("L B+10 FMAX", "Wrong axis programmed", "B"),
+        ("L X+100000 FMAX", INPUT, "X"),
+        ("L X+10 RL F100", UNSUPPORTED, "RL"),
+        ("L X+10 F AUTO M128\nM3 M4", "Contradictory entry", "spindle"),
+        ("L X+10 FMAX M3 M8 M5 M9 M30", SYNTAX, "more than 4"),
+        ("L X+10 FMAX M3 M3", SYNTAX, "M3 stands twice"),
+        ("L X+10 FMAX M89", UNSUPPORTED, "M89"),
+        ("L X+10 FMAX M92", UNSUPPORTED, "M92"),
+        ("CC X+0 Y+0", UNSUPPORTED, "CC"),
+        ("CYCL DEF 200 DRILLING", UNSUPPORTED, "CYCL DEF 200"),
+        ("CYCL CALL", UNSUPPORTED, "CYCL CALL"),
+        ("CALL PGM TNC:\\X.H", UNSUPPORTED, "CALL PGM"),
+        ("FN 1: Q5 = +Q1 + +2", UNSUPPORTED, "FN 1"),
+        ("Q5 = +2 * 3", UNSUPPORTED, "formula"),
+        ("L X+10 FMAX ~", UNSUPPORTED, "~"),
+        ("TOOL CALL 2 X S100", UNSUPPORTED, "tool axis X"),
+        ('TOOL CALL "MILL" Z S100', UNSUPPORTED, "name"),
+        ("TOOL CALL 2 Z S20000", "Wrong rpm", "S20000"),
+        ("TOOL CALL 0 Z S0\nM3", "Wrong rpm", "M3"),
+        ("TRANS DATUM X+10", SYNTAX, "AXIS or RESET"),
+        ("TRANS DATUM TABLE TABLINE5", UNSUPPORTED, "TRANS DATUM TABLE"),
+        ("CALL LBL 7", "Label not found", "LBL 7"),
+        ("LBL 3\nCALL LBL 3\nLBL 0", "Excessive nesting", "LBL 3"),
+        ("LBL 3\nM8\nCALL LBL 3", SYNTAX, "no LBL 0"),
+        ("LBL 3\nLBL 3", "Label defined twice", "LBL 3"),
+        ("FOO X+1", SYNTAX, "FOO"),
+        ("M128\nPLANE AXIAL A+45 TURN FMAX", "PLANE not permitted with M128", "M129"),
+        ("M128\nTOOL CALL 2 Z S100", "Not permitted with M128", "TOOL CALL"),
+        ("M128\nL Z-10 FMAX M91", "Not permitted with M128", "M91"),
+        ("M128\nL Z-10 FMAX M92", "Not permitted with M128", "M92"),
+        ("M128\nL A+10 FMAX", UNSUPPORTED, "A with M128"),
+        ("L A+10 FMAX\nM128\nL X+10 FMAX", UNSUPPORTED, "A swivelled"),
+        ("PLANE AXIAL A+45 TURN F AUTO\nTOOL CALL 1 Z S100\nPLANE AXIAL A+50 TURN F AUTO", FEED, "TOOL CALL"),
+    ],
+)
+def test_refused(block: str, code: str, names: str) -> None:
+    ran = run(block)
+    assert ran.codes[:1] == [code]
+    assert names in ran.errors[0].message + ran.errors[0].hint
+    assert ran.errors[0].message.startswith(code)
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        points("+1000", "+0.01", "+0"),
+        "PLANE AXIAL A+45 TURN SYM- TABLE ROT FMAX",
+        "PLANE AXIAL A+120 TURN FMAX",  # the end of the range is inside
+        "PLANE RESET",
+        "PLANE RESET STAY",
+        "plane axial a+45 c-10,5 turn mb50 fmax",
+        "PLANE AXIAL A+45 MOVE DIST 10 MB MAX F AUTO",
+        "PLANE SPATIAL SPA+359.9999 SPB+0 SPC+0 TURN FMAX",
+        "M128\nM129\nPLANE AXIAL A+45 TURN FMAX",
+        "M126",
+    ],
+)
+def test_accepted(block: str) -> None:
+    assert run(block).codes == []
+
+
+def test_a_plane_needs_a_tool_axis() -> None:
+    assert run("PLANE AXIAL A+45 TURN FMAX", tool="").codes == ["Tool axis is missing"]
+    assert run("PLANE AXIAL A+45 TURN FMAX", tool="TOOL CALL 1 S100\n").codes == ["Tool axis is missing"]
+
+
+def test_a_swivel_needs_a_feed() -> None:
+    no_feed = "TOOL CALL 1 Z S3000\n"
+    assert run("PLANE AXIAL A+45 TURN", tool=no_feed).codes == [FEED]
+    assert run("PLANE AXIAL A+45 MOVE", tool=no_feed).codes == [FEED]
+    assert run("PLANE RESET TURN", tool=no_feed).codes == [FEED]
+    assert run("PLANE AXIAL A+45 STAY", tool=no_feed).codes == []
+    assert run("L X+1 F100\nPLANE AXIAL A+45 TURN", tool=no_feed).codes == []
+    assert run("L X+1", tool=no_feed).codes == [FEED]
+    assert run("L X+1 FMAX\nL X+2", tool=no_feed).codes == [FEED]  # FMAX holds for its own block
+
+
+def test_after_a_refused_plane_the_old_one_stands_and_nothing_has_moved() -> None:
+    ran = run("PLANE AXIAL A+100 TURN FMAX\nPLANE AXIAL IA+30 TURN MB MAX FMAX")
+    assert ran.codes == [ANGLE]
+    assert ran.errors[0].line == 4
+    assert ran.state.at["A"] == 100.0
+    assert ran.state.q[120] == 100.0
+    assert ran.state.plane is not None
+    assert ran.state.plane.line == 3
+    assert len(ran.planes) == 1
+
+
+def test_a_refused_turn_without_feed_leaves_the_targets_alone() -> None:
+    ran = run("PLANE AXIAL A+45 TURN", tool="TOOL CALL 1 Z S3000\n")
+    assert 120 not in ran.state.q
+    assert ran.state.plane is None
+
+
+def test_chamfers_across_a_single_axis_are_refused() -> None:
+    single = Kinematics(SLIDES, (A,), ORIGIN, order=("X", "Y", "Z", "A"))
+    ran = run(f"PLANE POINTS P1X+0 P1Y+0 P1Z+0 P2X+0 P2Y+1 P2Z+0 P3X-1 P3Y+0 P3Z+1 {TAIL}", single)
+    assert ran.codes == [ANGLE]
+
+
+def test_syntax_errors_tell_line_and_column() -> None:
+    text = "BEGIN PGM T MM\n" + TOOL + "  12 PLANE AXIAL A+45 TURN MB MAX FMAX SYM+ SEQ-\nEND PGM T MM\n"
+    (error,) = run_file(text, AC).errors
+    assert (error.line, error.column) == (3, 45)
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "line"),
+    [
+        ("L X+1 FMAX\nEND PGM T MM\n", "BEGIN PGM", 1),
+        ("BEGIN PGM T MM\nM5\n", "END PGM", 2),
+        ("BEGIN PGM T\nEND PGM T MM\n", "MM or INCH", 1),
+        ("BEGIN PGM T MM\nEND PGM T INCH\n", "different units", 2),
+        ("BEGIN PGM T MM\nBEGIN PGM T MM\nEND PGM T MM\n", "twice", 2),
+        ("BEGIN PGM T MM\nEND PGM T MM\nM5\n", "behind END PGM", 3),
+    ],
+)
+def test_the_frame_of_a_program(text: str, names: str, line: int) -> None:
+    (error,) = run_file(text).errors
+    assert error.code == SYNTAX
+    assert names in error.message
+    assert error.line == line
+
+
+def test_a_program_that_ends_under_another_name_is_warned_of() -> None:
+    assert run_file("BEGIN PGM T MM\nM5\nEND PGM U MM\n").warned == ["program-name"]
+
+
+def test_no_block_comes_after_an_error_and_the_other_errors_are_found() -> None:
+    ran = run("PLANE AXIAL B+1 TURN FMAX\nL X+1 FMAX\nPLANE AXIAL A+121 TURN FMAX")
+    assert ran.codes == ["Wrong axis programmed", ANGLE]
+    assert [block.line for block in ran.blocks] == [2]
+
+
+def test_the_same_words_in_lower_case_with_commas() -> None:
+    ran = run_file(whole(TOOL + "l x+1,5 r0 fmax").lower())
+    assert not ran.errors
+    assert ran.state.at["X"] == pytest.approx(231.5)
