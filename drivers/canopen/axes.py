@@ -177,6 +177,7 @@ class CanopenAxes:
             axis.drive.clear()
         for clear in self.clearing:
             clear()
+        self.beside = ""
         faults = {DriveState.FAULT, DriveState.REACTING}
         done = self._bus.wait(lambda: not any(a.drive.state in faults for a in self._exchanged()), _POWER)
         self.fault = ""
