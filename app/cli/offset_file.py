@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from app.cli.toml_file import read_toml, refuse, unknown
+from app.cli.zero_file import TABLE
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import MM_PER_INCH, OFFSETS, Kind, SecondaryRow, ToolRow, Value
@@ -38,7 +39,7 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
     Raises CommandError naming every mistake.
     """
     data = read_toml(path)
-    mistakes = [unknown(key, _KINDS) for key in data if key not in _KINDS]
+    mistakes = [unknown(key, _KINDS) for key in data if key not in {*_KINDS, TABLE}]
     tools = {n: ToolRow(**values) for n, values in _table(data, Kind.TOOL, mistakes)}  # type: ignore[arg-type]
     secondary = {
         n: SecondaryRow(**values)  # type: ignore[arg-type]

@@ -52,6 +52,7 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
     from app.compose.machine import read_machine, setup_for
     from app.compose.offsets import chosen_offsets
+    from app.compose.zero_offsets import chosen_zero
 
     machine = read_machine(args.machine)
     tools, secondary = chosen_offsets(args.offsets)()
@@ -60,6 +61,7 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
         machine,
         tools=tools,
         secondary=secondary,
+        zero=chosen_zero(args.offsets)(),
         inputs=inputs,
         block_delete=args.block_delete,
         strict=args.strict,

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from app.desk.home import home
 from app.desk.offsets.book import OffsetBook
+from app.desk.zero_offsets.book import ZeroBook
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store import backup
@@ -29,7 +30,7 @@ class Journal:
         self._folder = folder
         self._lock = threading.Lock()  # held for the blink in which stores or events change hands
         self._held: deque[Event] | None = None  # while a restore is under way
-        self._books: list[OffsetBook] = []
+        self._books: list[OffsetBook | ZeroBook] = []
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
@@ -53,6 +54,14 @@ class Journal:
         if self._store is None:
             return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
         book = OffsetBook(self._store)
+        self._books.append(book)
+        return book
+
+    def zero_book(self) -> ZeroBook:
+        """G54…G59 of the store, for the screen to show and to change."""
+        if self._store is None:
+            return ZeroBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
+        book = ZeroBook(self._store)
         self._books.append(book)
         return book
 

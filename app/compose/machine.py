@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import resources
 from app.cli.errors import CommandError
-from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:
     from core.machine.model import Machine
@@ -56,6 +56,7 @@ def setup_for(
     *,
     tools: Mapping[int, ToolOffset],
     secondary: Mapping[int, SecondaryOffset],
+    zero: Mapping[int, ZeroOffset] | None = None,
     inputs: Mapping[str, bool] | None = None,
     block_delete: bool = False,
     strict: bool = False,
@@ -69,6 +70,7 @@ def setup_for(
         kinematics=kinematics_of(machine),
         tools=tools,
         secondary=secondary,
+        zero=zero or {},
         limits=control_limits(machine),
         block_delete=block_delete,
         strict=strict,

@@ -16,6 +16,7 @@ from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.simulated import simulated
 from app.compose.special import furnish
+from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.desk import Desk
 from app.desk.editing.bench import Bench, NoArchive
 from app.desk.editing.editor import Editor
@@ -27,6 +28,7 @@ from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event
 from core.executor.thread import ExecutorThread
+from core.language.dialect import Dialect
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
 from core.ports import Clock
@@ -44,14 +46,18 @@ def samples() -> Path:
     return Path(str(files("resources"))) / "programs"
 
 
-def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] = stored_offsets) -> Desk:
+def build_desk(
+    machine_file: str | None = None,
+    offsets: Callable[[], Offsets] = stored_offsets,
+    zero: Callable[[], Zero] = stored_zero,
+) -> Desk:
     """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
 
     Raises CommandError for a bad machine file and for a machine that is not simulated.
     """
     sys.setswitchinterval(GIVE_WAY)
     clock, journal = RealClock(), Journal.at_home()
-    desk, executor = desk_and_executor(machine_file, offsets, clock, journal)
+    desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
     thread, log = ExecutorThread(executor, clock), Log()
 
     def shut() -> None:
@@ -70,6 +76,8 @@ def desk_and_executor(
     offsets: Callable[[], Offsets],
     clock: Clock,
     journal: Journal | None = None,
+    *,
+    zero: Callable[[], Zero] = stored_zero,
 ) -> tuple[Desk, Executor]:
     """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
@@ -90,7 +98,7 @@ def desk_and_executor(
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
-        session=Session(workshop(machine, offsets, journal), executor.post),
+        session=Session(workshop(machine, offsets, journal, zero=zero), executor.post),
         shelf=Shelf((home() / "programs", samples())),
         station=simulation.machine,
         two_hand=machine.interlocks.two_hand_start,
@@ -98,17 +106,18 @@ def desk_and_executor(
         lathe=machine,
         machine=f"{machine.name} · SIMULATED",
         book=book_of(offsets, journal),
-        editor=_editor(machine, offsets, journal),
+        zero=zero_book(zero, journal),
+        editor=_editor(workshop(machine, offsets, zero=zero), journal),
     )
-    furnish(desk, machine, journal or NothingKept(), workshop(machine, offsets))
+    furnish(desk, machine, journal or NothingKept(), workshop(machine, offsets, zero=zero))
     give_mdi(desk, machine, offsets, journal or NothingKept())
     heard.append(desk)
     return desk, executor
 
 
-def _editor(machine: Machine, offsets: Callable[[], Offsets], journal: Journal | None) -> Editor:
+def _editor(work: Workshop, journal: Journal | None) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
-    return Editor(Bench(workshop(machine, offsets), journal or NoArchive(), home() / "programs", samples()))
+    return Editor(Bench(work, journal or NoArchive(), home() / "programs", samples()))
 
 
 def step_clock() -> StepClock:
@@ -116,15 +125,21 @@ def step_clock() -> StepClock:
     return StepClock()
 
 
-def workshop(machine: Machine, offsets: Callable[[], Offsets], journal: Journal | None = None) -> Workshop:
+def workshop(
+    machine: Machine,
+    offsets: Callable[[], Offsets],
+    journal: Journal | None = None,
+    *,
+    zero: Callable[[], Zero] = stored_zero,
+) -> Workshop:
     """What loading needs; the offsets are those of the moment of loading."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
         tools, secondary = offsets()
-        setup = setup_for(machine, tools=tools, secondary=secondary, block_delete=block_delete)
-        return make_job(source, setup)
+        setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero(), block_delete=block_delete)
+        return make_job(_whole(source), setup)
 
     def prove_job(job: Job, watch: Watch) -> Proved:
         from app.compose.proof import proof_of
@@ -144,6 +159,15 @@ def workshop(machine: Machine, offsets: Callable[[], Offsets], journal: Journal 
 
 def _read(path: Path) -> Source:
     try:
-        return load_source(path)
+        return _whole(load_source(path), path.parent)
     except SourceError as error:
         raise ValueError(str(error)) from error
+
+
+def _whole(source: Source, *folders: Path) -> Source:
+    """With the subprograms that it calls: from beside it, or from where programs are kept."""
+    if source.dialect is not Dialect.SINUMERIK or source.subprograms:
+        return source
+    from core.language.sinumerik.sections import with_subprograms
+
+    return with_subprograms(source, [*folders, home() / "programs", samples()])

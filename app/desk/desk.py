@@ -26,6 +26,8 @@ from app.desk.shelf import Shelf
 from app.desk.special.counter import PartCounter
 from app.desk.station import StationPanel
 from app.desk.view import Readout, Tone, View, view_of
+from app.desk.zero_offsets.book import NONE_KEPT as NO_ZERO
+from app.desk.zero_offsets.book import ZeroBook
 from core.executor.commands import (
     Command,
     CycleStart,
@@ -39,11 +41,11 @@ from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.errors import StoreError
 
 if TYPE_CHECKING:
-    from core.machine.model import Machine
     from app.desk.editing.editor import Editor
     from app.desk.files.files import FilesDesk
     from app.desk.mdi.mdi import MdiDesk
     from app.desk.special.special import SpecialDesk
+    from core.machine.model import Machine
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
 SILENT = "CONTROL SILENT"
@@ -90,6 +92,7 @@ class Desk:
     restoring: bool = False  # a backup takes the place of what is kept
     notice: str = ""
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
+    zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
@@ -191,13 +194,13 @@ class Desk:
 
     def _build_anew(self, snapshot: Snapshot) -> None:
         """When offsets were changed the program is read and proved anew, as soon as none is under way."""
-        trouble, before = self.book.poll(), self._changes
-        self._changes = self.book.changes
+        trouble, before = self.book.poll() or self.zero.poll(), self._changes
+        self._changes = self.book.changes + self.zero.changes
         if trouble:
             self.say(f"REFUSED: {trouble}")
         if self._changes != before:
             self._rebuild = True
-        if self._rebuild and snapshot.state not in UNDER_WAY and not self.book.busy:
+        if self._rebuild and snapshot.state not in UNDER_WAY and not (self.book.busy or self.zero.busy):
             self._rebuild = False
             self.post(use_offsets(self.book.tools, self.book.secondary))  # at once, for the loaded tool
             now = self.session.now
@@ -319,7 +322,7 @@ class Desk:
             return ""
         if loaded.phase is Phase.UNREADABLE:
             return prompts.refusal(loaded)  # the executor still has what was there before
-        stale = self._rebuild or self.book.busy or loaded.phase is Phase.READING
+        stale = self._rebuild or self.book.busy or self.zero.busy or loaded.phase is Phase.READING
         return prompts.STALE if stale else ""
 
     def _starting(self) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 LISTED = 2000  # a folder with more programs than this is typed into, not looked through
-ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg"})
+ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
 
 
 @dataclass(frozen=True, slots=True)

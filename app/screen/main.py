@@ -116,8 +116,9 @@ class _Carry:
 def _composed(machine: str | None, offsets: str | None) -> Desk:
     from app.compose.offsets import chosen_offsets
     from app.compose.screen import build_desk
+    from app.compose.zero_offsets import chosen_zero
 
-    return build_desk(machine, chosen_offsets(offsets))
+    return build_desk(machine, chosen_offsets(offsets), chosen_zero(offsets))
 
 
 def _application(theme: str) -> QApplication:

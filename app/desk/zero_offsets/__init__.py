@@ -1,0 +1,1 @@
+"""G54 to G59 as the operator enters them; no Qt."""

@@ -1,0 +1,64 @@
+"""G54 to G59 by the command line: from the offsets file, and what is wrong with one."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.cli.errors import CommandError
+from app.cli.offset_file import read_offsets
+from app.cli.zero_file import read_zero
+from core.store.zero import ZeroRow
+from tests.cli.conftest import Turndesk
+
+PROGRAM = "G54\nTRANS C30\nATRANS C10\nG0 X20 Z1 C=DC(0)\nM30\n"
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "offsets.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_program_under_the_offsets_of_a_file(turndesk: Turndesk, tmp_path: Path) -> None:
+    offsets = written(tmp_path, "[zero.54]\nx = 2\nz = -30.5\nc = -15\n[tool.1]\nx = 0\n")
+    (tmp_path / "part.mpf").write_text(PROGRAM)
+    told = turndesk(
+        "expand",
+        str(tmp_path / "part.mpf"),
+        "--json",
+        "--ideal",
+        "--machine",
+        "sinumerik-modulo",
+        "--offsets",
+        str(offsets),
+    )
+    assert told.status == 0, told.err
+    move, end = (json.loads(line) for line in told.out.splitlines())
+    assert (move["x"], move["mx"], move["mz"]) == (20.0, 12.0, -29.5)
+    assert (move["c"], move["mc"], move["dc"]) == (0.0, 25.0, 25.0)
+    assert (move["units"], end["kind"]) == ("mm", "action")
+
+
+def test_what_a_file_may_hold(tmp_path: Path) -> None:
+    path = written(tmp_path, "[zero.54]\nc = 5\n[zero.59]\nz = 1\n[secondary.1]\nx = 0.1\n")
+    assert read_zero(path) == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
+    assert sorted(read_offsets(path)[1]) == [1]
+
+
+def test_every_mistake_at_once(tmp_path: Path) -> None:
+    path = written(tmp_path, "[zero.53]\nx = 1\n[zero.54]\ny = 1\nx = true\nc = 400\nz = nan\n")
+    with pytest.raises(CommandError) as told:
+        read_zero(path)
+    for part in (
+        "zero.53",
+        "y is unknown",
+        "zero.54.x must be a number of mm",
+        "zero.54.c = 400",
+        "zero.54.z",
+    ):
+        assert part in str(told.value)
+    with pytest.raises(CommandError, match="must hold tables"):
+        read_zero(written(tmp_path, "zero = 3\n"))
