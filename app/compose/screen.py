@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
+from app.compose.effect import drawer
 from app.compose.journal import Journal
 from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
@@ -22,6 +23,7 @@ from app.desk.editing.bench import Bench, NoArchive
 from app.desk.editing.editor import Editor
 from app.desk.home import home
 from app.desk.keep import NothingKept
+from app.desk.offsets.effect import Effect
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
 from core.executor.executor import Executor
@@ -104,6 +106,7 @@ def desk_and_executor(
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         lathe=machine,
+        effect=Effect(drawer(machine)),
         machine=f"{machine.name} · SIMULATED",
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from app.desk.editing.editor import Editor
     from app.desk.files.files import FilesDesk
     from app.desk.mdi.mdi import MdiDesk
+    from app.desk.offsets.effect import Effect
     from app.desk.special.special import SpecialDesk
     from core.machine.model import Machine
 
@@ -91,6 +92,7 @@ class Desk:
     record: RunRecord = field(default_factory=RunRecord)
     restoring: bool = False  # a backup takes the place of what is kept
     notice: str = ""
+    effect: Effect | None = None  # draws what a change of offsets does
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
     starts_here: bool = True  # whether the page in front is one on which cycles are started
@@ -332,7 +334,7 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
-        for part in (self.editor, self.special, self.files, self.mdi):
+        for part in (self.editor, self.special, self.files, self.mdi, self.effect):
             if part is not None:
                 part.close()
         self.shut()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.compose.effect import drawer
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.compose.special import furnish
@@ -11,6 +12,7 @@ from app.desk.desk import Desk
 from app.desk.editing.bench import Archive, Bench, NoArchive
 from app.desk.editing.editor import Editor
 from app.desk.keep import Keep, NothingKept
+from app.desk.offsets.effect import Effect
 from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
@@ -60,6 +62,7 @@ def desk_on(
         station=machine,
         two_hand=two_hand,
         lathe=lathe,
+        effect=Effect(drawer(lathe)),
         editor=Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)),
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",

@@ -241,3 +241,39 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
         QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
     hands.sees(lambda: 17 in page.table.offsets)
     assert store.secondary()[17].x == pytest.approx(0.1 * 25.4)
+
+
+def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store: Store) -> None:
+    hands.load("bushing")
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: hands.prompt().startswith("NOTHING HAS CHANGED HERE YET"))
+    answer(hands, "1")
+    hands.type("-.002")
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: page.effect.comparing)
+    assert not page.table.isVisible()
+    # half of the diameter, and what R does to it is nothing here
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, DRAWN"))
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, IN ITS TRUE SIZE"))
+    before = page.effect.view
+    hands.key(Key.Key_Z)
+    assert page.effect.view != before
+    hands.key(Key.Key_F6)
+    hands.sees(page.table.isVisible)
+    answer(hands, "", "", "")
+    hands.sees(lambda: 1 in page.table.offsets)
+    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, DRAWN"))
+    hands.key(Key.Key_Escape)
+    hands.sees(page.table.isVisible)
+    assert hands.frame.page is page
+
+
+def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F8)
+    hands.key(Key.Key_F6)
+    assert hands.prompt().startswith("LOAD A PROGRAM FIRST")

@@ -11,9 +11,10 @@ from app.desk.offsets.dialogue import KEYS, Dialogue
 from app.desk.offsets.figures import Mode, in_words
 from app.desk.offsets.ledger import Ledger
 from app.desk.offsets.rules import Step
+from app.desk.offsets.shown import Rows
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
-from core.store.rows import Kind, SecondaryRow
+from core.store.rows import Kind
 
 
 @dataclass(slots=True)
@@ -63,11 +64,11 @@ class SeccmpDesk:
         was, new = (in_words(side, dialogue.mode) for side in (dialogue.old, dialogue.preview))
         return f"D{dialogue.number}   {was}  →  {new}"
 
-    @property
-    def proposed(self) -> dict[int, SecondaryRow]:
-        """The table as it would be with what is being entered."""
+    def proposed(self) -> Rows:
+        """The tables as they would be with what is being entered."""
         preview = self.dialogue.preview
-        return {**self.book.secondary, **({self.dialogue.number: preview} if preview else {})}
+        typed = {self.dialogue.number: preview} if preview else {}
+        return self.book.tools, {**self.book.secondary, **typed}
 
     # --- keys ----------------------------------------------------------------------------------------
 

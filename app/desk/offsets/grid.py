@@ -12,6 +12,7 @@ from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.offsets.entry import marked, shown_value, value_added, value_typed, word
 from app.desk.offsets.figures import not_set
 from app.desk.offsets.ledger import Ledger
+from app.desk.offsets.shown import Rows
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow, Value
@@ -85,17 +86,16 @@ class ToolGrid:
             new = "…"  # half a sum is no mistake yet
         return f"{was}  →  {new}"
 
-    @property
-    def proposed(self) -> dict[int, ToolRow]:
-        """The tools as they would be with what is typed."""
-        row = self.tool
+    def proposed(self) -> Rows:
+        """The tables as they would be with what is typed."""
+        tools, secondary, row = self.book.tools, self.book.secondary, self.tool
         if row is None or not self.text:
-            return self.book.tools
+            return tools, secondary
         try:
             value = value_typed(self.name, self.text, self.ledger.mode)
         except EntryError:
-            return self.book.tools
-        return {**self.book.tools, self.number: row._replace(**{self.name: value})}  # type: ignore[arg-type]
+            return tools, secondary
+        return {**tools, self.number: row._replace(**{self.name: value})}, secondary  # type: ignore[arg-type]
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""

@@ -10,9 +10,11 @@ from PySide6.QtWidgets import QWidget
 from app.desk import pages
 from app.desk.offsets.book import OffsetBook
 from app.desk.offsets.ledger import Ledger
+from app.desk.offsets.shown import Rows, ShownEffect
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.screen.offsets.asked import AskedPanel
+from app.screen.offsets.effect import EffectView
 from app.screen.offsets.history import HistoryList
 from app.screen.offsets.keypad import KeyPad
 from app.screen.pages import Doings, Host, Page
@@ -35,6 +37,8 @@ class OffsetModel(Protocol):
 
     def typed(self, key: str) -> bool: ...
 
+    def proposed(self) -> Rows: ...
+
     def undo(self) -> None: ...
 
     def escape(self) -> bool: ...
@@ -50,6 +54,8 @@ class OffsetPage(Page):
         self.shared = model
         self.history = HistoryList(self.look, self)
         self.asked = AskedPanel(self.look, self)
+        self.shown = ShownEffect(host.desk, model.ledger, model.proposed)
+        self.effect = EffectView(self.look, self.shown, self)
         own = ("C", "C") if self.NAME == pages.SECCMP else None
         self.pad = KeyPad(self.look, self._touched, own=own, parent=self)
 
@@ -63,9 +69,12 @@ class OffsetPage(Page):
 
     def doings(self) -> Doings:
         """Undo and history; Page up and Page down look through the latter."""
+        around = self.effect.doings() if self.shown.open else {}
         return {
+            **around,
             "F4": self.shared.undo,
             "F5": self._toggle,
+            "F6": self._effect,
             "F8": lambda: self._go(pages.TOOLS),
             "F9": lambda: self._go(pages.SECCMP),
         }
@@ -74,8 +83,13 @@ class OffsetPage(Page):
         self.host.go(name)
 
     def _toggle(self) -> None:
+        self.shown.close()
         self.shared.ledger.toggle_history()
         self.history.look_at(0)
+
+    def _effect(self) -> None:
+        self.shared.ledger.looking_back = None
+        self.shown.turn()
 
     def typed(self, key: str) -> bool:
         """Figures and signs are the entry's; letters stay what they are everywhere, but for C on F9."""
@@ -91,8 +105,14 @@ class OffsetPage(Page):
             self.typed(key)
 
     def prompt(self) -> str:
-        """From the model."""
+        """From the model; while the effect is shown, what it is."""
+        if self.shown.open:
+            return self.shown.words
         return self.shared.prompt(self.desk.snapshot())
+
+    def dress(self) -> None:
+        """The picture in the colours of now."""
+        self.effect.restart()
 
     def opened(self) -> None:
         """What was changed on another page is no news here."""
@@ -100,12 +120,15 @@ class OffsetPage(Page):
 
     def leave(self) -> bool:
         """Nothing stays half entered."""
+        self.shown.close()
         self.shared.leave()
         return True
 
     def escape(self) -> bool:
         """Esc goes one step back, and from the first question to the Automatic page."""
-        if not self.shared.escape():
+        if self.shown.open:
+            self.shown.close()
+        elif not self.shared.escape():
             self.host.go(pages.AUTOMATIC)
         return True
 
@@ -115,7 +138,10 @@ class OffsetPage(Page):
         self.shared.look(snapshot)
         changes = ledger.looking_back
         self.history.setVisible(changes is not None)
-        self.board().setVisible(changes is None)
+        self.board().setVisible(changes is None and not self.shown.open)
+        self.effect.setVisible(self.shown.open)
+        if self.shown.open:
+            self.effect.show_effect()
         if changes is not None:
             self.history.show_entries(tuple(ledger.told(change) for change in changes))
         self.show_offsets()
@@ -125,7 +151,7 @@ class OffsetPage(Page):
         u = self.look.u
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
         wide, table = self.width() - pad - gap, self.height() - high - gap
-        for part in (self.board(), self.history):
+        for part in (self.board(), self.history, self.effect):
             part.setGeometry(0, 0, wide, table)
         self.asked.setGeometry(0, table + gap, wide, high)
         self.pad.setGeometry(wide + gap, 0, pad, self.height())
