@@ -8,7 +8,7 @@ numpy comes with the first picture.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
@@ -19,6 +19,7 @@ from app.screen.look import Look
 from app.screen.panel import Panel
 from app.screen.path.aspects import Tip
 from app.screen.path.pointer import Pointer
+from app.screen.path.ruling import Picked, Ruling
 
 if TYPE_CHECKING:
     from app.desk.drawing.approach import Leg
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from app.screen.path.plot import Frame
 
 COLUMN = 6.4  # units at the right of a view that are the buttons'
-Picked = Callable[[int], None]
 
 
 class PathView(Panel):
@@ -45,10 +45,9 @@ class PathView(Panel):
     def __init__(self, look: Look, parent: QWidget | None = None, picked: Picked | None = None) -> None:
         super().__init__(look, parent)
         self.legs: tuple[Leg, ...] = ()
-        self.ruler: Measure | None = None
         self._set: Panes | None = None
         self._tip = Tip()
-        self._pointer, self._picked = Pointer(self), picked
+        self._pointer, self.ruling = Pointer(self), Ruling(self, picked)
         self.grabGesture(Qt.GestureType.PinchGesture)
 
     @property
@@ -132,10 +131,7 @@ class PathView(Panel):
             return
         self._tip = self._tip._replace(block=0)
         self._set.show(picture, before)
-        if self.ruler is not None and self.ruler.pane in self._set.now:
-            self.ruler.renew()
-        else:
-            self.measure(on=False)
+        self.ruling.renew(self._set.now)
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -205,42 +201,14 @@ class PathView(Panel):
 
     # --- measuring and picking -----------------------------------------------------------------------
 
+    @property
+    def ruler(self) -> Measure | None:
+        """What one measures with; None while one does not."""
+        return self.ruling.now
+
     def measure(self, *, on: bool | None = None) -> None:
-        """Begin or end measuring, in the last pane; None: the other way round."""
-        wanted = (self.ruler is None) if on is None else on
-        if wanted and self.drawn and self.view is not None:
-            self._measure_in(self.panes[-1])
-            self.setFocus()
-        elif not wanted and self.ruler is not None:
-            self.ruler.end()
-            self.ruler = None
-            self.setMouseTracking(False)
-            if self.hasFocus():
-                self.window().setFocus()
-        self.update()
-
-    def _measure_in(self, pane: Pane) -> None:
-        from app.screen.path.measure import Measure
-
-        self.ruler = Measure(pane)
-        self.setMouseTracking(True)
-
-    def point(self, at: QPointF) -> None:
-        """The pointer moves over the view."""
-        if self.ruler is not None and self.ruler.pane.room.contains(at):
-            self.ruler.point(at)
-            self.update()
-
-    def touched(self, pane: Pane, at: QPointF) -> None:
-        """A pane was touched: measured from there, or the block that was drawn there is meant."""
-        if self.ruler is not None:
-            if self.ruler.pane is not pane:
-                self._measure_in(pane)
-            self.ruler.point(at)
-            self.ruler.hold()
-            self.update()
-        elif self._picked is not None and (block := pane.block_at(at)):
-            self._picked(block)
+        """Begin or end measuring; None: the other way round."""
+        self.ruling.switch(on=self.ruler is None if on is None else on)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 

@@ -227,6 +227,18 @@ def test_before_and_after_are_both_there(view: PathView) -> None:
     assert not drawn_in(DARK.tip, image, view, [(0.0, 0.0)])  # no tool stands in a comparison
 
 
+def test_zooming_a_comparison_goes_to_the_farthest_change(view: PathView) -> None:
+    view.show_compared(picture(SHAFT), picture([(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.004, -20.003)]))
+    apart = view.panes[0].apart
+    assert apart is not None
+    assert apart.distance == pytest.approx(0.005)
+    view.zoom(20)
+    z0, z1, x0, x1 = view.panes[0].sight()
+    assert z0 < -20.003 < z1
+    assert x0 < 8.004 < x1
+    settle(view)
+
+
 def test_both_pictures_fit_into_a_comparison(view: PathView) -> None:
     view.show_compared(picture([(40.0, 2.0), (40.0, -60.0)]), picture(SHAFT))
     z0, z1, x0, x1 = view.panes[0].sight()

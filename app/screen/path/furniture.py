@@ -90,14 +90,18 @@ def draw_scale(painter: QPainter, look: Look, room: QRectF, frame: Frame, metric
     put(painter, QRectF(right - wide - 12 * u, y - 1.2 * u, 11.2 * u, 2 * u), RIGHT, text)
 
 
-def draw_pane_name(painter: QPainter, look: Look, room: QRectF, name: str) -> None:
-    """At the upper left of a pane, with a line to the pane before it."""
-    u = look.u
+def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
+    """Between a pane and the one at its left."""
     painter.setPen(look.pen("frame", 0.12))
     painter.drawLine(room.topLeft(), room.bottomLeft())
+
+
+def draw_words(painter: QPainter, look: Look, room: QRectF, words: str) -> None:
+    """At the upper left of a pane: what it is, or what is to be said of it."""
+    u = look.u
     painter.setPen(look.colour("soft"))
-    painter.setFont(look.fit(name, 1.6, room.width() - 7.5 * u, bold=True))
-    put(painter, QRectF(room.x() + 1.2 * u, room.y() + 0.4 * u, room.width() - 8 * u, 2 * u), LEFT, name)
+    painter.setFont(look.fit(words, 1.6, room.width() - 2 * u, bold=True))
+    put(painter, QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u), LEFT, words)
 
 
 def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:

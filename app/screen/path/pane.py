@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
+from app.desk.drawing.apart import farthest
 from app.desk.drawing.features import point_at
 from app.desk.drawing.trail import Bounds, Trail
 from app.desk.drawing.turned import face_point
@@ -31,6 +32,7 @@ class Pane:
     def __init__(self, look: Look, aspect: Aspect, trail: Trail, before: Trail | None = None) -> None:
         self.look, self.aspect = look, aspect
         self.trail, self.before = trail, before
+        self.apart = farthest(before, trail) if before is not None else None
         self.room = QRectF()
         self.by_hand = False  # somebody has zoomed or panned
         self.frame: Frame | None = None
@@ -49,6 +51,7 @@ class Pane:
     def take(self, trail: Trail, before: Trail | None) -> None:
         """Another path in the same place; what is looked at stays if it was chosen by hand."""
         self.trail, self.before, self._block, self.marked = trail, before, 0, []
+        self.apart = farthest(before, trail) if before is not None else None
         if self.by_hand and self.frame is not None:
             self._look_at(self.frame)
         else:
@@ -67,8 +70,16 @@ class Pane:
         self._look_at(fit(bounds, int(self.room.width()), int(self.room.height()), margin))
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
-        """Nearer (positive) or farther, about a point of the widget or about the middle."""
-        self.magnify(ZOOM_STEP**steps, at if at is not None else self.room.center())
+        """Nearer (positive) or farther, about a point of the widget, the farthest change or the middle."""
+        self.magnify(ZOOM_STEP**steps, at if at is not None else self._middle())
+
+    def _middle(self) -> QPointF:
+        """What one wants to see nearer."""
+        if self.apart is not None and self.frame is not None:
+            changed = self.room.topLeft() + self.spot(self.apart.z, self.apart.x)
+            if self.room.contains(changed):
+                return changed
+        return self.room.center()
 
     def magnify(self, factor: float, at: QPointF) -> None:
         """Nearer by a factor; what is at the point stays there."""
@@ -191,6 +202,10 @@ class Pane:
         if self.before is None:
             self._under_way(painter, frame)
             self._tool_tip(painter)
+        elif self.apart is not None and self.apart.distance:
+            painter.setPen(self.look.pen("text", 0.2))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(self.spot(self.apart.z, self.apart.x), 1.4 * self.look.u, 1.4 * self.look.u)
 
     def _draw_marked(self, painter: QPainter, frame: Frame) -> None:
         pens = Ink.MARKED.pens(self.look)

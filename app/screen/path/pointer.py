@@ -34,7 +34,7 @@ class Pointer:
         """It moves; held down it takes the picture along."""
         at = event.position()
         if self._pane is None:
-            self._view.point(at)
+            self._view.ruling.point(at)
             return
         if not self._dragging:
             self._dragging = (at - self._down).manhattanLength() > STILL * self._view.look.u
@@ -47,7 +47,7 @@ class Pointer:
         """It came up again; where it has not moved something was touched."""
         pane, self._pane = self._pane, None
         if pane is not None and not self._dragging:
-            self._view.touched(pane, event.position())
+            self._view.ruling.touched(pane, event.position())
 
     def gesture(self, event: QEvent) -> bool:
         """Two fingers on the screen or on a touch pad; whether the event was one of theirs."""

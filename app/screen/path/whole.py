@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter
 
+from app.desk import formats
+from app.desk.drawing.apart import Apart
 from app.desk.words import tr
 from app.screen.look import LEFT, put
 from app.screen.path import furniture
@@ -31,6 +33,9 @@ def draw_view(painter: QPainter, view: PathView) -> None:
     furniture.draw_buttons(painter, look, view.room(), _buttons(view), view.place)
     legend = furniture.compared_legend(look) if view.comparing else furniture.run_legend(look)
     furniture.draw_legend(painter, look, view.panes[0].room, legend)
+    apart = view.panes[0].apart
+    if apart is not None:
+        furniture.draw_words(painter, look, view.panes[0].room, _apart_words(apart, view.in_mm))
 
 
 def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
@@ -46,7 +51,18 @@ def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
     if pane.frame is not None:
         furniture.draw_scale(painter, view.look, pane.room, pane.frame, view.in_mm)
     if pane.aspect is not Aspect.PATH:
-        furniture.draw_pane_name(painter, view.look, pane.room, _name_of(pane))
+        furniture.draw_words(painter, view.look, pane.room, _name_of(pane))
+        if pane is not view.panes[0]:
+            furniture.draw_border(painter, view.look, pane.room)
+
+
+def _apart_words(apart: Apart, in_mm: bool) -> str:
+    if not apart.distance:
+        return tr("NOTHING THAT IS CUT HAS CHANGED")
+    length = formats.length(apart.distance, in_mm)
+    return tr("AT MOST {length} {unit} APART  ·  AT THE CIRCLE").format(
+        length=length, unit="mm" if in_mm else "in"
+    )
 
 
 def _name_of(pane: Pane) -> str:
