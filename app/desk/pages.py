@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
-PROGRAMS = "PROGRAMS"
+PROGRAMS, ZERO = "PROGRAMS", "ZERO OFFSETS"
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +24,9 @@ ENTRIES = (
     Entry("F3", "EDIT", EDITOR, "write and prove programs"),
     Entry("F4", "MDI", MDI, "one line at a time"),
     Entry("F5", "JOG", JOG, "move by hand, touch tools off"),
-    Entry("F6", "PROGRAMS", PROGRAMS, "list, preview, copy, import and export"),
+    Entry("F6", "LIST", PROGRAMS, "list, preview, copy, import and export"),
     Entry("F8", "TOOLS", TOOLS, "T1…T32: position and nose radius"),
     Entry("F9", "SECCMP", SECCMP, "D1…D32: corrections of wear and size"),
+    Entry("G", "ZERO", ZERO, "G54…G59: where SINUMERIK programs have their zero"),
     Entry("F10", "SPECIAL", SPECIAL, "speed limit, parts, inputs and outputs, log, backup"),
 )

@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS
+from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS, ZERO
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
 from app.screen.pages import Host, Page
+from app.screen.zero_offsets.page import ZeroPage
 
 MakePage = Callable[[Host, QWidget], Page]
 
@@ -68,4 +69,5 @@ MAKERS: Mapping[str, MakePage] = {
     SPECIAL: _special,
     SECCMP: SeccmpPage,
     TOOLS: ToolsPage,
+    ZERO: ZeroPage,
 }

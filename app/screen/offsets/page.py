@@ -77,6 +77,7 @@ class OffsetPage(Page):
             "F6": self._effect,
             "F8": lambda: self._go(pages.TOOLS),
             "F9": lambda: self._go(pages.SECCMP),
+            "F10": lambda: self._go(pages.ZERO),
         }
 
     def _go(self, name: str) -> None:

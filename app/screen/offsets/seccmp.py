@@ -18,7 +18,7 @@ class SeccmpPage(OffsetPage):
     """F9, secondary offsets."""
 
     NAME = pages.SECCMP
-    LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "")
+    LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         self.model = SeccmpDesk(host.desk, host.desk.book)

@@ -17,7 +17,7 @@ class ToolsPage(OffsetPage):
     """F8, tool offsets."""
 
     NAME = pages.TOOLS
-    LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "", "SECCMP", "")
+    LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "", "SECCMP", "ZERO")
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         self.model = ToolGrid(host.desk, host.desk.book)

@@ -1,0 +1,1 @@
+"""G54 to G59: the table and its history."""

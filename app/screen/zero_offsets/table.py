@@ -1,0 +1,76 @@
+"""G54 to G59, a row each: X, Z and C."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk.words import tr
+from app.desk.zero_offsets.desk import shown
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+from core.store.zero import CODES, FIELDS, ZeroRow
+
+_NAME = 0.16  # share of the width for the code
+
+
+class ZeroTable(Panel):
+    """Each cell is a target for a finger. The chosen one is filled, the offset in force has a bar."""
+
+    def __init__(self, look: Look, choose: Callable[[int, int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._choose = choose
+        self.rows: Mapping[int, ZeroRow] = {}
+        self.cell = (0, 0)
+        self.in_force = 0
+
+    def show_rows(self, rows: Mapping[int, ZeroRow], cell: tuple[int, int], in_force: int) -> None:
+        """The table, the chosen cell, and the code in force (0: none)."""
+        if (rows, cell, in_force) != (self.rows, self.cell, self.in_force):
+            self.rows, self.cell, self.in_force = rows, cell, in_force
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        self.frame(painter, tr("SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES"))
+        room, u = self.inside(), self.look.u
+        high = min(room.height() / (len(CODES) + 1), 8.0 * u)
+        self._head(painter, QRectF(room.x(), room.y(), room.width(), high))
+        for row in range(len(CODES)):
+            self._row(
+                painter, QRectF(room.x(), room.y() + (row + 1) * high, room.width(), high - 0.5 * u), row
+            )
+
+    def _cells(self, row: QRectF) -> list[QRectF]:
+        wide = row.width() * (1.0 - _NAME) / len(FIELDS)
+        left = row.x() + row.width() * _NAME
+        return [
+            QRectF(left + n * wide, row.y(), wide - 0.5 * self.look.u, row.height())
+            for n in range(len(FIELDS))
+        ]
+
+    def _head(self, painter: QPainter, row: QRectF) -> None:
+        painter.setPen(self.look.colour("soft"))
+        painter.setFont(self.look.font(2.4, bold=True))
+        for name, cell in zip(FIELDS, self._cells(row), strict=True):
+            put(painter, cell, CENTRE, name.upper())
+
+    def _row(self, painter: QPainter, box: QRectF, row: int) -> None:
+        look, u, code = self.look, self.look.u, CODES[row]
+        if code == self.in_force:
+            painter.fillRect(QRectF(box.x(), box.y(), 0.6 * u, box.height()), look.colour("lit"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.8, bold=True))
+        put(painter, box.adjusted(1.6 * u, 0, 0, 0), LEFT, f"G{code}")
+        offset = self.rows.get(code)
+        for column, (name, cell) in enumerate(zip(FIELDS, self._cells(box), strict=True)):
+            here = (row, column) == self.cell
+            painter.fillRect(cell, look.colour("here" if here else "key"))
+            painter.setPen(look.colour("text" if offset is not None or here else "soft"))
+            figure = shown(getattr(offset or ZeroRow(), name))
+            painter.setFont(look.fit(figure, 3.0, cell.width() - 2.4 * u, bold=offset is not None))
+            put(painter, cell.adjusted(0, 0, -1.2 * u, 0), RIGHT, figure)
+            self.place(cell, partial(self._choose, row, column))

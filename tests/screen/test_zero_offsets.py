@@ -1,0 +1,143 @@
+"""G54 to G59 by keys alone: entered, refused, undone, cleared, looked back at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.desk import pages
+from app.desk.zero_offsets.book import ZeroBook
+from app.screen.zero_offsets.page import ZeroPage
+from core.executor.snapshot import State
+from core.store.store import Store
+from core.store.zero import ZeroRow
+from tests.screen.hands import Hands, Key
+
+
+@pytest.fixture
+def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
+    with Store.open(tmp_path / "home") as store:
+        hands.desk.zero = ZeroBook(store)
+        yield store
+
+
+def opened(hands: Hands) -> ZeroPage:
+    """From the main menu."""
+    hands.key(Key.Key_F1)
+    hands.key(Key.Key_G)
+    page = hands.frame.page
+    assert isinstance(page, ZeroPage)
+    assert hands.frame.title.page == pages.ZERO
+    return page
+
+
+def enter(hands: Hands, text: str) -> None:
+    hands.type(text)
+    hands.key(Key.Key_Return)
+
+
+def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    hands.sees(lambda: page.asked.asked.question == "G54  X RADIUS, MM?")
+    enter(hands, "1.5-.25")
+    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=1.25)})
+    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.key(Key.Key_Tab)
+    hands.key(Key.Key_Tab)
+    hands.sees(lambda: page.asked.asked.question == "G54  C, DEGREES?")
+    hands.type("-15")
+    hands.sees(lambda: page.asked.asked.change == "G54 C   +0.000  →  −15.000")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: page.table.rows == {54: ZeroRow(x=1.25, c=-15.0)})
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Left)
+    enter(hands, "33")
+    hands.sees(lambda: store.zero_offsets().get(55) == ZeroRow(z=33.0))
+
+
+def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    enter(hands, "9999")
+    assert hands.prompt() == "REFUSED: G54 X would become +9999.000 mm; it may be -5000…5000"
+    assert page.model.text == "9999"
+    hands.key(Key.Key_Delete)
+    enter(hands, "2+")
+    assert hands.prompt().startswith("REFUSED:")
+    assert store.zero_offsets() == {}
+
+
+def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    for _ in range(18):
+        hands.key(Key.Key_Return)
+    assert (page.model.row, page.model.column) == (0, 0)
+    assert store.zero_history() == ()
+
+
+def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    enter(hands, "7")
+    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.key(Key.Key_C)
+    assert hands.prompt().startswith("PRESS C ONCE MORE")
+    hands.key(Key.Key_C)
+    hands.sees(lambda: store.zero_offsets() == {})
+    hands.sees(lambda: not page.model.book.busy and page.table.rows == {})
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: hands.prompt() == "G54 TAKEN BACK")
+    hands.key(Key.Key_F5)
+    hands.sees(page.history.isVisible)
+    assert [entry[1] for entry in page.history.entries] == ["G54", "G54", "G54"]
+    assert page.history.entries[-1][2] == "not set  →  X +7.000  Z +0.000  C +0.000"
+    hands.key(Key.Key_Escape)
+    hands.sees(page.table.isVisible)
+
+
+def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
+    opened(hands)
+    hands.machine.now = replace(hands.machine.now, state=State.RUN)
+    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY")
+    enter(hands, "3")
+    hands.key(Key.Key_F4)
+    hands.key(Key.Key_C)
+    hands.key(Key.Key_C)
+    assert store.zero_history() == ()
+
+
+def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) -> None:
+    page = opened(hands)
+    hands.type("12")
+    hands.key(Key.Key_Escape)
+    assert page.model.text == ""
+    hands.key(Key.Key_Escape)
+    assert hands.frame.page is hands.page
+    assert store.zero_offsets() == {}
+
+
+def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
+    assert store.zero_offsets() == {}
+    hands.key(Key.Key_F8)
+    hands.key(Key.Key_F10)
+    assert isinstance(hands.frame.page, ZeroPage)
+    hands.key(Key.Key_F9)
+    assert hands.frame.title.page == pages.SECCMP
+
+
+def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
+    page = opened(hands)
+    enter(hands, "3")
+    hands.sees(lambda: hands.prompt() == "NO ZERO OFFSETS ARE KEPT HERE")
+    assert page.table.rows == {}
+
+
+def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Store) -> None:
+    hands.load("bushing")
+    before = hands.desk.session.now
+    opened(hands)
+    enter(hands, "4")
+    hands.sees(lambda: store.zero_offsets() != {} and hands.desk.session.now.job is not before.job)
