@@ -178,7 +178,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     hands.sees(lambda: 9 in page.model.book.tools)
     hands.key(Key.Key_Right)
     answer(hands, ".0156")
-    hands.sees(lambda: page.asked.asked.change.startswith("T9   X −0.50000  Z −3.25000  R 0.00000  →"))
+    hands.sees(lambda: page.asked.asked.change == "T9   NOSE RADIUS 0.00000 → 0.01560")
     assert store.tools()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
     hands.machine.now = replace(hands.machine.now, state=State.HOLD)
     answer(hands, "1")
@@ -255,10 +255,14 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     hands.sees(lambda: page.effect.comparing)
     assert not page.table.isVisible()
     # half of the diameter, and what R does to it is nothing here
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, DRAWN"))
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, AT THE CIRCLE"))
+    whole = page.effect.view
     hands.key(Key.Key_F6)
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, IN ITS TRUE SIZE"))
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART; Z ZOOMS"))
     before = page.effect.view
+    assert whole is not None
+    assert before is not None
+    assert 0.0254 * before.scale >= 0.05 * page.effect.width()
     hands.key(Key.Key_Z)
     assert page.effect.view != before
     hands.key(Key.Key_F6)
@@ -267,7 +271,7 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     hands.sees(lambda: 1 in page.table.offsets)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, DRAWN"))
+    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, AT THE CIRCLE"))
     hands.key(Key.Key_Escape)
     hands.sees(page.table.isVisible)
     assert hands.frame.page is page

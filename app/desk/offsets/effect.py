@@ -21,8 +21,6 @@ from core.interpreter.setup import SecondaryOffset, ToolOffset
 if TYPE_CHECKING:
     from app.desk.picture import Picture
 
-SEEN = 0.03  # of the picture: a difference smaller than this is drawn larger than it is
-FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 NOUGHT = 1e-9  # mm
 
 
@@ -40,32 +38,16 @@ Draw = Callable[[Job, Mapping[int, ToolOffset], Watch], "Picture"]
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """Two pictures in one frame; ``factor``: how many times the difference is larger than it will be."""
+    """Two pictures in one frame."""
 
     before: Picture
     after: Picture
     furthest: float = 0.0  # mm between two points of the same number; infinite where the paths differ in kind
-    factor: int = 1
 
     @property
     def same(self) -> bool:
         """Whether the change does nothing to this program."""
         return self.furthest <= NOUGHT
-
-    def magnified(self) -> Compared:
-        """The difference drawn so much larger that it can be seen; paths that differ in kind as they are."""
-        extent = max(abs(a - b) for a, b in (self.before.bounds[:2], self.before.bounds[2:]))
-        if self.same or not np.isfinite(self.furthest):
-            return self
-        wanted = SEEN * extent / self.furthest
-        factor = next((f for f in FACTORS if f >= wanted), FACTORS[-1])
-        before, after = self.before, self.after
-        drawn = replace(
-            after,
-            z=before.z + factor * (after.z - before.z),
-            x=before.x + factor * (after.x - before.x),
-        )
-        return replace(self, after=drawn, factor=factor)
 
 
 def compared(before: Picture, after: Picture) -> Compared:

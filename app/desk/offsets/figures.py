@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
 
 from app.desk import formats
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.words import tr
-from core.store.rows import Change, Row, SecondaryRow, ToolRow
+from core.store.rows import Row, SecondaryRow, ToolRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +81,3 @@ def added(mm: float, value: float, metric: bool) -> float:
     """``mm`` and a typed correction: summed in the unit of the entry, so that .0005 ten times is .005."""
     unit = 1.0 if metric else MM_PER_INCH
     return round(mm / unit + value, 10) * unit
-
-
-def told(change: Change, letter: str, mode: Mode) -> tuple[str, str, str, str]:
-    """Of one change: when (local time), which offset, from → to, why and by whom."""
-    at = datetime.fromisoformat(change.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
-    was, now = in_words(change.old, mode), in_words(change.new, mode)
-    who = "" if change.who == "operator" else f" ({change.who})"
-    return at, f"{letter}{change.number}", f"{was}  →  {now}", f"{change.why}{who}"

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from app.desk.desk import Desk
 from app.desk.offsets.allowed import counts_later
 from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.figures import Mode, told
+from app.desk.offsets.figures import Mode
+from app.desk.offsets.telling import told
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.store.errors import StoreError

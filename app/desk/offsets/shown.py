@@ -20,16 +20,13 @@ Rows = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 
 @dataclass(slots=True)
 class ShownEffect:
-    """F6: the difference so large that it can be seen, then in its true size, then the table again."""
+    """F6: the whole path with the place of the greatest change, then that place, then the table again."""
 
     desk: Desk
     ledger: Ledger
     proposed: Callable[[], Rows]  # the tables with what is being typed
-    magnified: bool = False
     open: bool = False
-    _asked: bool = False
-    _true: Compared | None = None
-    _drawn: Compared | None = None
+    near: bool = False  # the place of the greatest change, so near that it is seen
 
     @property
     def effect(self) -> Effect | None:
@@ -40,8 +37,8 @@ class ShownEffect:
         """F6."""
         if not self.open:
             self._open()
-        elif self.magnified and self._drawn is not None and self._drawn.factor > 1:
-            self.magnified = False
+        elif not self.near and self.pictures is not None and not self.pictures.same:
+            self.near = True
         else:
             self.close()
 
@@ -56,8 +53,7 @@ class ShownEffect:
             return
         self.desk.clear()
         effect.ask(job, *pair)
-        self.open, self.magnified = True, True
-        self._true = self._drawn = None
+        self.open, self.near = True, False
 
     def _pair(self) -> tuple[Tables, Tables] | None:
         """Before and after: of the entry, where it would change something, else of the last change."""
@@ -75,21 +71,15 @@ class ShownEffect:
 
     def close(self) -> None:
         """The table again."""
-        self.open = False
+        self.open = self.near = False
         if self.effect is not None:
             self.effect.forget()
-        self._true = self._drawn = None
 
     @property
     def pictures(self) -> Compared | None:
         """What to draw now; None while the worker is at it."""
         effect = self.effect
-        if not self.open or effect is None or effect.busy or effect.now is None:
-            return None
-        if effect.now is not self._true:
-            self._true = effect.now
-            self._drawn = effect.now.magnified()
-        return self._drawn if self.magnified else self._true
+        return None if not self.open or effect is None or effect.busy else effect.now
 
     @property
     def words(self) -> str:
@@ -105,10 +95,10 @@ class ShownEffect:
         if pair.furthest == float("inf"):
             return tr("THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE")
         far = f"{length(pair.furthest, mode.metric)} {mode.name}"
-        if pair.factor > 1:
-            text = tr("UP TO {far} APART, DRAWN {factor} TIMES AS LARGE; F6 SHOWS THE TRUE SIZE")
-            return text.format(far=far, factor=pair.factor)
-        return tr("UP TO {far} APART, IN ITS TRUE SIZE; Z ZOOMS, F6 SHOWS THE TABLE").format(far=far)
+        if not self.near:
+            text = tr("UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE")
+            return text.format(far=far)
+        return tr("UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE").format(far=far)
 
 
 def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Tables:

@@ -18,7 +18,7 @@ from app.screen.offsets.tip import draw_tip
 from app.screen.panel import Panel
 from core.store.rows import OFFSETS
 
-NUMBER = 4.6  # units: width of the column of numbers
+NUMBER = 5.4  # units: width of the column of numbers
 # Widths of the columns in parts of what is left.
 SHARES = {
     "x": 15.0,

@@ -247,7 +247,7 @@ def test_undo_and_history(room: Room) -> None:
     assert grid.ledger.looking_back is not None
     at_, which, change, why = grid.ledger.told(grid.ledger.looking_back[1])
     assert (which, why) == ("T1", "WEAR X -.001")
-    assert change.endswith("WEAR X −0.00100  Z +0.00000")
+    assert change == "WEAR X +0.00000 → −0.00100"
     assert at_.startswith("20")
     assert grid.escape()
 
