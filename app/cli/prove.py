@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -54,6 +55,16 @@ def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Repor
     return report
 
 
+def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:
+    """What the program reaches: of a lathe X and Z of the program, of a mill all axes of the machine."""
+    if report.mill is not None:
+        from app.cli.shown_klartext import machine_reach
+
+        return machine_reach(report.mill)
+    (x0, x1), (z0, z1) = report.reach.x, report.reach.z
+    return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
+
+
 def _sheet(path: Path, report: Report) -> str:
     """The proof as a person reads it."""
     from app.cli.shown import MM_PER_INCH, inches, millimetres, per_minute
@@ -74,8 +85,7 @@ def _sheet(path: Path, report: Report) -> str:
         f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
         f"  path {length(report.cutting_length):.4f} {unit} cutting,"
         f" {length(report.rapid_length):.4f} {unit} rapid\n"
-        f"  X radius {length(reach.x[0]):.5f} … {length(reach.x[1]):.5f}"
-        f"   Z {length(reach.z[0]):.5f} … {length(reach.z[1]):.5f} {unit}\n"
+        f"{_reached(report, length, unit)}"
         f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
         f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"
     )

@@ -105,7 +105,7 @@ def _write(args: argparse.Namespace, path: Path, outcome: Outcome, report: Repor
     unit = "in" if report.dialect == "omniturn" else "mm"
     sys.stdout.write(
         f"{path}: {outcome.state} after {outcome.elapsed:.2f} s (proved: {report.times.cycle:.2f} s)\n"
-        f"  at X radius {final['x']:.5f}  Z {final['z']:.5f} {unit};"
+        f"  at {_shown_place(final, mill=report.mill is not None)} {unit};"
         f" following error at most {figures['max_following_error']:.5f} {unit},"
         f" {figures['underruns']} underruns; log {events}\n"
     )
@@ -115,11 +115,22 @@ def _write_line(line: dict[str, object]) -> None:
     sys.stdout.write(json.dumps(line) + "\n")
 
 
+def _shown_place(final: dict[str, float], *, mill: bool) -> str:
+    if mill:
+        return "  ".join(f"{name[-1].upper()} {at:.3f}" for name, at in final.items() if name[0] in "mabc")
+    return f"X radius {final['x']:.5f}  Z {final['z']:.5f}"
+
+
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
     """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
     from app.cli.shown import degrees, length_of
     from core.language.dialect import Dialect
 
+    if report.mill is not None:
+        from app.cli.shown_klartext import place
+
+        complete = outcome is not None and outcome.state == "complete"
+        return place(report.mill, outcome.snapshot.demand if outcome else (), complete=complete)
     if outcome is None:
         return {"x": 0.0, "z": 0.0, "c": 0.0}
     demand = outcome.snapshot.demand

@@ -68,6 +68,11 @@ def report_json(file: str, report: Report) -> Json:
     Lengths are inches for OmniTurn programs, mm for the others.
     """
     reach, times = report.reach, report.times
+    mill: Json = {}
+    if report.mill is not None:
+        from app.cli.shown_klartext import figures
+
+        mill = figures(report, report.mill)
     inch, length = report.dialect is Dialect.OMNITURN, length_of(report.dialect)
     return {
         "file": file,
@@ -97,6 +102,7 @@ def report_json(file: str, report: Report) -> Json:
             "z": length(report.final[1]),
             "c": degrees(report.final[2]),
         },
+        **mill,
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from app.cli.shown import Json, degrees, millimetres, seconds
@@ -9,6 +10,7 @@ from app.cli.shown import Json, degrees, millimetres, seconds
 if TYPE_CHECKING:
     from core.interpreter.blocks import Block
     from core.interpreter.swivel import Swivel
+    from core.proving.report import MillFigures, Report
 
 HEAD = (
     "    n  line  kind           X          Y          Z         A        B        C"
@@ -37,6 +39,31 @@ def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
         "t1": seconds(t1),
     }
     return shown | _plane(swivel) if block.kind == "plane" and swivel is not None else shown
+
+
+def figures(report: Report, mill: MillFigures) -> Json:
+    """What a proof says otherwise of a mill: ``limits`` are machine positions, ``final`` holds all axes."""
+    limits: Json = {
+        name.lower(): [millimetres(low), millimetres(high)]
+        for name, (low, high) in zip(mill.axes, mill.reach, strict=False)
+    }
+    limits["rpm"] = [round(rpm, 3) for rpm in report.reach.rpm]
+    limits["feed_mm_min"] = [round(speed * _PER_MINUTE, 6) for speed in report.reach.feed]
+    return {"limits": limits, "final": {} if mill.final is None else _places(mill.final)}
+
+
+def machine_reach(mill: MillFigures) -> str:
+    """The same for a person."""
+    reached = zip(mill.axes, mill.reach, strict=False)
+    return "  machine " + "   ".join(f"{name} {low:.3f} … {high:.3f}" for name, (low, high) in reached) + "\n"
+
+
+def place(mill: MillFigures, demand: Sequence[float], *, complete: bool) -> dict[str, float]:
+    """Where a run has ended: all axes of the machine, and its working plane where the program was done."""
+    if complete and mill.final is not None:
+        return {name: at for name, at in _places(mill.final).items() if isinstance(at, float)}
+    named = ((f"m{name.lower()}" if name in "XYZ" else name.lower()) for name in mill.axes)
+    return {name: millimetres(at) for name, at in zip(named, demand, strict=False)}
 
 
 def row(block: Block, t0: float) -> str:

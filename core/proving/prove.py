@@ -11,7 +11,7 @@ from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine
 from core.proving.interlock import c_findings
-from core.proving.report import Report, Times
+from core.proving.report import MillFigures, Report, Times
 from core.proving.tally import Tally
 from core.proving.timeline import Moved, Rested, Timeline
 from core.proving.travel import travel_findings
@@ -102,6 +102,16 @@ class _Proof:
             reach=tally.reach,
             final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
             machine_final=end.machine_end if end else timeline.start,
+            mill=self._mill(),
+        )
+
+    def _mill(self) -> MillFigures | None:
+        if self._machine.kind != "mill":
+            return None
+        return MillFigures(
+            axes=tuple(axis.name for axis in self._machine.axes),
+            reach=tuple(span.range for span in self._tally.axes),
+            final=self.last.swivel if self.last else None,
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.interpreter.swivel import Swivel
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.dialect import Dialect
 
@@ -37,6 +38,17 @@ class Reach:
 
 
 @dataclass(frozen=True, slots=True)
+class MillFigures:
+    """What a program does on a mill: its axes in order, the machine positions that each of them reaches, and
+    where the last block stands in its working plane; None where there was no block.
+    """
+
+    axes: tuple[str, ...]
+    reach: tuple[Range, ...]
+    final: Swivel | None
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
     """One program, proved. Figures cover what could be interpreted when there are errors."""
 
@@ -54,6 +66,7 @@ class Report:
     reach: Reach
     final: tuple[float, float, float]  # program frame
     machine_final: tuple[float, ...]
+    mill: MillFigures | None = None
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:

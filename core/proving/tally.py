@@ -31,11 +31,17 @@ class Span:
         return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
 
 
+def _swivels(block: Block) -> bool:
+    """Whether a mill's block counts degrees: its rotary axes turn alone, or lead the slides."""
+    return block.travel is not None and (block.travel.way is not None or not block.travel.slides)
+
+
 class Tally:
     """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
 
     def __init__(self) -> None:
         self.x, self.z, self.c, self.rpm, self.feed = Span(), Span(), Span(), Span(), Span()
+        self.axes: list[Span] = []  # machine positions of a mill's axes
         self.cutting_length = 0.0
         self.rapid_length = 0.0
 
@@ -53,7 +59,8 @@ class Tally:
         length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
         for index, block in enumerate(blocks):
             if block.travel is not None:
-                length[index] = block.travel.length if block.travel.slides else 0.0
+                length[index] = 0.0 if _swivels(block) else block.travel.length
+                self._see_axes(block)
             elif block.kind is Kind.ARC:
                 length[index] = self._arc(block)
             elif block.plane is not None:
@@ -62,11 +69,17 @@ class Tally:
         self.cutting_length += float(length[~rapid].sum())
         for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
             span.see(float(table[:, column].min()), float(table[:, column].max()))
-        turned = np.array([b.kind is Kind.ROTATE for b in blocks])
+        turned = np.array([b.kind is Kind.ROTATE or _swivels(b) for b in blocks])
         by_c = turned | np.array([b.modal.c_locked for b in blocks])
         if not turned.all():
             self._feeds(table[~turned])
         self._turning(table[~by_c])
+
+    def _see_axes(self, block: Block) -> None:
+        if not self.axes:
+            self.axes = [Span() for _ in block.machine_end]
+        for span, reach in zip(self.axes, block.machine_reach(), strict=True):
+            span.see(*reach)
 
     def _reach(self, block: Block) -> None:
         low_x, high_x, low_z, high_z = block.reach()
