@@ -8,6 +8,7 @@ MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
 MINUS = "−"  # the true minus: a hyphen is too short to be read from two metres
 NOTHING = "—"
+ANGLE_PLACES = 2
 
 
 def fixed(value: float, places: int) -> str:
@@ -26,7 +27,12 @@ def length(mm: float, metric: bool) -> str:
 
 def angle(degrees: float) -> str:
     """The spindle angle; its step is .02 degree."""
-    return fixed(degrees, 2)
+    return fixed(degrees, ANGLE_PLACES)
+
+
+def turn_unit(per_rev: bool) -> str:
+    """The unit of a feed of C alone."""
+    return f"°/{'rev' if per_rev else 'min'}"
 
 
 def feed_unit(metric: bool, per_rev: bool) -> str:

@@ -38,6 +38,7 @@ class Tone(StrEnum):
 
 
 ROTARY = frozenset("ABC")  # axes that are read in degrees
+LATHE = ("X", "Z", "C")
 
 TONES = {
     State.ESTOP: Tone.ALARM,
@@ -165,12 +166,21 @@ def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
     """The figures of a readout in the order of ``snapshot.axes``: mm with X a radius, and degrees."""
     actual = snapshot.actual
     if readout is Readout.HOME:
-        return actual
+        return _wrapped(actual, snapshot)
     if readout is Readout.TO_GO:
         end = snapshot.block_end if snapshot.block else actual
         return tuple(there - here for there, here in zip(end, actual, strict=True))
     x, z, *rest = actual
-    return (x - snapshot.offset[0], z - snapshot.offset[1], *rest)
+    if snapshot.axes == LATHE:
+        rest[0] -= snapshot.modal.offset_c
+    return _wrapped((x - snapshot.offset[0], z - snapshot.offset[1], *rest), snapshot)
+
+
+def _wrapped(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
+    """C from 0 to under 360 where the program counts it so; what would be shown as 360 is 0."""
+    if not snapshot.modal.wraps_c:
+        return at
+    return (*at[:-1], round(at[-1], formats.ANGLE_PLACES) % 360.0)
 
 
 def _position(snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool) -> PositionView:
@@ -212,6 +222,9 @@ def _feed(snapshot: Snapshot, metric: bool) -> FeedView:
     modal = snapshot.modal
     per_rev = modal.per_rev and not snapshot.rapid
     turns = abs(snapshot.rpm_actual) / 60
+    if snapshot.turns:
+        value = formats.fixed(snapshot.feed * (1 if per_rev else 60), 4 if per_rev else 1)
+        return FeedView(value, formats.turn_unit(per_rev), formats.NOTHING, "", snapshot.feed_override)
     if per_rev:
         speed = snapshot.velocity / turns if turns > TURNING / 60 else math.nan
     else:

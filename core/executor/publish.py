@@ -45,6 +45,7 @@ class Publisher:
             velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
             feed=_feed(block, modal),
             rapid=block.rapid if block else modal.rapid,
+            turns=block is not None and block.kind is Kind.ROTATE and not modal.c_locked,
             rpm_command=bench.spindle.command,
             rpm_actual=bench.spindle.measured,
             spindle_asked=bench.spindle.asked_rpm,

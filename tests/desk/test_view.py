@@ -167,3 +167,31 @@ def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
 def test_the_newest_alarm_is_shown() -> None:
     old, new = (Alarm(n, "axis", f"ALARM {n}", "", "") for n in (1, 2))
     assert view_of(replace(AT, alarms=(old, new)), Readout.POSITION, True).alarm is new
+
+
+@pytest.mark.parametrize(
+    ("machine", "shift", "wraps", "c", "home"),
+    [
+        (390.0, 0.0, True, "30.00", "30.00"),
+        (-10.0, 30.0, True, "320.00", "350.00"),
+        (719.9999, 0.0, True, "0.00", "0.00"),
+        (390.0, 30.0, False, "360.00", "390.00"),
+        (-350.0, 0.0, False, "−350.00", "−350.00"),
+    ],
+)
+def test_c_from_0_to_under_360_or_as_it_counts(
+    machine: float, shift: float, wraps: bool, c: str, home: str
+) -> None:
+    """With the offsets of C in the program's figure, without them in the machine's."""
+    at = replace(AT, actual=(0.0, 0.0, machine), modal=Modal(offset_c=shift, wraps_c=wraps))
+    assert shown(at)[2][1] == c
+    assert shown(at, Readout.HOME)[2][1] == home
+
+
+def test_the_feed_of_c_alone_is_in_degrees() -> None:
+    alone = replace(AT, turns=True, feed=50.0, modal=Modal(metric=True))
+    feed = view_of(alone, Readout.POSITION, with_c=True).feed
+    assert (feed.value, feed.unit) == ("3000.0", "°/min")
+    by_turn = replace(alone, feed=2.0, modal=Modal(metric=True, per_rev=True))
+    feed = view_of(by_turn, Readout.POSITION, with_c=True).feed
+    assert (feed.value, feed.unit) == ("2.0000", "°/rev")
