@@ -16,10 +16,16 @@ def add_parser(subparsers: SubParsers) -> None:
     check = actions.add_parser("check", help="validate a machine file, connect, report each drive and input")
     check.add_argument("file", metavar="FILE", nargs="?", help="default: the shipped simulated lathe")
     check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    peer = actions.add_parser("peer", help="play the drives and terminals of a CANopen machine file")
+    peer.add_argument("file", metavar="FILE")
 
 
 def run(args: argparse.Namespace) -> int:
     """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
+    if args.action == "peer":
+        from app.cli.machine_peer import play
+
+        return play(args.file)
     from app.cli.machine_check import check
 
     return check(args.file, json_wanted=args.json)

@@ -25,7 +25,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
         _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
         return EXIT_USAGE
-    rows, trouble = _connected(machine)
+    rows, warnings, trouble = _connected(machine)
     ports = [dict(zip(("name", "state", "detail"), row, strict=True)) for row in rows]
     _report(
         json_wanted,
@@ -35,23 +35,25 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "backend": machine.backend,
             "errors": [],
             "ports": ports,
+            "warnings": warnings,
         },
     )
     if not json_wanted:
         _write_table(machine, rows)
-    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in trouble))
+    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in (*warnings, *trouble)))
     return EXIT_ERRORS if trouble else EXIT_OK
 
 
-def _connected(machine: Machine) -> tuple[list[Row], list[str]]:
-    """What the ports answer, and what is wrong with them."""
-    from app.compose.simulated import check_ports
+def _connected(machine: Machine) -> tuple[list[Row], list[str], list[str]]:
+    """What the ports answer, what is worth knowing, and what is wrong."""
+    from app.compose.checking import check_ports
 
     try:
-        rows = check_ports(machine)
+        rows, warnings = check_ports(machine)
     except DriverError as error:
-        return [], [str(error)]
-    return rows, [f"{name}: {state} {detail}".rstrip() for name, state, detail in rows if state not in _GOOD]
+        return [], [], [str(error)]
+    bad = [f"{name}: {state} {detail}".rstrip() for name, state, detail in rows if state not in _GOOD]
+    return rows, warnings, bad
 
 
 def _report(json_wanted: bool, report: dict[str, object]) -> None:

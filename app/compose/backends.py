@@ -30,6 +30,8 @@ class Connected:
 
 def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
+    if machine.hardware.spindle_driver == "vfd":
+        raise DriverError(f"{machine.source}: there is no driver for spindle.driver vfd yet")
     if machine.backend == "sim" and not machine.hardware.feeder:
         simulation = simulated(machine, clock)
         return Connected(simulation.ports, simulation.machine, simulation.machine.set_input, lambda: None)

@@ -58,7 +58,12 @@ class CanDriven:
             self._peers = canopen_peers(machine, clock)
         # A clock that stands waits for nobody: the peers are looked after in between.
         idle = self._peers.pump if self._peers is not None else None
-        self._machine = canopen_machine(machine, clock, idle)
+        try:
+            self._machine = canopen_machine(machine, clock, idle)
+        except DriverError:
+            if self._peers is not None:
+                self._peers.close()
+            raise
         ports = self._machine.ports
         self.hands: object | None = self._peers.machine if self._peers is not None else None
         if not has_station(machine):

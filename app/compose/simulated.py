@@ -13,7 +13,6 @@ from drivers.simulated import (
     SimOutput,
     SimSpindle,
     Simulation,
-    StepClock,
     build_simulation,
 )
 
@@ -56,18 +55,3 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
         corner=axis.amax * machine.timing.setpoint,
         own_drive=not machine.spindle_is_c,
     )
-
-
-def check_ports(machine: Machine) -> list[tuple[str, str, str]]:
-    """Connect and ask: (name, state, detail) of each drive, the spindle, the station and each input."""
-    ports = simulated(machine, StepClock()).ports
-    sample = ports.axes.sample()
-    rows = [
-        (name, "fault" if sample.fault else "ok", f"homed {homed}, at {at:.4f}")
-        for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True)
-    ]
-    rows.append(("spindle", ports.spindle.fault() or "ok", f"{ports.spindle.speed():.0f} rpm"))
-    station = ports.station.snapshot()
-    rows.append(("station", "E-stop" if station.estop else "ok", f"feed pot {station.feed_pot:.0%}"))
-    rows += [(f"input {name}", "on" if on else "off", "") for name, on in ports.io.inputs().items()]
-    return rows

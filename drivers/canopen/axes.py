@@ -52,7 +52,7 @@ class CanopenAxes:
         self.beside = ""  # what is wrong elsewhere on the bus
         self.clearing: list[Callable[[], None]] = []  # who else has faults to clear
         self._on = False
-        self._seen = bus.clock.now()
+        self._seen = self._exchange = bus.clock.now()
 
     # --- start and every tick -----------------------------------------------------------------------------
 
@@ -147,8 +147,9 @@ class CanopenAxes:
             self.follower.spliced()
             return
         self._off(DriveState.OFF if how is Stop.OFF else DriveState.QUICK_STOP)
-        if not self._bus.trouble:
-            self._exchanged()
+        if not self._bus.trouble:  # now, whatever was answered
+            self.command()
+            self._bus.synchronise()
 
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
@@ -253,9 +254,12 @@ class CanopenAxes:
         self._on = True
 
     def _exchanged(self) -> list[DrivenAxis]:
-        """One exchange outside the tick; the answers are there at the next look."""
-        self.command()
-        self._bus.synchronise()
+        """One exchange outside the tick, not before the last was answered or its time is over."""
+        now, waiting = self.now(), any(axis.drive.missing for axis in self.driven)
+        if not waiting or now - self._exchange >= 2 * self._config.bus.sync:
+            self._exchange = now
+            self.command()
+            self._bus.synchronise()
         self._bus.pump()
         return self.driven
 

@@ -19,6 +19,7 @@ _BUS_OFF = 0x40  # class of an error frame: the controller has switched itself o
 _OPERATIONAL = 5
 _ROUNDS = 400  # looks at a bus whose clock stands, before nobody answers
 _BEAT, _SYNC, _NMT = 0x700, 0x080, 0x000
+_ECHOING = ("udp_multicast",)  # hears itself: no other master can be told apart
 
 
 class Bus(canopen.Network):
@@ -31,8 +32,9 @@ class Bus(canopen.Network):
         self.trouble = ""  # why the bus cannot be trusted; stays until it is opened anew
         self._idle = idle
         self._next_beat = clock.now()
-        for cob in (_SYNC, _NMT, _BEAT + config.host_id):
-            self.subscribe(cob, self._another_master)
+        if config.interface not in _ECHOING:
+            for cob in (_SYNC, _NMT, _BEAT + config.host_id):
+                self.subscribe(cob, self._another_master)
 
     def close(self) -> None:
         """Let the interface go."""

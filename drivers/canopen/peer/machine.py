@@ -81,16 +81,17 @@ class Peers:
         self.cut = False  # the cable is off
         self._build()
 
-    def pump(self) -> None:
-        """Everything that is due now."""
+    def pump(self, wait: float = 0.0) -> None:
+        """Everything that is due now; waits at most so many seconds for the first frame."""
         now = self.plant.advance()
         if self.plant.drives and not self.plant.panel.estop:
             self._reset_sto()
         bus = self.network.bus
         while bus is not None:
-            message = bus.recv(0.0)
+            message = bus.recv(wait)
             if message is None:
                 break
+            wait = 0.0
             if not self.cut and not message.is_error_frame:
                 for node in self.nodes.values():
                     node.take(message.arbitration_id, bytes(message.data))
