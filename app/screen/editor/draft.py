@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.desk.editing.editor import Editor, Stage
 from app.screen.editor.textfield import TextField
+from core.language.dialect import dialect_of
 
 
 class Draft:
@@ -29,6 +30,7 @@ class Draft:
     def refresh(self) -> None:
         """Once a frame: take a text that has come; have proved what was typed."""
         editor, field = self._editor, self._field
+        self._colour()
         if editor.text_number != self._taken:
             self._taken = editor.text_number
             self._taking = True
@@ -41,6 +43,14 @@ class Draft:
             self._text = self.now()
             editor.changed(self._text)
         field.setReadOnly(editor.stage is not Stage.OPEN)
+
+    def _colour(self) -> None:
+        """By the language that the name of the file tells; new colours are no new text."""
+        document = self._editor.document
+        if document is not None:
+            before, self._taking = self._stale, True
+            self._field.highlighter.speak(dialect_of(document.name))
+            self._taking, self._stale = False, before
 
     @property
     def mark(self) -> str:

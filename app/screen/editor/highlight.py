@@ -6,8 +6,10 @@ from PySide6.QtGui import QFont, QSyntaxHighlighter, QTextCharFormat, QTextDocum
 
 from app.screen.look import Look
 from core.language.diagnostics import ProgramError
+from core.language.dialect import Dialect
 from core.language.omniturn import Line, Word, lex_line
 from core.language.omniturn.plane import ends_program, lex_plane, plane_entry
+from core.language.sinumerik.spans import Ink, spans
 
 PLAIN, IN_PLANE = 0, 1  # states that lines hand on
 
@@ -15,6 +17,18 @@ PLAIN, IN_PLANE = 0, 1  # states that lines hand on
 _CODES = frozenset({"G", "M"})
 _RUN = frozenset({"F", "S"})
 _TOOLS = frozenset({"T", "D", "P", "LS", "L", "}"})
+
+
+_OF_INK = {
+    Ink.NUMBER: ("soft", False),
+    Ink.CODE: ("accent", True),
+    Ink.POSITION: ("text", False),
+    Ink.RUN: ("run", False),
+    Ink.KEY: ("accent", False),
+    Ink.CALL: ("pause", True),
+    Ink.COMMENT: ("soft", False),
+    Ink.FAULT: ("alarm", True),
+}
 
 
 def ink_of(word: Word) -> tuple[str, bool]:
@@ -36,6 +50,13 @@ class Highlighter(QSyntaxHighlighter):
         self._look = look
         self._dressed = look.palette
         self._formats: dict[tuple[str, bool], QTextCharFormat] = {}
+        self._dialect = Dialect.OMNITURN
+
+    def speak(self, dialect: Dialect) -> None:
+        """The language of the text; where it is another one than before all of it is gone through anew."""
+        if dialect is not self._dialect:
+            self._dialect = dialect
+            self.rehighlight()
 
     def dress(self) -> None:
         """The colours that are in force now; the whole text is gone through only when they have changed."""
@@ -46,6 +67,10 @@ class Highlighter(QSyntaxHighlighter):
 
     def highlightBlock(self, text: str) -> None:
         """Qt's call for a line that has changed, and for the next where the state it hands on has."""
+        if self._dialect is not Dialect.OMNITURN:
+            self.setCurrentBlockState(PLAIN)
+            self._spans(text)
+            return
         inside = self.previousBlockState() == IN_PLANE and not ends_program(text)
         entry = not inside and plane_entry(text) is not None
         self.setCurrentBlockState(IN_PLANE if inside or entry else PLAIN)
@@ -55,6 +80,12 @@ class Highlighter(QSyntaxHighlighter):
             self._plane(text)
         else:
             self._plain(text)
+
+    def _spans(self, text: str) -> None:
+        """A line of SINUMERIK."""
+        if self._dialect is Dialect.SINUMERIK:
+            for start, length, ink in spans(text):
+                self.setFormat(start, length, self._format(*_OF_INK[ink]))
 
     def _plane(self, text: str) -> None:
         try:

@@ -20,6 +20,7 @@ from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import local_time
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
+from core.language.dialect import Dialect
 from tests.desk.editing.shop import GOOD
 
 
@@ -125,3 +126,27 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_times_are_those_of_the_shop() -> None:
     assert local_time("2026-03-01T10:00:00.000Z").endswith(":00:00")
+
+
+def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: TextField) -> None:
+    field.highlighter.speak(Dialect.SINUMERIK)
+    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1", afresh=True)
+    field.dress()
+    assert inks(field, 1) == [
+        ("N10", DARK.soft),
+        ("G1", DARK.accent),
+        ("X=IC(5)", DARK.text),
+        ("F100", DARK.run),
+        ("; (in)", DARK.soft),
+    ]
+    assert inks(field, 2)[0] == ("NUT", DARK.pause)
+    assert ("T", DARK.alarm) in inks(field, 3)
+
+
+def test_another_language_colours_anew(field: TextField) -> None:
+    field.put_text("G0X1(a)", afresh=True)
+    before = inks(field, 1)
+    field.highlighter.speak(Dialect.SINUMERIK)
+    assert inks(field, 1) != before
+    field.highlighter.speak(Dialect.OMNITURN)
+    assert inks(field, 1) == before
