@@ -77,8 +77,9 @@ class Features:
 
 def _ends(trail: Trail) -> Floats:
     """Ends of blocks and starts after jumps (n, 2), along the path."""
-    last = np.unique(trail.first[1:]) - 1
-    index = np.union1d(last[last >= 0], np.flatnonzero(trail.stroke == Stroke.JUMP))
+    told = trail.stroke == Stroke.JUMP
+    told[trail.first[1:][np.diff(trail.first) > 0] - 1] = True
+    index = np.flatnonzero(told)
     return np.column_stack((trail.z[index], trail.x[index]))
 
 

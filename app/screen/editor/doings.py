@@ -99,8 +99,8 @@ def _looking(page: EditorPage) -> dict[int, Doing]:
     path = page.path
     return {
         1: Doing("MENU", partial(page.leave_to, pages.MENU)),
-        2: Doing("HOLD", page.hold_point),
-        3: Doing("TO LINE", page.line_of_path),
+        2: Doing("HOLD", page.looking.hold),
+        3: Doing("TO LINE", page.looking.to_line),
         4: Doing("VIEW", path.next_view),
         5: Doing("FIT", path.fit),
         6: Doing("NEARER", partial(path.zoom, 1)),

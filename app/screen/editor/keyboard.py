@@ -37,7 +37,7 @@ def _chords(page: EditorPage) -> Actions:
         Key.Key_F: page.ask_text,
         Key.Key_H: page.ask_text,
         Key.Key_G: page.ask_line,
-        Key.Key_M: page.look_at_path,
+        Key.Key_M: page.looking.begin,
     }
 
 

@@ -5,14 +5,11 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from functools import partial
-
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
-from app.desk.drawing.spots import measuring_words
 from app.desk.editing import words
 from app.desk.editing.editor import Editor, Stage
 from app.desk.editing.entering import enter
@@ -29,6 +26,7 @@ from app.screen.editor.findings import FindingList
 from app.screen.editor.heading import Heading, HeadLine
 from app.screen.editor.keyboard import ASKING, action_of
 from app.screen.editor.layout import editor_places
+from app.screen.editor.looking import Looking
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
 from app.screen.pages import Doings, Host, Page
@@ -54,6 +52,7 @@ class EditorPage(Page):
         self.versions = VersionList(look, self.history, self)
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
+        self.looking = Looking(self)
         self.draft = Draft(self.field, self.editor)
 
     # --- the frame's calls ---------------------------------------------------------------------------
@@ -65,7 +64,7 @@ class EditorPage(Page):
     def opened(self) -> None:
         """The program on the desk, or the name that was typed for a new one, is being fetched."""
         self._target = pages.AUTOMATIC
-        self._enter(Mode.TEXT)
+        self.enter(Mode.TEXT)
 
     def leave(self) -> bool:
         """Save first; the page goes by itself when that is done."""
@@ -84,8 +83,7 @@ class EditorPage(Page):
         """The function keys of the moment."""
         found = {f"F{number}": doing.act for number, doing in self._doings().items()}
         if self._mode is Mode.LOOK:
-            found |= {"Zoom in": partial(self.path.zoom, 1), "Zoom out": partial(self.path.zoom, -1)}
-            found |= {"Measure": self.back, "View": self.path.next_view}
+            found |= self.looking.doings()
         return found
 
     def escape(self) -> bool:
@@ -109,7 +107,7 @@ class EditorPage(Page):
         if self._moving:
             return words.RUNS_OLD
         if self._mode is Mode.LOOK:
-            return measuring_words()
+            return self.looking.prompt()
         if self._mode in PROMPTS:
             return PROMPTS[self._mode]
         line = self.field.line
@@ -137,19 +135,18 @@ class EditorPage(Page):
         self.path.show_picture(findings.picture)
         self.path.follow(line)
         self.path.advance()
-        if self._mode is Mode.LOOK and self.path.ruler is None:
-            self.back()
+        self.looking.refresh()
         self.versions.refresh()
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
         stage = self.editor.stage
         if stage is Stage.NAMING and self._mode is not Mode.NAME:
-            self._enter(Mode.NAME)
+            self.enter(Mode.NAME)
         elif stage is Stage.OFFERED and self._mode is not Mode.OFFER:
-            self._enter(Mode.OFFER)
+            self.enter(Mode.OFFER)
         elif stage is Stage.OPEN and self._mode in {Mode.NAME, Mode.OFFER}:
-            self._enter(Mode.TEXT)
+            self.enter(Mode.TEXT)
 
     # --- what keys do --------------------------------------------------------------------------------
 
@@ -161,7 +158,8 @@ class EditorPage(Page):
     def _doings(self) -> dict[int, Doing]:
         return doings(self, self._mode)
 
-    def _enter(self, mode: Mode) -> None:
+    def enter(self, mode: Mode) -> None:
+        """From now on the keys are for this."""
         self._mode = mode
         if mode is Mode.FIND:
             self.ask.ask("FIND", "REPLACE BY", entry=self.finder.start())
@@ -187,42 +185,25 @@ class EditorPage(Page):
 
     def ask_text(self) -> None:
         """Find and replace."""
-        self._enter(Mode.FIND)
+        self.enter(Mode.FIND)
 
     def ask_line(self) -> None:
         """Go to a line."""
-        self._enter(Mode.GO_TO)
-
-    def look_at_path(self) -> None:
-        """The keyboard to the path: to measure, and to find the line of what is drawn there."""
-        if not self.path.drawn:
-            self.editor.notice = words.NO_PATH
-        else:
-            self._enter(Mode.LOOK)
-
-    def hold_point(self) -> None:
-        """Measure from where the cross stands."""
-        if self.path.ruler is not None:
-            self.path.ruler.hold()
-            self.path.update()
-
-    def line_of_path(self) -> None:
-        """The cursor to the line whose path the cross stands on."""
-        self.editor.notice = self.path.line_here()
+        self.enter(Mode.GO_TO)
 
     def show_history(self) -> None:
         """The versions."""
-        self._enter(Mode.HISTORY)
+        self.enter(Mode.HISTORY)
 
     def back(self) -> None:
         """Back to the text."""
         self.editor.keep_no_name()
-        self._enter(Mode.TEXT)
+        self.enter(Mode.TEXT)
 
     def go_to(self, line: int, column: int = 0) -> None:
         """The cursor to a place of the program."""
         if self._mode is Mode.LOOK:
-            self._enter(Mode.TEXT)
+            self.enter(Mode.TEXT)
         self.field.go_to(max(1, line), column)
         self.field.setFocus()
 
@@ -251,7 +232,7 @@ class EditorPage(Page):
         """The marked version into the editor."""
         if self.history.text is not None:
             self.editor.restore(self.history.text, self.history.number)
-            self._enter(Mode.TEXT)
+            self.enter(Mode.TEXT)
 
     def take(self) -> None:
         """Return in the line that asks."""
@@ -268,7 +249,7 @@ class EditorPage(Page):
         if not (number.isascii() and number.isdigit()) or not 1 <= int(number) <= self.field.blockCount():
             self.ask.say(f"A NUMBER FROM 1 TO {self.field.blockCount()}")
             return
-        self._enter(Mode.TEXT)
+        self.enter(Mode.TEXT)
         self.go_to(int(number))
 
     # --- Qt's calls ----------------------------------------------------------------------------------

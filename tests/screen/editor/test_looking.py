@@ -19,7 +19,9 @@ def drawn(writer: Writer) -> Writer:
     """In front of a program that is proved and drawn."""
     writer.new("looked")
     writer.write(PART)
-    writer.sees(lambda: writer.proved() and writer.editor.path.view is not None)
+    page = writer.editor
+    writer.sees(lambda: writer.proved() and page.path.drawn)
+    assert page.path.picture is page.editor.checker.now.picture
     return writer
 
 

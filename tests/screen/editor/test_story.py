@@ -285,3 +285,53 @@ def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None
     writer.type("SOCHRDEAT/,.+-Z")
     assert writer.text() == "SOCHRDEAT/,.+-Z"
     assert len(writer.machine.posted) == posted
+
+
+def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> None:
+    writer.new("day")
+    writer.write("G90G94G72F300\nT1\nM03S1000\nX1Z.1\nF5Z-.5\nF5X1.5\nM05\nF300X2Z1\nM30")
+    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    written = writer.text()
+
+    writer.key(Key.Key_F, CTRL)  # every feed of 5 to 8, and back again as one step
+    writer.type("F5")
+    writer.key(Key.Key_Tab)
+    writer.type("F8")
+    writer.key(Key.Key_F5)
+    assert writer.editor.ask.answer == "2 REPLACED"
+    writer.key(Key.Key_Escape)
+    assert writer.text() == written.replace("F5", "F8")
+    writer.key(Key.Key_F8)
+    assert writer.text() == written
+    writer.key(Key.Key_F9)
+    assert writer.text() == written.replace("F5", "F8")
+
+    writer.key(Key.Key_G, CTRL)  # a line goes wrong, is found by F6 and mended
+    writer.type("6")
+    writer.key(Key.Key_Return)
+    writer.key(Key.Key_End)
+    writer.type("Q")
+    writer.sees(lambda: writer.proved() and writer.editor.findings.findings.errors > 0)
+    writer.key(Key.Key_Home, CTRL)
+    writer.key(Key.Key_F6)
+    assert writer.editor.field.line == 6
+    writer.key(Key.Key_End)
+    writer.key(Key.Key_Backspace)
+    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
+    writer.key(Key.Key_F2)
+    writer.sees(lambda: len(memory.kept["day.nc"]) == 2)
+    writer.sees(lambda: "IS SAVED" in writer.prompt())
+
+    writer.key(Key.Key_F7)  # the first version back, saved by leaving
+    writer.sees(lambda: len(writer.editor.history.rows) == 2)
+    writer.key(Key.Key_Down)
+    writer.sees(lambda: [row.sign for row in writer.editor.history.changes].count("+") == 2)
+    writer.key(Key.Key_Return)
+    writer.sees(lambda: writer.text().rstrip() == written)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    assert (tmp_path / "day.nc").read_text().rstrip() == written
+    assert len(memory.kept["day.nc"]) == 3
