@@ -15,7 +15,7 @@ Find = Callable[[str], str]  # the translation of a whole text; empty: it has no
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 BETWEEN = "  ·  "  # parts of a title are texts of their own
 _WORD = re.compile(r"[^\W\d_]{2}")
-_DEEPEST = 3
+_DEEPEST = 3  # values in values
 
 
 class _Template:
@@ -60,7 +60,11 @@ class Catalogue:
         """Empty when nothing of it is known."""
         if depth > _DEEPEST or not _WORD.search(text):
             return ""
-        return self._find(text) or self._joined(text, depth) or self._made(text, depth)
+        return self._find(text) or self._shouted(text) or self._made(text, depth) or self._joined(text, depth)
+
+    def _shouted(self, text: str) -> str:
+        """Sentences of the control that are shown in capitals."""
+        return self._find(text.lower()).upper() if text.isupper() else ""
 
     def _joined(self, text: str, depth: int) -> str:
         if BETWEEN not in text:

@@ -9,7 +9,8 @@ from PySide6.QtGui import QFontMetricsF, QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.view import Tone
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.desk.words import tr
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 from app.screen.shapes import draw_sign
 
@@ -55,7 +56,7 @@ class TitleLine(Panel):
         put(painter, QRectF(1.4 * u, 0, 24 * u, high), LEFT, self.page)
         painter.setPen(look.colour("text"))
         painter.setFont(look.fit(program, 2.4, 31 * u, bold=True))
-        put(painter, QRectF(27 * u, 0, 31 * u, high), LEFT, program or "NO PROGRAM")
+        put_raw(painter, QRectF(27 * u, 0, 31 * u, high), LEFT, program or tr("NO PROGRAM"))
         self._draw_state(painter, state, tone)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.fit(machine, 1.8, 30 * u))
@@ -65,7 +66,7 @@ class TitleLine(Panel):
         put(painter, QRectF(self.width() - 16 * u, 0, 14.6 * u, high), RIGHT, clock)
 
     def _draw_state(self, painter: QPainter, state: str, tone: Tone) -> None:
-        look, u, high = self.look, self.look.u, self.height()
+        look, u, high, state = self.look, self.look.u, self.height(), tr(state)
         box = QRectF(60 * u, 0.6 * u, 50 * u, high - 1.3 * u)
         painter.fillRect(box, look.colour(tone.value))
         ink = look.colour("on_state")
@@ -122,7 +123,7 @@ class CommentLine(Panel):
         painter.setPen(look.colour("accent"))
         room = self.area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
         painter.setFont(look.fit(self.text, 2.0, room.width()))
-        put(painter, room, LEFT, self.text)
+        put_raw(painter, room, LEFT, self.text)
 
 
 class FunctionKeys(Panel):

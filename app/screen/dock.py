@@ -6,12 +6,13 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.hands import OVERRIDE_MOST
+from app.desk.words import tr
 from app.screen.fingers import Control, FingerPanel
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from core.executor.snapshot import Snapshot
@@ -174,8 +175,16 @@ class StationDock(FingerPanel):
         painter.drawRect(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u))
         inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
         painter.setPen(look.colour("text"))
-        painter.setFont(look.font(2.3, bold=True))
-        put(painter, inner, LEFT, "FEED HOLD")
+        font = look.font(2.3, bold=True)
+        painter.setFont(font)
+        room = inner.adjusted(0, 0, -3.0 * u, 0)
+        words = tr("FEED HOLD")
+        wide = QFontMetricsF(font).horizontalAdvance(words) > room.width()
+        lines = words.split(" ", 1) if wide else [words]
+        high = min(room.height() / len(lines), 3.0 * u)
+        top = room.center().y() - high * len(lines) / 2
+        for number, line in enumerate(lines):
+            put(painter, QRectF(room.x(), top + number * high, room.width(), high), LEFT, line)
         painter.setPen(look.colour("accent"))
         painter.setFont(look.font(2.2, bold=True))
         put(painter, inner, RIGHT, "H")

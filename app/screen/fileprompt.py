@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.prompts import ASK_FILE, NOT_FOUND
 from app.desk.shelf import Entry, Shelf
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
 ROW = 4.6  # units: a fingertip
@@ -169,10 +169,11 @@ class FilePrompt(Panel):
                 painter.fillRect(box, look.colour("lit"))
             painter.setPen(look.colour("on_lit" if marked else "text"))
             painter.setFont(look.font(2.3, bold=marked))
-            put(painter, box.adjusted(1.2 * u, 0, -30 * u, 0), LEFT, entry.name)
+            put_raw(painter, box.adjusted(1.2 * u, 0, -30 * u, 0), LEFT, entry.name)
             painter.setFont(look.font(1.6))
             painter.setPen(look.colour("on_lit" if marked else "soft"))
-            put(painter, box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), RIGHT, entry.path.parent.name)
+            folder = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0)
+            put_raw(painter, folder, RIGHT, entry.path.parent.name)
             self.place(box, self._picker(entry))
 
     def _not_found(self, painter: QPainter) -> None:

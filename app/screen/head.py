@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import percent
 from app.desk.view import AxisView, View
+from app.desk.words import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 
@@ -69,8 +70,8 @@ class HeadLine(Panel):
         look, u = self.look, self.look.u
         feed, spindle = view.feed, view.spindle
         cells = (
-            (f"FEED {percent(feed.override)}", f"{feed.actual} {feed.actual_unit}", 0.42),
-            (f"SPINDLE {percent(spindle.override)}", f"{spindle.direction} {spindle.actual}".strip(), 0.36),
+            (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.42),
+            (f"SPINDLE {percent(spindle.override)}", f"{tr(spindle.direction)} {spindle.actual}", 0.36),
             ("TOOL", f"{view.tool} {view.secondary}", 0.22),
         )
         x = room.x() + 1.6 * u

@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
 ROW = 2.9  # units from line to line
@@ -119,7 +119,7 @@ class Listing(Panel):
         painter.setFont(look.font(2.1, bold=here))
         painter.setPen(look.colour("text"))
         text = self._lines[number - 1].expandtabs(4)
-        put(painter, row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0), LEFT, text)
+        put_raw(painter, row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0), LEFT, text)
 
     def _generated(self, painter: QPainter, row: QRectF) -> QRectF:
         look, u = self.look, self.look.u
@@ -134,6 +134,6 @@ class Listing(Panel):
             label = "BLOCK" if name == "accent" else "NEXT"
             put(painter, QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height()), LEFT, label)
             painter.setFont(look.font(2.0, bold=name == "accent"))
-            put(painter, row.adjusted(7.6 * u, 0, -0.8 * u, 0), LEFT, text)
+            put_raw(painter, row.adjusted(7.6 * u, 0, -0.8 * u, 0), LEFT, text)
             row = row.translated(0, ROW * u)
         return row

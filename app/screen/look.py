@@ -18,6 +18,7 @@ FAMILY = "B612"
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 LEAST = 1.35  # units: the smallest text
+SQUEEZED = 0.6  # a translation may be set in letters of this share of their size
 CENTRE = Qt.AlignmentFlag.AlignCenter
 
 
@@ -87,8 +88,18 @@ class Look:
 
 
 def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of our own text in the operator's language; see ``put_raw``."""
-    put_raw(painter, rect, flags, tr(text))
+    """Draw one line of our own text in the operator's language; see ``put_raw``.
+
+    A translation that is longer than its place is made smaller, as far as it can still be read.
+    """
+    shown, font = tr(text), painter.font()
+    wide = QFontMetricsF(font).horizontalAdvance(shown)
+    if shown != text and wide > rect.width() > 0:
+        smaller = QFont(font)
+        smaller.setPixelSize(int(font.pixelSize() * max(SQUEEZED, rect.width() / wide)))
+        painter.setFont(smaller)
+    put_raw(painter, rect, flags, shown)
+    painter.setFont(font)
 
 
 def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.alarms import Entry
 from app.desk.view import Tone
+from app.desk.words import tr
 from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
 from app.screen.shapes import draw_sign
@@ -70,7 +71,8 @@ class Notice(Panel):
         where = f"  ·  LINE {alarm.line}" if alarm.line else ""
         room = self._head(painter, Tone.ALARM, f"ALARM {alarm.number}{where}")
         high = room.height()
-        self._wrapped(painter, QRectF(room.x(), room.y(), room.width(), 0.36 * high), alarm.text, 3.4, "text")
+        what = QRectF(room.x(), room.y(), room.width(), 0.36 * high)
+        self._wrapped(painter, what, tr(alarm.text), 3.4, "text")
         for number, (label, text) in enumerate((("CAUSE", alarm.cause), ("WHAT TO DO", alarm.remedy))):
             y = room.y() + (0.38 + 0.31 * number) * high
             self._labelled(painter, QRectF(room.x(), y, room.width(), 0.30 * high), label, text)
@@ -80,7 +82,7 @@ class Notice(Panel):
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6, bold=True))
         put(painter, QRectF(room.x(), room.y(), room.width(), 2.2 * u), LEFT, label)
-        self._wrapped(painter, room.adjusted(0, 2.3 * u, 0, 0), text, 2.3, "text")
+        self._wrapped(painter, room.adjusted(0, 2.3 * u, 0, 0), tr(text), 2.3, "text")
 
     def _wrapped(self, painter: QPainter, room: QRectF, text: str, size: float, colour: str) -> None:
         """Text in words, from ``size`` down as far as needed so that all of it is there."""

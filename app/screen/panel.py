@@ -8,6 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from app.desk.words import tr
 from app.screen.look import LEFT, Look, put
 
 Press = Callable[[], None]
@@ -66,7 +67,7 @@ class Panel(QWidget):
 
     def frame(self, painter: QPainter, title: str, colour: str = "frame", width: float = 0.16) -> None:
         """A box with its title set into the top line, as text screens drew them."""
-        look, u = self.look, self.look.u
+        look, u, title = self.look, self.look.u, tr(title)
         top = 1.0 * u
         pen = look.pen(colour, width)
         half = pen.widthF() / 2

@@ -9,6 +9,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.lamps import Lamp
+from app.desk.words import tr
 from app.screen.look import CENTRE, Look, put
 from app.screen.panel import Panel
 
@@ -57,7 +58,7 @@ class Strip(Panel):
             put(painter, cap, CENTRE, lamp.key)
             room.setLeft(cap.right() + 0.4 * u)
         painter.setPen(ink)
-        words = lamp.word.split(" ", 1)
+        words = tr(lamp.word).split(" ", 1)
         high = room.height() / 2 if len(words) > 1 else room.height()
         for number, word in enumerate(words):
             painter.setFont(look.fit(word, 1.75, room.width(), bold=True))

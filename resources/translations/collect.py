@@ -1,0 +1,204 @@
+"""Collects every text that an operator can read: ``python -m resources.translations.collect``.
+
+Whole sentences are taken as they are; what is put together gets holes (``LINE %1``). The catalogues (Qt's
+``.ts``) get what is new, ``pyside6-lrelease`` compiles them, ``templates.txt`` names the texts with holes.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+
+HERE = Path(__file__).parent
+HOUSE = HERE.parents[1]
+CONTEXT = "turndesk"
+LANGUAGES = ("es",)
+ROOMS = (
+    *("app/desk", "app/screen", "app/compose", "core/executor", "core/store", "core/interpreter"),
+    *("core/language", "core/proving", "core/geometry", "core/motion"),
+)
+# Scripts and tables that no screen shows.
+APART = frozenset(
+    {"pictures.py", "book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
+)
+# Read by somebody, and not to be told from names by their looks.
+ALSO = ("M03 FWD", "M04 REV", "M05 OFF", "done", "rapid", "none", "in/min", "in/rev")
+LOUD = ("app", "core/executor")  # where a single word in capitals is read by somebody
+HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
+_MISTAKES = frozenset(
+    {"ValueError", "RuntimeError", "TypeError", "TimeoutError", "KeyError", "AssertionError"}
+)
+_NO_TEXT = re.compile(
+    r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
+    r"|^F\d+$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
+    r"|^(Page|Zoom|Pan|Shift) \w+$|.*\\|^[A-Z]{2}\d"
+)
+_WORDS = re.compile(
+    r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$|[^\W\d_]{3,}[:;,]?\s+%|%\d\s+[^\W\d_]{2,}"
+)
+_CAPITALS = re.compile(r"[A-ZÁÉÍÓÚÑ][A-ZÁÉÍÓÚÑ'’-]+$")
+_SHORT = frozenset(
+    {"ON", "OFF", "MM", "ALL", "TIP", "GO", "UP", "FIT", "ADD", "DEL", "OUT", "END", "SFM", "JOG", "MDI"}
+)
+
+
+def texts() -> dict[str, str]:
+    """Every text, and the first file that has it."""
+    found: dict[str, str] = {}
+    for room in ROOMS:
+        loud = room.startswith(LOUD)
+        for path in sorted((HOUSE / room).rglob("*.py")):
+            if path.name not in APART:
+                tree = ast.parse(path.read_text(encoding="utf-8"))
+                read = {text for text in _texts_of(tree) if _is_read(text, loud)}
+                for text in sorted(read | set(_marked(tree))):
+                    found.setdefault(text, str(path.relative_to(HOUSE)))
+    return {**dict.fromkeys(ALSO, ""), **found}
+
+
+def _marked(tree: ast.Module) -> Iterator[str]:
+    """What stands in ``tr("…")``: whatever it looks like, it is read."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and _name(node.func) == "tr" and node.args:
+            for part in ast.walk(node.args[0]):
+                if isinstance(part, ast.Constant) and isinstance(part.value, str):
+                    yield part.value
+
+
+def _is_read(text: str, loud: bool) -> bool:
+    if text in _SHORT:
+        return loud
+    bare = HOLE.sub("", text)
+    if _NO_TEXT.match(text) or not re.search(r"[^\W\d_]{2}", bare):
+        return False
+    if bare != text and " " in bare and re.search(r"[^\W\d_]{3}", bare):
+        return True
+    return bool(_WORDS.search(text)) or (loud and bool(_CAPITALS.match(text)))
+
+
+def _texts_of(tree: ast.Module) -> Iterator[str]:
+    skipped = _skipped(tree)
+    inner: set[int] = set()
+    for node in ast.walk(tree):
+        if id(node) in skipped:
+            continue
+        if isinstance(node, ast.JoinedStr | ast.BinOp) and id(node) not in inner:
+            pieces = _pieces(node)
+            if pieces is not None:
+                inner.update(id(part) for part in _own_parts(node))
+                yield _with_holes(pieces)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inner:
+            yield node.value
+
+
+def _skipped(tree: ast.Module) -> set[int]:
+    """Docstrings, mistakes of the programmer, patterns and logs; with all that is in them."""
+    found: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            found.add(id(node.value))
+        elif isinstance(node, ast.Call) and _is_silent(node.func):
+            found.update(id(part) for part in ast.walk(node))
+    return found
+
+
+def _is_silent(called: ast.expr) -> bool:
+    if isinstance(called, ast.Attribute) and _name(called.value) == "_log":
+        return True
+    return _name(called) in _MISTAKES | {"compile", "execute", "executescript"}
+
+
+def _name(node: ast.expr) -> str:
+    if isinstance(node, ast.Attribute):
+        return node.attr
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def _pieces(node: ast.expr) -> list[str | None] | None:
+    """The text of a composed string, None for each hole; None when it is no string at all."""
+    if isinstance(node, ast.Constant):
+        return [node.value] if isinstance(node.value, str) else None
+    if isinstance(node, ast.JoinedStr):
+        return [str(v.value) if isinstance(v, ast.Constant) else None for v in node.values]
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        left, right = _pieces(node.left), _pieces(node.right)
+        if left is None and right is None:
+            return None
+        return (left or [None]) + (right or [None])
+    return None
+
+
+def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
+    """The parts that became pieces; expressions in holes are looked at by themselves."""
+    yield node
+    if isinstance(node, ast.JoinedStr):
+        yield from (value for value in node.values if isinstance(value, ast.Constant))
+        for value in node.values:
+            if isinstance(value, ast.FormattedValue) and value.format_spec is not None:
+                yield from ast.walk(value.format_spec)
+    elif isinstance(node, ast.BinOp):
+        yield from _own_parts(node.left)
+        yield from _own_parts(node.right)
+
+
+def _with_holes(pieces: list[str | None]) -> str:
+    number, text = 0, ""
+    for piece in pieces:
+        if piece is None:
+            number += 1
+            text += f"%{number}"
+        else:
+            text += piece
+    return text
+
+
+def catalogue(language: str) -> dict[str, str]:
+    """What a ``.ts`` file holds: translations by text; unfinished ones are empty."""
+    path = HERE / f"turndesk_{language}.ts"
+    if not path.exists():
+        return {}
+    messages = ET.parse(path).getroot().iter("message")
+    return {m.findtext("source", ""): m.findtext("translation", "") for m in messages}
+
+
+def write(language: str, wanted: dict[str, str]) -> None:
+    """The ``.ts`` file with exactly the wanted texts, keeping what is translated; and its ``.qm``."""
+    known = catalogue(language)
+    root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")
+    context = ET.SubElement(root, "context")
+    ET.SubElement(context, "name").text = CONTEXT
+    for text, file in sorted(wanted.items(), key=lambda entry: (entry[1], entry[0])):
+        message = ET.SubElement(context, "message")
+        ET.SubElement(message, "location", filename=file)
+        ET.SubElement(message, "source").text = text
+        translation = ET.SubElement(message, "translation")
+        translation.text = known.get(text, "")
+        if not translation.text:
+            translation.set("type", "unfinished")
+    ET.indent(root)
+    path = HERE / f"turndesk_{language}.ts"
+    body = ET.tostring(root, encoding="unicode")
+    path.write_text(f'<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE TS>\n{body}\n', encoding="utf-8")
+    release = Path(sys.executable).with_name("pyside6-lrelease")
+    subprocess.run([release, "-silent", path, "-qm", path.with_suffix(".qm")], check=True)
+
+
+def main() -> int:
+    """Bring templates and catalogues up to date; the number of texts without a translation."""
+    wanted = texts()
+    holed = sorted(text for text in wanted if HOLE.search(text) and "\n" not in text)
+    (HERE / "templates.txt").write_text("\n".join(holed) + "\n", encoding="utf-8")
+    missing = 0
+    for language in LANGUAGES:
+        write(language, wanted)
+        missing += sum(not text for text in catalogue(language).values())
+    return missing
+
+
+if __name__ == "__main__":
+    sys.exit(min(main(), 125))

@@ -1,0 +1,8908 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="es" sourcelanguage="en">
+  <context>
+    <name>turndesk</name>
+    <message>
+      <location filename="" />
+      <source>M03 FWD</source>
+      <translation>M03 ADEL</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M04 REV</source>
+      <translation>M04 REV</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>M05 OFF</source>
+      <translation>M05 ALTO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>in/min</source>
+      <translation>pulg/min</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>in/rev</source>
+      <translation>pulg/rev</translation>
+    </message>
+    <message>
+      <location filename="app/compose/backends.py" />
+      <source>%1: there is no driver for backend %2 yet</source>
+      <translation>%1: todavía no hay controlador para %2</translation>
+    </message>
+    <message>
+      <location filename="app/compose/backends.py" />
+      <source>%1: there is no driver for spindle.driver vfd yet</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/canopen.py" />
+      <source>%1: there is no [canopen] table</source>
+      <translation>%1: no hay tabla [canopen]</translation>
+    </message>
+    <message>
+      <location filename="app/compose/canopen.py" />
+      <source>backend canopen needs %1: pip install 'turndesk[canopen]'</source>
+      <translation>el sistema canopen necesita %1: pip install 'turndesk[canopen]'</translation>
+    </message>
+    <message>
+      <location filename="app/compose/canopen.py" />
+      <source>terminal %1 is no address on the bus</source>
+      <translation>la terminal %1 no es una dirección del bus</translation>
+    </message>
+    <message>
+      <location filename="app/compose/checking.py" />
+      <source>%1 rpm</source>
+      <translation>%1 rpm</translation>
+    </message>
+    <message>
+      <location filename="app/compose/checking.py" />
+      <source>feed pot %1</source>
+      <translation>perilla de avance %1</translation>
+    </message>
+    <message>
+      <location filename="app/compose/checking.py" />
+      <source>homed %1, at %2</source>
+      <translation>referenciado %1, en %2</translation>
+    </message>
+    <message>
+      <location filename="app/compose/checking.py" />
+      <source>input %1</source>
+      <translation>entrada %1</translation>
+    </message>
+    <message>
+      <location filename="app/compose/driven.py" />
+      <source>%1: the feeder has no backend %2</source>
+      <translation>%1: el alimentador no tiene %2</translation>
+    </message>
+    <message>
+      <location filename="app/compose/feeder.py" />
+      <source>the feeder's process does not come up</source>
+      <translation>el proceso alimentador no arranca</translation>
+    </message>
+    <message>
+      <location filename="app/compose/feeder.py" />
+      <source>the feeder's process has ended at its start; see its message above</source>
+      <translation>el proceso alimentador terminó al arrancar; vea su mensaje arriba</translation>
+    </message>
+    <message>
+      <location filename="app/compose/journal.py" />
+      <source>OFFSETS CANNOT BE KEPT: %1</source>
+      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
+    </message>
+    <message>
+      <location filename="app/compose/journal.py" />
+      <source>loaded to run</source>
+      <translation>cargado para correr</translation>
+    </message>
+    <message>
+      <location filename="app/compose/journal.py" />
+      <source>the store is closed</source>
+      <translation>el almacén está cerrado</translation>
+    </message>
+    <message>
+      <location filename="app/compose/offsets.py" />
+      <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
+      <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>%1 · SIMULATED</source>
+      <translation>%1 · SIMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>%1: the screen drives simulated machines only, not %2</source>
+      <translation>%1: la pantalla sólo mueve máquinas simuladas, no %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>%1 at character %2 of %3; expected %4</source>
+      <translation>%1 en el carácter %2 de %3; se esperaba %4</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>%1 divides by zero</source>
+      <translation>%1 divide entre cero</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>%1 in %2 is no number; %3</source>
+      <translation>%1 en %2 no es un número; %3</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>%1 is too large; type a smaller number</source>
+      <translation>%1 es demasiado grande; escriba un número menor</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>%1 stops short; expected %2 at its end</source>
+      <translation>%1 queda incompleto; se esperaba %2 al final</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>+ - * / or the end</source>
+      <translation>+ - * / o el final</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>a closing bracket</source>
+      <translation>un paréntesis de cierre</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>nothing is entered; type a number</source>
+      <translation>no se ha escrito nada; escriba un número</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>only numbers and + - * / ( ) count</source>
+      <translation>sólo valen números y + - * / ( )</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>the decimal sign is a point</source>
+      <translation>el signo decimal es el punto</translation>
+    </message>
+    <message>
+      <location filename="app/desk/arithmetic.py" />
+      <source>the entry is longer than %1 characters; type the result</source>
+      <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE ELEGIR OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST</source>
+      <translation>HAY UNA ALARMA: OPRIMA PRIMERO R PARA RECONOCERLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>BLOCK DELETE CHANGES WHAT WAS PROVED: ONLY BETWEEN TWO CYCLES</source>
+      <translation>EL SALTO DE BLOQUE CAMBIA LO COMPROBADO: SÓLO ENTRE DOS CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>CHOOSE A PROGRAM FIRST: BLOCK DELETE BELONGS TO THE PROGRAM THAT IS PROVED</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA: EL SALTO DE BLOQUE PERTENECE AL PROGRAMA QUE SE COMPRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>CONTROL SILENT</source>
+      <translation>CONTROL SIN RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>NO START: %1</source>
+      <translation>NO ARRANCA: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>NOT KEPT: %1</source>
+      <translation>NO SE GUARDÓ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS BOTH PALM BUTTONS</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS CYCLE START</source>
+      <translation>OPRIMA INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>PRESS CYCLE START (F12)</source>
+      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>REFUSED: %1</source>
+      <translation>RECHAZADO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON</source>
+      <translation>SUELTE EL BOTÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>RELEASE THE BUTTON (SHIFT+E)</source>
+      <translation>SUELTE EL BOTÓN (SHIFT+E)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>THE DRIVES ARE ON</source>
+      <translation>LOS SERVOS ESTÁN ENCENDIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>THE E-STOP IS STILL PRESSED: %1 FIRST</source>
+      <translation>EL PARO DE EMERGENCIA SIGUE OPRIMIDO: PRIMERO %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST</source>
+      <translation>LA MÁQUINA SE MUEVE: OPRIMA PRIMERO H, RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/measured.py" />
+      <source>ANGLE {axis}</source>
+      <translation>ÁNGULO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/measured.py" />
+      <source>DISTANCE</source>
+      <translation>DISTANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/measured.py" />
+      <source>ROUND</source>
+      <translation>REDONDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/measured.py" />
+      <source>TO X</source>
+      <translation>A LA X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/measured.py" />
+      <source>TO Z</source>
+      <translation>A LA Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/spots.py" />
+      <source>ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK</source>
+      <translation>FLECHAS: PUNTO SIGUIENTE   TAB: POR LA TRAYECTORIA   RETURN: FIJA, Y MIDE DESDE AHÍ   ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/spots.py" />
+      <source>CENTRE</source>
+      <translation>CENTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/spots.py" />
+      <source>CROSSING</source>
+      <translation>CRUCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/spots.py" />
+      <source>END</source>
+      <translation>EXTREMO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/drawing/spots.py" />
+      <source>FREE</source>
+      <translation>LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/bench.py" />
+      <source>no version %1 of %2 is kept here</source>
+      <translation>no se guarda la versión %1 de %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/checking.py" />
+      <source>PROVING FAILED: %1</source>
+      <translation>FALLÓ LA COMPROBACIÓN: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/document.py" />
+      <source>%1 CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK</source>
+      <translation>%1 NO PUEDE NOMBRAR UN PROGRAMA: LETRAS, NÚMEROS, PUNTO, GUION Y ESPACIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/document.py" />
+      <source>%1 IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF %2</source>
+      <translation>%1 NO ES TERMINACIÓN DE PROGRAMA: NINGUNA, O UNA DE %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/document.py" />
+      <source>%1 WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT</source>
+      <translation>%1 QUEDARÍA OCULTO: USE UN NOMBRE QUE EMPIECE CON LETRA O NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/document.py" />
+      <source>%1 has over %2 lines: too long for this editor; split it elsewhere</source>
+      <translation>%1 tiene más de %2 líneas: demasiado para este editor; divídalo en otra parte</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/document.py" />
+      <source>NO NAME WAS TYPED: A PROGRAM NEEDS ONE</source>
+      <translation>NO SE ESCRIBIÓ NOMBRE: UN PROGRAMA NECESITA UNO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/editor.py" />
+      <source>%1 IS SAVED</source>
+      <translation>%1 QUEDÓ GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/editor.py" />
+      <source>%1; ESC</source>
+      <translation>%1; ESC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/files.py" />
+      <source>%1 CANNOT BE READ: %2</source>
+      <translation>NO SE PUEDE LEER %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/files.py" />
+      <source>%1 CANNOT BE WRITTEN: %2</source>
+      <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/files.py" />
+      <source>NOT SAVED: %1</source>
+      <translation>NO SE GUARDÓ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/files.py" />
+      <source>NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP</source>
+      <translation>NO SE GUARDÓ: EL TEXTO TIENE SIGNOS QUE NINGÚN ARCHIVO DE PROGRAMA PUEDE GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/history.py" />
+      <source>COMPARING</source>
+      <translation>COMPARANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/history.py" />
+      <source>NO VERSION IS KEPT OF THIS PROGRAM YET</source>
+      <translation>TODAVÍA NO SE GUARDA NINGUNA VERSIÓN DE ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/history.py" />
+      <source>READING</source>
+      <translation>LEYENDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/history.py" />
+      <source>THE SAME AS IN THE EDITOR</source>
+      <translation>IGUAL QUE EN EL EDITOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/saving.py" />
+      <source>as it was before editing</source>
+      <translation>como estaba antes de editar</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/saving.py" />
+      <source>changed by another program</source>
+      <translation>cambiado por otro programa</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/saving.py" />
+      <source>saved in the editor</source>
+      <translation>guardado en el editor</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/search.py" />
+      <source>%1 FOUND</source>
+      <translation>%1 ENCONTRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/search.py" />
+      <source>%1, %2 MORE INSIDE LONGER WORDS</source>
+      <translation>%1, %2 MÁS DENTRO DE PALABRAS MÁS LARGAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/search.py" />
+      <source>%1, PARTS OF WORDS TOO</source>
+      <translation>%1, TAMBIÉN PARTES DE PALABRAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/search.py" />
+      <source>NOT FOUND</source>
+      <translation>NO SE ENCONTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
+      <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
+      <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
+      <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>F3 SAVES AND PUTS THE PROGRAM ON THE DESK, PROVED ANEW</source>
+      <translation>F3 GUARDA Y PONE EL PROGRAMA EN EL CONTROL, COMPROBADO DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
+      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>PRESS F10 ONCE MORE TO LEAVE WITHOUT SAVING, ESC TO GO ON</source>
+      <translation>OPRIMA F10 OTRA VEZ PARA SALIR SIN GUARDAR, ESC PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
+      <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
+      <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
+      <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
+      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
+      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
+      <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
+      <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
+      <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: SAVE ONCE MORE TO REPLACE IT (IT STAYS IN HISTORY)</source>
+      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: GUARDE OTRA VEZ PARA REEMPLAZARLO (QUEDA EN LA HISTORIA)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 CANNOT BE DELETED: %2</source>
+      <translation>NO SE PUEDE BORRAR %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 CANNOT BE RENAMED: %2</source>
+      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 IS ITS NAME ALREADY</source>
+      <translation>%1 YA ES SU NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 IS NOT THERE ANY MORE</source>
+      <translation>%1 YA NO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
+      <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
+      <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
+      <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>NOTHING IS ENTERED; TYPE A NAME</source>
+      <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changes.py" />
+      <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
+      <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/chooser.py" />
+      <source>THIS CONTROL</source>
+      <translation>ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
+      <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>COPY</source>
+      <translation>COPIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>DELETE</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>EXPORT</source>
+      <translation>EXPORTAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>IMPORT</source>
+      <translation>IMPORTAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>ITS NAME IS {name} NOW</source>
+      <translation>AHORA SE LLAMA {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>NAME</source>
+      <translation>NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>NAME OF THE COPY?</source>
+      <translation>¿NOMBRE DE LA COPIA?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>NEW NAME?</source>
+      <translation>¿NOMBRE NUEVO?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>NO PROGRAM IS MARKED</source>
+      <translation>NO HAY PROGRAMA MARCADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
+      <translation>OPRIMA F6 OTRA VEZ PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>RENAME</source>
+      <translation>NOMBRAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS</source>
+      <translation>RETURN CARGA EL PROGRAMA MARCADO CUANDO NO HAYA OTRO EN CURSO; H RETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>SORT</source>
+      <translation>ORDENAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
+      <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
+      <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
+      <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
+      <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>{name} IS THERE NOW</source>
+      <translation>YA ESTÁ {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/files.py" />
+      <source>{name} IS UNDER WAY: LET IT END FIRST</source>
+      <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/preview.py" />
+      <source>TOO LARGE FOR A PREVIEW</source>
+      <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>%1 ERRORS: %2</source>
+      <translation>%1 ERRORES: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>ALARM %1</source>
+      <translation>ALARMA %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>COMPLETE</source>
+      <translation>COMPLETO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>E-STOP</source>
+      <translation>PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>GIVEN UP</source>
+      <translation>ABANDONADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>PROVED</source>
+      <translation>COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>UNREADABLE</source>
+      <translation>ILEGIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/rows.py" />
+      <source>DATE</source>
+      <translation>FECHA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/rows.py" />
+      <source>LAST RUN</source>
+      <translation>ÚLTIMA CORRIDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/rows.py" />
+      <source>PARTS</source>
+      <translation>PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/rows.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>%1 GB</source>
+      <translation>%1 GB</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>%1 OF %2 PROGRAMS</source>
+      <translation>%1 DE %2 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>%1 PROGRAMS</source>
+      <translation>%1 PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>BEST</source>
+      <translation>MEJOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>BEST CYCLE</source>
+      <translation>MEJOR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>CHANGED</source>
+      <translation>CAMBIADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>FIND</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>FOLDER</source>
+      <translation>CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>LAST CYCLE</source>
+      <translation>ÚLTIMO CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>LAST PROOF</source>
+      <translation>ÚLTIMA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>NEVER PROVED</source>
+      <translation>NUNCA COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>OWN PROGRAM</source>
+      <translation>PROGRAMA PROPIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>PLACES</source>
+      <translation>LUGARES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>PLANNED</source>
+      <translation>PREVISTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>PROGRAM</source>
+      <translation>PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>PROGRAMS  ·  %1  ·  BY %2</source>
+      <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>SAMPLE</source>
+      <translation>MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/shown.py" />
+      <source>WHERE</source>
+      <translation>DÓNDE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>ALL</source>
+      <translation>TODO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>ALL HERE</source>
+      <translation>TODO ACÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>COPYING: LEAVE THE STICK WHERE IT IS</source>
+      <translation>COPIANDO: NO SAQUE LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>EXPORT %1</source>
+      <translation>EXPORTAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS</source>
+      <translation>F4 EXPORTA A LA CARPETA ABIERTA; RETURN ABRE CARPETAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>LOOK</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>NO PROGRAM IS IN THIS FOLDER</source>
+      <translation>NO HAY PROGRAMAS EN ESTA CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>ONE HERE</source>
+      <translation>UNO ACÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT</source>
+      <translation>ABRA PRIMERO UN LUGAR: LAS FLECHAS LO MARCAN, RETURN LO ABRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>RETURN</source>
+      <translation>RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK</source>
+      <translation>RETURN ABRE UN LUGAR O CARPETA, Y SOBRE UN PROGRAMA LO IMPORTA; F5 IMPORTA TODO; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK</source>
+      <translation>RETURN ABRE UN LUGAR O CARPETA; F4 COPIA AHÍ EL PROGRAMA MARCADO, F5 TODOS; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE</source>
+      <translation>{count} COPIADOS, RELEÍDOS Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>{count} IMPORTED AND PROVED WITHOUT AN ERROR</source>
+      <translation>{count} IMPORTADOS Y COMPROBADOS SIN ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>{count} IMPORTED; NOT ALL PROVE: {found}</source>
+      <translation>{count} IMPORTADOS; NO TODOS PASAN LA COMPROBACIÓN: {found}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/traffic.py" />
+      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. {key} ONCE MORE REPLACES, ESC KEEPS</source>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. {key} OTRA VEZ REEMPLAZA, ESC LO CONSERVA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
+      <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
+      <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>%1 IS LARGER THAN ANY PROGRAM (%2 MB)</source>
+      <translation>%1 ES MÁS GRANDE QUE CUALQUIER PROGRAMA (%2 MB)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>%1 IS NO PROGRAM: %2</source>
+      <translation>%1 NO ES UN PROGRAMA: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>%1 IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: %2</source>
+      <translation>%1 NO SE REEMPLAZA, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/transfer.py" />
+      <source>replaced by an import</source>
+      <translation>reemplazado por una importación</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>C AXIS</source>
+      <translation>EJE C</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>COARSE FEED</source>
+      <translation>AVANCE BURDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>COLLET</source>
+      <translation>BOQUILLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>COMMENT</source>
+      <translation>COMENTARIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>COOLANT</source>
+      <translation>REFRIGERANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>D OFFSET</source>
+      <translation>COMPENSACIÓN D</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>F THAT IS A RAPID</source>
+      <translation>F QUE ES RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>FEED</source>
+      <translation>AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>FEED MODE</source>
+      <translation>MODO DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G01 FEED</source>
+      <translation>AVANCE G01</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G10 AT NEXT T</source>
+      <translation>G10 EN LA T SIGUIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G10 IN FORCE</source>
+      <translation>G10 VIGENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G76 … G77</source>
+      <translation>G76 … G77</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G92 PRESET</source>
+      <translation>PREAJUSTE G92</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>G97 %1 RPM</source>
+      <translation>G97 %1 RPM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>LOCKED</source>
+      <translation>BLOQUEADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>M FUNCTIONS</source>
+      <translation>FUNCIONES M</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>NOSE COMP</source>
+      <translation>COMP DE PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>OFF</source>
+      <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>RAPID</source>
+      <translation>RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>RAPID RATE</source>
+      <translation>VELOC DE RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>SFM</source>
+      <translation>PIES/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>SPEED</source>
+      <translation>VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>SPINDLE</source>
+      <translation>HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>TOOL</source>
+      <translation>HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>UNITS</source>
+      <translation>UNIDADES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>X WORDS</source>
+      <translation>PALABRAS X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>cut feed</source>
+      <translation>avance de corte</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>feed mode</source>
+      <translation>modo de avance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>first feed</source>
+      <translation>primer avance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>rapid rate</source>
+      <translation>velocidad de rápido</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source> AND </source>
+      <translation> Y </translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
+      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
+      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
+      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
+      <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
+      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X Y Z LA TOCAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
+      <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
+      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
+      <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
+      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>THE SLIDES ARE STILL MOVING</source>
+      <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS</source>
+      <translation>ESCRIBA UN VALOR O UNA SUMA COMO .5-.002 Y RETURN; ESC LO DEJA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
+      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>ANOTHER KEY HAS ENDED THE JOG</source>
+      <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
+      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, O OPRIMA SIN SHIFT</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>SHIFT WAS LET GO: THE RAPID HAS ENDED</source>
+      <translation>SE SOLTÓ SHIFT: TERMINÓ EL RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>THE KEY HAS GONE SILENT: LET IT GO AND PRESS IT AGAIN</source>
+      <translation>LA TECLA DEJÓ DE RESPONDER: SUÉLTELA Y OPRÍMALA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>THE SCREEN WAS AWAY: THE JOG HAS ENDED</source>
+      <translation>LA PANTALLA ESTUVO AUSENTE: TERMINÓ EL MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/hold.py" />
+      <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
+      <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source> OR </source>
+      <translation> O </translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>, THEN </source>
+      <translation>, LUEGO </translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>ABSOLUTE</source>
+      <translation>ABSOLUTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME</source>
+      <translation>TODOS LOS EJES CONOCEN SU POSICIÓN: NO HAY NADA QUE REFERENCIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>HOME {first}: PRESS HOME ONCE MORE FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
+      <translation>REFERENCIAR {first}: OPRIMA REFERENCIA OTRA VEZ PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>HOMED</source>
+      <translation>REFERENCIADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>HOMING</source>
+      <translation>BUSCANDO REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>NOT HOMED</source>
+      <translation>SIN REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>{axis} KNOWS ITS POSITION</source>
+      <translation>{axis} CONOCE SU POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>, alone</source>
+      <translation>, sola</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>REFUSED: {why}</source>
+      <translation>RECHAZADO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
+      <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN</source>
+      <translation>EL CARRO SE MOVIÓ DESPUÉS: OPRIMA ESC Y TOQUE OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>TOOL NUMBER?</source>
+      <translation>¿NÚMERO DE HERRAMIENTA?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
+      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number:g} does not exist; tools are T1…32</source>
+      <translation>T{number:g} no existe; las herramientas son T1…32</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
+      <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number} IS AS IT WAS</source>
+      <translation>T{number} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
+      <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
+      <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
+      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>touched Z</source>
+      <translation>tocada en Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>touched off, new tool</source>
+      <translation>tocada, herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>touched Ø</source>
+      <translation>tocada en Ø</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
+      <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>{axis} would be out of range</source>
+      <translation>{axis} quedaría fuera de alcance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>{tool} MEASURED DIAMETER?</source>
+      <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/tool.py" />
+      <source>{tool} Z POSITION OF THE FACE?</source>
+      <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/keep.py" />
+      <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
+      <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>BLOCK DELETE</source>
+      <translation>SALTO DE BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>COLLET CLOSED</source>
+      <translation>BOQUILLA CERRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>COLLET OPEN</source>
+      <translation>BOQUILLA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>CYCLE REPEAT</source>
+      <translation>REPETIR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>LIVE TOOL</source>
+      <translation>HERR MOTRIZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>OPTIONAL STOP</source>
+      <translation>PARO OPCIONAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>SINGLE BLOCK</source>
+      <translation>BLOQUE A BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>SPINDLE COASTS</source>
+      <translation>HUSILLO POR INERCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>SPINDLE FWD</source>
+      <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>SPINDLE REV</source>
+      <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
+      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
+      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>PROVING THE LINE</source>
+      <translation>COMPROBANDO LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>Set it with F8.</source>
+      <translation>Póngala con F8.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>THE LINE CANNOT BE PROVED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
+      <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
+      <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK</source>
+      <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
+      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>Tool {number} was never set.</source>
+      <translation>La herramienta {number} nunca se puso.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>A CYCLE IS UNDER WAY: CORRECTIONS CHANGE BETWEEN CYCLES, OR AT AN M00 OR M01 STOP</source>
+      <translation>HAY UN CICLO EN CURSO: LAS CORRECCIONES CAMBIAN ENTRE CICLOS, O EN UN PARO M00 O M01</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>A PROGRAM IS UNDER WAY: AT A STOP ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
+      <translation>HAY UN PROGRAMA EN CURSO: EN UN PARO SÓLO PUEDEN CAMBIAR EL DESGASTE Y LAS CORRECCIONES F9</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY</source>
+      <translation>HAY UN PROGRAMA EN CURSO: LAS COMPENSACIONES DE HERRAMIENTA SÓLO CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>CYCLE REPEAT GOES ON WITH THE OLD OFFSETS: SWITCH IT OFF, A CHANGE COUNTS AFTER THIS CYCLE</source>
+      <translation>REPETIR CICLO SIGUE CON LAS COMPENSACIONES ANTERIORES: APÁGUELO, EL CAMBIO CUENTA TRAS ESTE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>THE JOB UNDER WAY KEEPS ITS OFFSETS: A CHANGE COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>EL TRABAJO EN CURSO CONSERVA SUS COMPENSACIONES: UN CAMBIO CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
+      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/cells.py" />
+      <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
+      <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/cells.py" />
+      <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
+      <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/cells.py" />
+      <source>entered by hand</source>
+      <translation>escrito a mano</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
+      <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>D{number} IS AS IT WAS</source>
+      <translation>D{number} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE</source>
+      <translation>TODO VALOR ACEPTA OPERACIONES, COMO .5-.002; RETURN SOLO CONSERVA EL VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
+      <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>PRESS C ONCE MORE TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
+      <translation>OPRIMA C OTRA VEZ PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>Press C to clear all offsets</source>
+      <translation>Oprima C para borrar todas las compensaciones</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/desk.py" />
+      <source>Press Esc to exit offset adjustment screen</source>
+      <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/dialogue.py" />
+      <source>D{number:g} does not exist; offsets are D1…32</source>
+      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/dialogue.py" />
+      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
+      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>MASTER</source>
+      <translation>MAESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>NOSE RADIUS</source>
+      <translation>RADIO DE PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>REMARK</source>
+      <translation>NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>TIP</source>
+      <translation>PUNTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>WEAR X</source>
+      <translation>DESGASTE X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>WEAR Z</source>
+      <translation>DESGASTE Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>X</source>
+      <translation>X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>Z</source>
+      <translation>Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>{field} takes no sum; press Return to set it</source>
+      <translation>{field} no acepta sumas; oprima Return para ponerlo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>{field} takes {range}</source>
+      <translation>{field} acepta {range}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/entry.py" />
+      <source>{field} would become {value} {unit}; it may be {low}…{high}</source>
+      <translation>{field} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/figures.py" />
+      <source>WEAR</source>
+      <translation>DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/figures.py" />
+      <source>not set</source>
+      <translation>sin poner</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE</source>
+      <translation>LAS FLECHAS ELIGEN CELDA; ESCRIBA UN VALOR O UNA SUMA; RETURN LO PONE, F2 LO SUMA A LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
+      <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
+      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>PRESS RETURN TO WRITE A REMARK</source>
+      <translation>OPRIMA RETURN PARA ESCRIBIR UNA NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK</source>
+      <translation>ESCRIBA LA NOTA; RETURN LA GUARDA, ESC LA DEJA COMO ESTABA; LAS TECLAS F SIGUEN FUNCIONANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2</source>
+      <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y OPRIMA F2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>T{number} IS NOT SET: X AND Z BELONG TOGETHER</source>
+      <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/ledger.py" />
+      <source>SAVED</source>
+      <translation>GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/ledger.py" />
+      <source>{count} OFFSETS</source>
+      <translation>{count} COMPENSACIONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/ledger.py" />
+      <source>{count} offsets changed: F5 shows them</source>
+      <translation>cambiaron {count} compensaciones: F5 las muestra</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/ledger.py" />
+      <source>{names} SAVED</source>
+      <translation>{names} GUARDADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/ledger.py" />
+      <source>{names} TAKEN BACK</source>
+      <translation>{names} RETIRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/rules.py" />
+      <source>Offset Number?</source>
+      <translation>¿Número de compensación?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/rules.py" />
+      <source>R?</source>
+      <translation>¿R?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/rules.py" />
+      <source>X DIAMETER CORRECTION?</source>
+      <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/rules.py" />
+      <source>Z CORRECTION?</source>
+      <translation>¿CORRECCIÓN Z?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/rules.py" />
+      <source>{name} would become {value} {unit}; it may be {low}…{high}</source>
+      <translation>{name} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>DRAWING THE PATH BEFORE AND AFTER</source>
+      <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
+      <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
+      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
+      <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
+      <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
+      <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/offsets/shown.py" />
+      <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/offsets/telling.py" />
+      <source>no</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/offsets/telling.py" />
+      <source>none</source>
+      <translation>ninguno</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/telling.py" />
+      <source>yes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>AUTO</source>
+      <translation>AUTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>AUTOMATIC</source>
+      <translation>AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>D1…D32: corrections of wear and size</source>
+      <translation>D1…D32: correcciones de desgaste y medida</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>EDIT</source>
+      <translation>EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>EDITOR</source>
+      <translation>EDITOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>G54…G59: where SINUMERIK programs have their zero</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>LIST</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>MAIN MENU</source>
+      <translation>MENÚ PRINCIPAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>MDI</source>
+      <translation>MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>PROGRAMS</source>
+      <translation>PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>SEARCHTO</source>
+      <translation>BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>SECCMP</source>
+      <translation>COMPSEC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>SECONDARY OFFSETS</source>
+      <translation>COMPENSACIÓN SECUNDARIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>SPECIAL</source>
+      <translation>ESPECIAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>SPECIAL FUNCTIONS</source>
+      <translation>FUNCIONES ESPECIALES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>T1…T32: position and nose radius</source>
+      <translation>T1…T32: posición y radio de punta</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>TOOL OFFSETS</source>
+      <translation>COMPENSACIÓN DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>TOOLS</source>
+      <translation>HERRAM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>ZERO</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>ZERO OFFSETS</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>list, preview, copy, import and export</source>
+      <translation>lista, vista previa, copiar, importar y exportar</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>move by hand, touch tools off</source>
+      <translation>mover a mano, tocar herramientas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>one line at a time</source>
+      <translation>una línea a la vez</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>run programs</source>
+      <translation>correr programas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>speed limit, parts, inputs and outputs, log, backup</source>
+      <translation>tope de velocidad, piezas, entradas y salidas, bitácora, respaldo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages.py" />
+      <source>write and prove programs</source>
+      <translation>escribir y comprobar programas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source> %1 BLOCKS</source>
+      <translation> %1 BLOQUES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source> (%1 MORE)</source>
+      <translation> (%1 MÁS)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>%1 CANNOT BE LOADED: %2; PRESS F2 FOR ANOTHER</source>
+      <translation>NO SE PUEDE CARGAR %1: %2; OPRIMA F2 PARA OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>ALARM %1: %2: F7 LISTS IT, R ACKNOWLEDGES IT</source>
+      <translation>ALARMA %1: %2: F7 LA MUESTRA, R LA RECONOCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE</source>
+      <translation>ALARMA: CORRIJA LA CAUSA Y OPRIMA R PARA RECONOCERLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>COMING TO REST</source>
+      <translation>DETENIÉNDOSE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation>LOS CICLOS SE INICIAN EN LA PÁGINA AUTOMÁTICO: OPRIMA F1 Y LUEGO F2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>SERVOS APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>E-STOP: MAKE THE MACHINE SAFE, %1, THEN PRESS D FOR DRIVES ON</source>
+      <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA, %1, Y OPRIMA D PARA ENCENDER SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>E-STOP: WHAT TO DO STANDS ON THE AUTOMATIC PAGE (F1, F2)</source>
+      <translation>PARO DE EMERGENCIA: QUÉ HACER SE VE EN LA PÁGINA AUTOMÁTICO (F1, F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO, OPRIMA CUALQUIER TECLA PARA CONTINUAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>FILE TO BE PROCESSED</source>
+      <translation>ARCHIVO A PROCESAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>LINE %1: </source>
+      <translation>LÍNEA %1: </translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>NO START: A BACKUP IS BEING RESTORED</source>
+      <translation>NO ARRANCA: SE ESTÁ RESTAURANDO UN RESPALDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>NO START: THE PROGRAM IS BEING READ ANEW</source>
+      <translation>NO ARRANCA: SE ESTÁ LEYENDO DE NUEVO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND</source>
+      <translation>UN SOLO BOTÓN DE PALMA NO ARRANCA: OPRIMA LOS DOS EN MEDIO SEGUNDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>PRESS F2 TO CHOOSE A PROGRAM</source>
+      <translation>OPRIMA F2 PARA ELEGIR UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>PRESS H FOR FEED HOLD</source>
+      <translation>OPRIMA H PARA RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>PRESS R ONCE MORE TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
+      <translation>OPRIMA R OTRA VEZ PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>PROVING FOUND ERRORS</source>
+      <translation>LA COMPROBACIÓN HALLÓ ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW</source>
+      <translation>EL CONTROL NO RESPONDE: OPRIMA EL PARO DE EMERGENCIA; LO QUE SE VE NO ES DE AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>THE PROGRAM IS NOT PROVED YET AND WILL NOT START</source>
+      <translation>EL PROGRAMA AÚN NO ESTÁ COMPROBADO Y NO ARRANCARÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>THE SLIDES ARE LOOKING FOR HOME</source>
+      <translation>LOS CARROS BUSCAN SU REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>TO GO ON %1; R GIVES THE PROGRAM UP</source>
+      <translation>PARA SEGUIR %1; R ABANDONA EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>TO START %1</source>
+      <translation>PARA ARRANCAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>WILL NOT RUN: %1</source>
+      <translation>NO CORRERÁ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>WILL NOT RUN: %1%2%3</source>
+      <translation>NO CORRERÁ: %1%2%3</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>WILL NOT START: NO OFFSET WAS EVER SET FOR %1 (F8 SETS THEM)</source>
+      <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>SPINDLE FORWARD</source>
+      <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>SPINDLE LOCKED AS C, TURNED TO ITS ANGLE</source>
+      <translation>HUSILLO BLOQUEADO COMO C, GIRADO A SU ÁNGULO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>SPINDLE REVERSE</source>
+      <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI</source>
+      <translation>LA BOQUILLA ESTÁ CERRADA Y DEBE ESTAR ABIERTA EN ESTA LÍNEA: M13 EN MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>THE COLLET IS OPEN AND MUST BE CLOSED AT THIS LINE: M12 IN MDI</source>
+      <translation>LA BOQUILLA ESTÁ ABIERTA Y DEBE ESTAR CERRADA EN ESTA LÍNEA: M12 EN MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>{name} ON</source>
+      <translation>{name} ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>GOING THROUGH THE PROGRAM; ESC GIVES UP</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>PROVING THE RESTART; ESC GIVES UP</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>TO START THE RESTART {start}; ESC TAKES IT BACK</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>CHOOSE A GOOD LINE FIRST</source>
+      <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2)</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)</source>
+      <translation>NO ARRANCA: BUSQUE PRIMERO UNA LÍNEA Y CONFÍRMELA (F10)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE</source>
+      <translation>BUSCAR A LEE SÓLO PROGRAMAS OMNITURN; ÉSTE ARRANCA DESDE SU PRIMERA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>SWITCH THE DRIVES ON FIRST (D)</source>
+      <translation>ENCIENDA PRIMERO LOS SERVOS (D)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>THE LINE CANNOT BE SEARCHED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
+      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE</source>
+      <translation>ESCRIBA PRIMERO UN TEXTO; COMILLAS ANTES DE LAS CIFRAS LAS VUELVEN TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>WILL NOT START: {why}</source>
+      <translation>NO ARRANCARÁ: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>{text} IS IN NO LINE</source>
+      <translation>{text} NO ESTÁ EN NINGUNA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/session.py" />
+      <source>DRAWING</source>
+      <translation>DIBUJANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/session.py" />
+      <source>EMPTY</source>
+      <translation>VACÍO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/session.py" />
+      <source>PROVING</source>
+      <translation>COMPROBANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/session.py" />
+      <source>READY</source>
+      <translation>LISTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/session.py" />
+      <source>REFUSED</source>
+      <translation>RECHAZADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/settings.py" />
+      <source>AS THE PROGRAM</source>
+      <translation>COMO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/settings.py" />
+      <source>DISTANCE TO GO</source>
+      <translation>DISTANCIA POR RECORRER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/settings.py" />
+      <source>INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/settings.py" />
+      <source>MM</source>
+      <translation>MM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/settings.py" />
+      <source>POSITION</source>
+      <translation>POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/counter.py" />
+      <source>TARGET REACHED: {count} OF {target} PARTS</source>
+      <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/counter.py" />
+      <source>THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF</source>
+      <translation>LA ÚLTIMA PIEZA DE LA META: SE APAGÓ REPETIR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>ACTUAL</source>
+      <translation>REAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>ALLOWED</source>
+      <translation>PERMITIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>AXIS</source>
+      <translation>EJE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>DEMAND</source>
+      <translation>CONSIGNA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>DRIVE STATUS</source>
+      <translation>ESTADO DE SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>DRIVE STATUS  ·  %1  ·  X IS A RADIUS FROM HOME</source>
+      <translation>ESTADO DE SERVOS  ·  %1  ·  X ES RADIO DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>F7 LISTS THE ALARMS WITH CAUSE AND REMEDY; ESC GOES BACK TO THE LIST</source>
+      <translation>F7 MUESTRA LAS ALARMAS CON CAUSA Y REMEDIO; ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>FAULT</source>
+      <translation>FALLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>FOLLOWING</source>
+      <translation>SEGUIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>HOME</source>
+      <translation>REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>Largest following error since the start: %1</source>
+      <translation>Mayor error de seguimiento desde el arranque: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>ON</source>
+      <translation>ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>POWER</source>
+      <translation>POTENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>Setpoint queue ran low: %1 times</source>
+      <translation>La cola de consignas quedó corta: %1 veces</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>power, home, following error, faults</source>
+      <translation>potencia, referencia, error de seguimiento, fallas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>%1 EVENTS</source>
+      <translation>%1 EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>ALARMS</source>
+      <translation>ALARMAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>EVENT LOG</source>
+      <translation>BITÁCORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>EVENT LOG  ·  %1  ·  %2</source>
+      <translation>BITÁCORA  ·  %1  ·  %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK</source>
+      <translation>F4 BUSCA, F5 MUESTRA OTRA CLASE; RE PÁG Y AV PÁG SIGUEN; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>KIND</source>
+      <translation>CLASE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>LINE</source>
+      <translation>LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>OPERATOR</source>
+      <translation>OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>RUNS</source>
+      <translation>CORRIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>SEARCH</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>SEARCH FOR?</source>
+      <translation>¿QUÉ BUSCAR?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>THE LAST %1 EVENTS</source>
+      <translation>LOS ÚLTIMOS %1 EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY</source>
+      <translation>ESCRIBA QUÉ BUSCAR; RETURN LO CONSERVA, ESC LO QUITA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>WHAT</source>
+      <translation>QUÉ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>WHEN</source>
+      <translation>CUÁNDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
+      <source>what happened when; search and filter</source>
+      <translation>qué pasó y cuándo; buscar y filtrar</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>%1 KB</source>
+      <translation>%1 KB</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED</source>
+      <translation>HAY UN PROGRAMA EN CURSO: NO SE RESTAURA NADA ANTES DE QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>BACKUP AND RESTORE</source>
+      <translation>RESPALDO Y RESTAURACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>BACKUP TO HERE</source>
+      <translation>RESPALDAR AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
+      <translation>EL RESPALDO {name} ESTÁ COMPLETO Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>Backing up …</source>
+      <translation>Respaldando …</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>PRESS RETURN ONCE MORE TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
+      <translation>OPRIMA RETURN OTRA VEZ PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>RESTORE</source>
+      <translation>RESTAURAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}</source>
+      <translation>RESTAURADO; LO QUE HABÍA ANTES SE GUARDA COMO {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>RETURN DOES</source>
+      <translation>RETURN HACE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
+      <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>Restoring …</source>
+      <translation>Restaurando …</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>What a restore replaces is kept beside it.</source>
+      <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/keeping.py" />
+      <source>offsets, versions, counts, settings, log</source>
+      <translation>compensaciones, versiones, cuentas, ajustes, bitácora</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>%1 is no number of parts; type a whole number from 0 to %2</source>
+      <translation>%1 no es un número de piezas; escriba un entero de 0 a %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>0 takes the target away.</source>
+      <translation>0 quita la meta.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>In the cycle of the last part Cycle Repeat is switched off.</source>
+      <translation>En el ciclo de la última pieza se apaga Repetir ciclo.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>NO PROGRAM</source>
+      <translation>SIN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>NO TARGET</source>
+      <translation>SIN META</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>PARTS COUNTER</source>
+      <translation>CONTADOR DE PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>PARTS MADE</source>
+      <translation>PIEZAS HECHAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>PARTS TO GO</source>
+      <translation>PIEZAS POR HACER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>PRESS F4 ONCE MORE TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
+      <translation>OPRIMA F4 OTRA VEZ PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
+      <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>RESET</source>
+      <translation>RESET</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>STOP AT</source>
+      <translation>PARAR EN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>STOP AT HOW MANY PARTS?</source>
+      <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>THE COUNT IS AT NOUGHT</source>
+      <translation>LA CUENTA ESTÁ EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>TIME FOR THE PARTS TO GO</source>
+      <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST</source>
+      <translation>ESCRIBA CUÁNTAS PIEZAS Y OPRIMA RETURN; ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>parts made, stop at a number, times</source>
+      <translation>piezas hechas, parar en un número, tiempos</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST</source>
+      <translation>LAS FLECHAS MARCAN, RETURN PASA A LA SIGUIENTE OPCIÓN; ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>COLOURS</source>
+      <translation>COLORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>DARK</source>
+      <translation>OSCURO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>ENGLISH</source>
+      <translation>ENGLISH</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>ESPAÑOL</source>
+      <translation>ESPAÑOL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>HIDDEN</source>
+      <translation>OCULTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>LANGUAGE</source>
+      <translation>IDIOMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>LARGE FIGURES SHOW</source>
+      <translation>LAS CIFRAS GRANDES MUESTRAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>LIGHT</source>
+      <translation>CLARO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>OPERATOR STATION ON THE SCREEN</source>
+      <translation>ESTACIÓN DEL OPERADOR EN LA PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (SHIFT+E)</source>
+      <translation>SUELTE EL PARO DE EMERGENCIA DE LA ESTACIÓN ANTES DE OCULTARLA (SHIFT+E)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>SCREEN</source>
+      <translation>PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>SHOWN</source>
+      <translation>VISIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>THIS MACHINE HAS AN OPERATOR STATION OF ITS OWN: NONE IS SHOWN</source>
+      <translation>ESTA MÁQUINA TIENE SU PROPIA ESTACIÓN DE OPERADOR: NO SE MUESTRA NINGUNA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>The control is in %1 now.</source>
+      <translation>El control está ahora en %1.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>UNITS OF THE FIGURES</source>
+      <translation>UNIDADES DE LAS CIFRAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>Units change the figures that are shown; what is typed is always in the control's unit.</source>
+      <translation>Las unidades cambian las cifras que se muestran; lo que se escribe va en la unidad del control.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/preferences.py" />
+      <source>units, language, colours, station</source>
+      <translation>unidades, idioma, colores, estación</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/sheet.py" />
+      <source>ESC GOES BACK TO THE LIST</source>
+      <translation>ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>ALARM</source>
+      <translation>ALARMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>ASKED BY</source>
+      <translation>LA LEE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>AXES HOMED</source>
+      <translation>EJES REFERENCIADOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>CYCLE START</source>
+      <translation>INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>DRIVES ON</source>
+      <translation>SERVOS ENCENDIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS</source>
+      <translation>F4 MUESTRA LA LISTA SIGUIENTE; ESC REGRESA A LA LISTA DE FUNCIONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>FEED HOLD</source>
+      <translation>RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>GUARD</source>
+      <translation>GUARDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>INPUTS</source>
+      <translation>ENTRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>INPUTS AND OUTPUTS</source>
+      <translation>ENTRADAS Y SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>LAMP</source>
+      <translation>LÁMPARA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>LAMPS</source>
+      <translation>LÁMPARAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>MACHINE LAMPS</source>
+      <translation>LÁMPARAS DE LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM</source>
+      <translation>SÓLO SE PUEDEN CAMBIAR LAS SALIDAS; F4 LAS MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>OUTPUTS</source>
+      <translation>SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES</source>
+      <translation>LAS SALIDAS SÓLO SE CAMBIAN A MANO SIN PROGRAMA EN CURSO Y SIN QUE NADA SE MUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>PRESS RETURN ONCE MORE TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
+      <translation>OPRIMA RETURN OTRA VEZ PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>PRESS RETURN ONCE MORE TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
+      <translation>OPRIMA RETURN OTRA VEZ PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
+      <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>STATE</source>
+      <translation>ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>SWITCHED BY</source>
+      <translation>LA CAMBIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>TERMINAL</source>
+      <translation>TERMINAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/signals.py" />
+      <source>live state, switching outputs by hand, machine lamps</source>
+      <translation>estado en vivo, salidas a mano, lámparas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/special.py" />
+      <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
+      <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>%1 rpm is not between %2 and %3 rpm, which this spindle can turn</source>
+      <translation>%1 rpm no está entre %2 y %3 rpm, que es lo que gira este husillo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>COMMANDED NOW</source>
+      <translation>ORDENADA AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>It acts at once, also while a program runs.</source>
+      <translation>Actúa de inmediato, también con un programa en marcha.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>LIMIT IN FORCE</source>
+      <translation>TOPE VIGENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>MACHINE'S OWN MAXIMUM</source>
+      <translation>MÁXIMO PROPIO DE LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>MAXIMUM SPINDLE SPEED</source>
+      <translation>VELOCIDAD MÁXIMA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>MAXIMUM SPINDLE SPEED?</source>
+      <translation>¿VELOCIDAD MÁXIMA DEL HUSILLO?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>MEASURED NOW</source>
+      <translation>MEDIDA AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>NO LIMIT</source>
+      <translation>SIN TOPE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>NO LIMIT IS IN FORCE</source>
+      <translation>NO HAY TOPE VIGENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>NONE</source>
+      <translation>NINGUNO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>PRESS F4 ONCE MORE TO LIFT THE LIMIT, ESC TO KEEP IT</source>
+      <translation>OPRIMA F4 OTRA VEZ PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>Programs that ask for more turn at the limit.</source>
+      <translation>Los programas que piden más giran al tope.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART</source>
+      <translation>HUSILLO LIMITADO A {rpm} RPM HASTA REINICIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST</source>
+      <translation>ESCRIBA UNA VELOCIDAD Y OPRIMA RETURN; ACEPTA OPERACIONES; ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/speed.py" />
+      <source>a limit until the control is started again</source>
+      <translation>un tope hasta que se reinicie el control</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>%1  ·  CONTROL IN %2</source>
+      <translation>%1  ·  CONTROL EN %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>PROGRAM STOP</source>
+      <translation>PARO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>WAITING: %1</source>
+      <translation>ESPERANDO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>X IS A DIAMETER</source>
+      <translation>X ES DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>X IS A RADIUS</source>
+      <translation>X ES RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY</source>
+      <translation>HAY UN PROGRAMA EN CURSO: G54 A G59 SÓLO CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>C, DEGREES?</source>
+      <translation>¿C, GRADOS?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>C: all cleared</source>
+      <translation>C: todo borrado</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>G{code} IS AS IT WAS</source>
+      <translation>G{code} QUEDA COMO ESTABA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>PRESS C ONCE MORE TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
+      <translation>OPRIMA C OTRA VEZ PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
+      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>X RADIUS, MM?</source>
+      <translation>¿RADIO X, MM?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>Z, MM?</source>
+      <translation>¿Z, MM?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>degrees</source>
+      <translation>grados</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>mm</source>
+      <translation>mm</translation>
+    </message>
+    <message>
+      <location filename="app/screen/bars.py" />
+      <source>STARTING</source>
+      <translation>ARRANCANDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>CYCLE START: BOTH PALMS</source>
+      <translation>INICIO DE CICLO: DOS PALMAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>FEED RATE</source>
+      <translation>AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>IS IN</source>
+      <translation>OPRIMIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>OPERATOR STATION</source>
+      <translation>ESTACIÓN DEL OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>OUT</source>
+      <translation>AFUERA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>SPINDLE SPEED</source>
+      <translation>VELOC DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>SPINDLE SWITCH</source>
+      <translation>INTERRUPTOR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>STOP</source>
+      <translation>PARO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>TWIST</source>
+      <translation>GIRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>ABORT</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>BACK</source>
+      <translation>ATRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>CREATE</source>
+      <translation>CREAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>DOWN</source>
+      <translation>ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>FARTHER</source>
+      <translation>ALEJAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>FIT</source>
+      <translation>AJUSTAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>GO</source>
+      <translation>IR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>GO TO</source>
+      <translation>IR A</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>HISTORY</source>
+      <translation>HISTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>HOLD</source>
+      <translation>RETENER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>LEAVE</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>MENU</source>
+      <translation>MENÚ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>NEARER</source>
+      <translation>ACERCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>NEWER</source>
+      <translation>MÁS NVA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>NEXT</source>
+      <translation>SIGUE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>NEXT ERR</source>
+      <translation>SIG ERR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>NO SAVE</source>
+      <translation>NO GUARD</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>OLDER</source>
+      <translation>MÁS ANT</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>REDO</source>
+      <translation>REHACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>REPLACE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>SAVE</source>
+      <translation>GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>TO LINE</source>
+      <translation>A LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>UNDO</source>
+      <translation>DESHACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>UP</source>
+      <translation>ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>VIEW</source>
+      <translation>VISTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>WHOLE</source>
+      <translation>COMPLETA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/doings.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/draft.py" />
+      <source>SAMPLE, CHANGED</source>
+      <translation>MUESTRA, CAMBIADA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/drawn.py" />
+      <source>PATH TO THE CURSOR</source>
+      <translation>TRAYECTORIA HASTA EL CURSOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/drawn.py" />
+      <source>THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE</source>
+      <translation>LA CRUZ NO ESTÁ SOBRE NINGUNA LÍNEA DE LA TRAYECTORIA: UNA FLECHA LA LLEVA A UNA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/finder.py" />
+      <source>%1 REPLACED</source>
+      <translation>%1 CAMBIADOS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/findings.py" />
+      <source>ERROR</source>
+      <translation>ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/findings.py" />
+      <source>FILE</source>
+      <translation>ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/findings.py" />
+      <source>FINDINGS  ·  %1  ·  %2</source>
+      <translation>HALLAZGOS  ·  %1  ·  %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/findings.py" />
+      <source>PROVED  ·  %1 BLOCKS  ·  CYCLE %2</source>
+      <translation>COMPROBADO  ·  %1 BLOQUES  ·  CICLO %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/findings.py" />
+      <source>WARNING</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>A NUMBER FROM 1 TO %1</source>
+      <translation>UN NÚMERO DE 1 A %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>GO TO LINE</source>
+      <translation>IR A LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>LINE %1 OF %2  ·  %3</source>
+      <translation>LÍNEA %1 DE %2  ·  %3</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>LINE %1: %2 %3</source>
+      <translation>LÍNEA %1: %2 %3</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>NOTHING WAS FOUND THAT IS WRONG</source>
+      <translation>NO SE HALLÓ NADA MAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>REPLACE BY</source>
+      <translation>CAMBIAR POR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/page.py" />
+      <source>SAVE AS</source>
+      <translation>GUARDAR COMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/versions.py" />
+      <source>%1 bytes</source>
+      <translation>%1 bytes</translation>
+    </message>
+    <message>
+      <location filename="app/screen/fileprompt.py" />
+      <source>%1 programs</source>
+      <translation>%1 programas</translation>
+    </message>
+    <message>
+      <location filename="app/screen/fileprompt.py" />
+      <source>RETURN takes the marked program   ESC keeps the present one</source>
+      <translation>RETURN toma el programa marcado   ESC conserva el actual</translation>
+    </message>
+    <message>
+      <location filename="app/screen/files/page.py" />
+      <source>DRAWING …</source>
+      <translation>DIBUJANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/screen/files/page.py" />
+      <source>PREVIEW</source>
+      <translation>VISTA PREVIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/files/record.py" />
+      <source>RECORD</source>
+      <translation>REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>%1 TO GO ON</source>
+      <translation>%1 PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>CYCLE</source>
+      <translation>CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>LAST</source>
+      <translation>ÚLTIMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>PARTS  ·  TIME</source>
+      <translation>PIEZAS  ·  TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame.py" />
+      <source>TOOL  ·  OFFSET</source>
+      <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/gauges.py" />
+      <source>SWITCH OFF</source>
+      <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/head.py" />
+      <source>FEED %1</source>
+      <translation>AVANCE %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/head.py" />
+      <source>SPINDLE %1</source>
+      <translation>HUSILLO %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>CONT</source>
+      <translation>CONT</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>HELD</source>
+      <translation>SOSTENIDO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>IN/MIN</source>
+      <translation>PULG/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>JOG  ·  HOLD TO MOVE</source>
+      <translation>MANUAL  ·  SOSTENGA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>MM/MIN</source>
+      <translation>MM/MIN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>STEP</source>
+      <translation>PASO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>STEP IN</source>
+      <translation>PASO PLG</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>STEP MM</source>
+      <translation>PASO MM</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>in</source>
+      <translation>pulg</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
+      <source>ALONE</source>
+      <translation>SOLA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
+      <source>F10 takes the last change back</source>
+      <translation>F10 retira el último cambio</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
+      <source>READOUT</source>
+      <translation>LECTURA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
+      <source>Return enters it, Esc leaves it as it was</source>
+      <translation>Return lo pone, Esc lo deja como estaba</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/toolpanel.py" />
+      <source>ITS TIP IS NOW AT</source>
+      <translation>SU PUNTA ESTÁ AHORA EN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/toolpanel.py" />
+      <source>THIS ONE</source>
+      <translation>ÉSTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/toolpanel.py" />
+      <source>TOOL SETTING</source>
+      <translation>AJUSTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/toolpanel.py" />
+      <source>TOUCH X</source>
+      <translation>TOCAR X</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/toolpanel.py" />
+      <source>TOUCH Z</source>
+      <translation>TOCAR Z</translation>
+    </message>
+    <message>
+      <location filename="app/screen/language.py" />
+      <source>there is no catalogue turndesk_%1.qm in %2</source>
+      <translation>no hay catálogo turndesk_%1.qm en %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/listing.py" />
+      <source>%1  ·  HOME FOLLOWS AGAIN</source>
+      <translation>%1  ·  INICIO VUELVE A SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/listing.py" />
+      <source>BLOCK</source>
+      <translation>BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/listing.py" />
+      <source>No program.</source>
+      <translation>Sin programa.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/listing.py" />
+      <source>PROGRAM  ·  %1 LINES</source>
+      <translation>PROGRAMA  ·  %1 LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main.py" />
+      <source>A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: %1: %2</source>
+      <translation>UN ERROR DE LA PANTALLA; LA MÁQUINA NO TIENE QUE VER: %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/main.py" />
+      <source>FILE NOT FOUND: %1</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/history.py" />
+      <source>HISTORY  ·  ARROW UP AND DOWN</source>
+      <translation>HISTORIA  ·  FLECHA ARRIBA Y ABAJO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/history.py" />
+      <source>No line was run yet.</source>
+      <translation>Todavía no se corre ninguna línea.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/inforce.py" />
+      <source>IN FORCE</source>
+      <translation>VIGENTE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/line.py" />
+      <source>LINE  ·  READY, CYCLE START RUNS IT</source>
+      <translation>LÍNEA  ·  LISTA, INICIO DE CICLO LA CORRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/page.py" />
+      <source>SPN STOP</source>
+      <translation>PARO HUS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/menu.py" />
+      <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
+      <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/menu.py" />
+      <source>comes with a later version</source>
+      <translation>llega en una versión posterior</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/grid.py" />
+      <source>X AND Z FROM THE MASTER T{number}</source>
+      <translation>X Y Z DESDE LA MAESTRA T{number}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/history.py" />
+      <source>HISTORY  ·  NEWEST ON TOP</source>
+      <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/history.py" />
+      <source>No offset was changed yet.</source>
+      <translation>Todavía no se cambia ninguna compensación.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/keypad.py" />
+      <source>DEL</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/seccmp.py" />
+      <source>EFFECT</source>
+      <translation>EFECTO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/seccmp.py" />
+      <source>Secondary offset number:</source>
+      <translation>Número de compensación secundaria:</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/table.py" />
+      <source>SECONDARY OFFSETS  ·  X STORED AS A RADIUS</source>
+      <translation>COMPENSACIONES SECUNDARIAS  ·  X SE GUARDA COMO RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/tools.py" />
+      <source>ADD</source>
+      <translation>SUMAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/tools.py" />
+      <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
+      <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>  ·  LINE %1</source>
+      <translation>  ·  LÍNEA %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>ALARM %1%2</source>
+      <translation>ALARMA %1%2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>ALARM LOG  ·  ESC CLOSES</source>
+      <translation>BITÁCORA DE ALARMAS  ·  ESC CIERRA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>CAUSE</source>
+      <translation>CAUSA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>No alarm since the start.</source>
+      <translation>Ninguna alarma desde el arranque.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>WHAT TO DO</source>
+      <translation>QUÉ HACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/overlay.py" />
+      <source>line %1</source>
+      <translation>línea %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/aspects.py" />
+      <source>FACE</source>
+      <translation>CARA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/aspects.py" />
+      <source>PATH</source>
+      <translation>TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/aspects.py" />
+      <source>SIDE</source>
+      <translation>LADO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/furniture.py" />
+      <source>after</source>
+      <translation>después</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/furniture.py" />
+      <source>before</source>
+      <translation>antes</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/furniture.py" />
+      <source>done</source>
+      <translation>hecho</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/furniture.py" />
+      <source>rapid</source>
+      <translation>rápido</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/furniture.py" />
+      <source>to come</source>
+      <translation>por hacer</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>AT MOST {length} {unit} APART  ·  AT THE CIRCLE</source>
+      <translation>A LO MÁS {length} {unit} DE DIFERENCIA  ·  EN EL CÍRCULO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>FACE  ·  SEEN FROM THE TAILSTOCK</source>
+      <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>MEAS</source>
+      <translation>MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>NOTHING THAT IS CUT HAS CHANGED</source>
+      <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>SIDE  ·  UNROLLED</source>
+      <translation>LADO  ·  DESARROLLADO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/path/whole.py" />
+      <source>The path is shown when a program is loaded.</source>
+      <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/asked.py" />
+      <source>LINE OR TEXT?</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/beside.py" />
+      <source>AT THE LINE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/beside.py" />
+      <source>NOW</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>AFTER</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>CONFIRM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>F4: INSIDE A BORE, Z LAST</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>F4: OUTSIDE, X LAST</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>F5: WITH COOLANT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>F5: WITHOUT COOLANT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>GOING THROUGH THE PROGRAM TO LINE {line}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>GOOD AFTER</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>GOOD BEFORE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>LINE {line} IS NOT GOOD</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>PREVIOUS</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>STATE AT LINE {line}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>{which}: LINE {line}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>{which}: NONE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/starts.py" />
+      <source>CONFIRMED: CYCLE START BEGINS IT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/starts.py" />
+      <source>NOTHING BUT THE SLIDES</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/searchto/starts.py" />
+      <source>WILL START</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/window.py" />
+      <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/zero_offsets/page.py" />
+      <source>Press C to clear G54 to G59</source>
+      <translation>Oprima C para borrar G54 a G59</translation>
+    </message>
+    <message>
+      <location filename="app/screen/zero_offsets/page.py" />
+      <source>Press Esc to exit</source>
+      <translation>Oprima Esc para salir</translation>
+    </message>
+    <message>
+      <location filename="app/screen/zero_offsets/table.py" />
+      <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
+      <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>C moves while the spindle turns</source>
+      <translation>C se mueve mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>PRESS E-STOP, then find out why</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA y luego busque la causa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>Reset, drives on, start again</source>
+      <translation>Reset, encienda servos, arranque de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>a block leaves the soft limits</source>
+      <translation>un bloque sale de los límites por programa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>a drive has tripped</source>
+      <translation>un servo se disparó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>a driver could not do what it was asked</source>
+      <translation>un controlador de equipo no pudo hacer lo que se le pidió</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>a mistake in the control</source>
+      <translation>un error en el control</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>a slide does not follow its setpoints</source>
+      <translation>un carro no sigue sus consignas</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>axis drive fault</source>
+      <translation>falla de servo de eje</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>check air and switch, Reset</source>
+      <translation>revise el aire y el interruptor, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>check collet and bar</source>
+      <translation>revise la boquilla y la barra</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>check offsets and start position</source>
+      <translation>revise compensaciones y posición de arranque</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>check spindle drive and load, Reset</source>
+      <translation>revise el variador del husillo y la carga, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>check the part</source>
+      <translation>revise la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>clear the cause, Reset, drives on</source>
+      <translation>elimine la causa, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>clear the drive's fault, Reset</source>
+      <translation>borre la falla del variador, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>close it with M12</source>
+      <translation>ciérrela con M12</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>collet does not answer</source>
+      <translation>la boquilla no responde</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>collet has opened</source>
+      <translation>la boquilla se abrió</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>correct the program and load it again</source>
+      <translation>corrija el programa y cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>driver refuses</source>
+      <translation>el controlador de equipo se niega</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>end of travel</source>
+      <translation>fin de carrera</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>feed per revolution with a still spindle</source>
+      <translation>avance por vuelta con el husillo parado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>following error</source>
+      <translation>error de seguimiento</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>free the slide, Reset</source>
+      <translation>libere el carro, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>it turns faster than it was told</source>
+      <translation>gira más rápido de lo que se le ordenó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>its switch did not follow</source>
+      <translation>su interruptor no siguió</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>look for a blocked slide, Reset</source>
+      <translation>busque un carro trabado, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>no M03 or M04</source>
+      <translation>ni M03 ni M04</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>not in position in time</source>
+      <translation>no está en posición a tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>on this machine the spindle is C</source>
+      <translation>en esta máquina el husillo es C</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>program error</source>
+      <translation>error de programa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>save the log, restart the control</source>
+      <translation>guarde la bitácora, reinicie el control</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>slide does not arrive</source>
+      <translation>el carro no llega</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>speed fell during a pass; X was drawn back</source>
+      <translation>la velocidad cayó durante una pasada; X se retiró</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>speed not reached in time</source>
+      <translation>no se alcanzó la velocidad a tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>spindle drive fault</source>
+      <translation>falla del variador del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>spindle ignores the command</source>
+      <translation>el husillo no obedece la orden</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>spindle lost in a thread</source>
+      <translation>husillo perdido en una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>spindle not at speed</source>
+      <translation>el husillo no llega a su velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>spindle start with the collet open</source>
+      <translation>arranque del husillo con la boquilla abierta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>start the spindle first</source>
+      <translation>arranque primero el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>stop it with M05 first</source>
+      <translation>párelo primero con M05</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>stop the spindle before M13</source>
+      <translation>pare el husillo antes de M13</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the collet is not closed</source>
+      <translation>la boquilla no está cerrada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the control has failed</source>
+      <translation>el control falló</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the slides brake and hold, spindle off, outputs safe</source>
+      <translation>los carros frenan y sostienen, husillo apagado, salidas seguras</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the slides brake and lose power, spindle off, outputs safe</source>
+      <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the spindle drive has tripped</source>
+      <translation>el variador del husillo se disparó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the spindle still turns</source>
+      <translation>el husillo todavía gira</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>the switch fell while the spindle turned</source>
+      <translation>el interruptor cayó mientras giraba el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>this line cannot be run</source>
+      <translation>esta línea no se puede correr</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>unclamping refused</source>
+      <translation>apertura de boquilla rechazada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>%1 %2 by hand</source>
+      <translation>%1 %2 a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>%1: outputs are switched by hand only at rest, not in state %2</source>
+      <translation>%1: las salidas sólo se cambian a mano en reposo, no en el estado %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>a program is under way: it keeps the offsets that it was proved with</source>
+      <translation>hay un programa en curso: conserva las compensaciones con que se comprobó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>a program is under way: its spindle is stopped by feed hold and reset</source>
+      <translation>hay un programa en curso: su husillo se para con retención de avance y reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>spindle stopped by hand</source>
+      <translation>husillo parado a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>the collet is not opened by hand while the spindle turns</source>
+      <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>the offsets of the tables are in force</source>
+      <translation>las compensaciones de las tablas están vigentes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/by_hand.py" />
+      <source>this machine has no output %1</source>
+      <translation>esta máquina no tiene la salida %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>reset: wait until the slides are at rest</source>
+      <translation>reset: espere a que los carros estén en reposo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>setpoints ran low; the slides stop on the path</source>
+      <translation>las consignas se agotaban; los carros paran sobre la trayectoria</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AVANCE EN 0 POR LA PERILLA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>SETPOINTS RAN LOW</source>
+      <translation>LAS CONSIGNAS SE AGOTARON</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>SPINDLE BELOW HALF ITS SPEED</source>
+      <translation>HUSILLO A MENOS DE LA MITAD DE SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>feed hold</source>
+      <translation>retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>optional stop</source>
+      <translation>paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>program stop</source>
+      <translation>paro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>the program ends without M30 or M02</source>
+      <translation>el programa termina sin M30 ni M02</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
+      <source>the spindle is not at its speed</source>
+      <translation>el husillo no está a su velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
+      <source>%1 came too late to be obeyed</source>
+      <translation>%1 llegó demasiado tarde para obedecerse</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
+      <source>feed %1 %</source>
+      <translation>avance %1 %</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
+      <source>the control was away for %1 s</source>
+      <translation>el control estuvo ausente %1 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
+      <source>the drives have lost power</source>
+      <translation>los servos perdieron la potencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>%1 must be homed first</source>
+      <translation>%1 necesita primero su referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>E-stop is pressed: release it</source>
+      <translation>el paro de emergencia está oprimido: suéltelo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>an alarm stands: clear its cause and press Reset</source>
+      <translation>hay una alarma: elimine su causa y oprima Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>feed hold is pressed</source>
+      <translation>la retención de avance está oprimida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>no program is loaded</source>
+      <translation>no hay programa cargado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the drives are off: switch them on</source>
+      <translation>los servos están apagados: enciéndalos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the machine is being jogged</source>
+      <translation>la máquina se mueve a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the machine is homing</source>
+      <translation>la máquina busca su referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the program has errors: %1</source>
+      <translation>el programa tiene errores: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the program is not proved yet</source>
+      <translation>el programa aún no está comprobado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the proof belongs to another program or to other offsets: load it again</source>
+      <translation>la comprobación es de otro programa o de otras compensaciones: cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>tool offset %1 has never been set</source>
+      <translation>la compensación de herramienta %1 nunca se puso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/geared_pass.py" />
+      <source>a thread needs a turning spindle with an encoder</source>
+      <translation>una rosca necesita el husillo girando y con encoder</translation>
+    </message>
+    <message>
+      <location filename="core/executor/geared_pass.py" />
+      <source>the thread could not be queued in time; look for what keeps the computer busy</source>
+      <translation>la rosca no se pudo encolar a tiempo; busque qué ocupa la computadora</translation>
+    </message>
+    <message>
+      <location filename="core/executor/homing.py" />
+      <source>every axis knows its position</source>
+      <translation>todos los ejes conocen su posición</translation>
+    </message>
+    <message>
+      <location filename="core/executor/homing.py" />
+      <source>this machine has no axis %1 to home</source>
+      <translation>esta máquina no tiene eje %1 que referenciar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>%1 is at the end of its travel in %2</source>
+      <translation>%1 está al fin de su carrera en %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>%1 is still being jogged</source>
+      <translation>%1 todavía se mueve a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>%1 is still moving; wait for the end of its step</source>
+      <translation>%1 todavía se mueve; espere el final de su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>%1 is still on its step</source>
+      <translation>%1 todavía está en su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>%1 was stopped before the end of its step</source>
+      <translation>%1 se detuvo antes del final de su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>C is the spindle, and the spindle turns; stop it first</source>
+      <translation>C es el husillo, y el husillo gira; párelo primero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>a jog needs a velocity and a lease above 0</source>
+      <translation>mover a mano necesita velocidad y un plazo mayores que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>a step is longer than 0 and no longer than %1, not %2</source>
+      <translation>un paso es mayor que 0 y no más de %1, no %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>a step needs a speed above 0</source>
+      <translation>un paso necesita velocidad mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
+      <source>this machine has no axis %1 to jog</source>
+      <translation>esta máquina no tiene eje %1 que mover a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/limits.py" />
+      <source>line %1 feeds by the revolution</source>
+      <translation>la línea %1 avanza por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/limits.py" />
+      <source>line %1 moves %2 to %3 %4 from home</source>
+      <translation>la línea %1 lleva %2 a %3 %4 de la referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/limits.py" />
+      <source>line %1 moves C while the spindle turns</source>
+      <translation>la línea %1 mueve C mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/loading.py" />
+      <source>a program is under way: it must end or be reset before another is loaded</source>
+      <translation>hay un programa en curso: debe terminar o abandonarse antes de cargar otro</translation>
+    </message>
+    <message>
+      <location filename="core/executor/mover.py" />
+      <source>at rest because the override is 0</source>
+      <translation>en reposo porque la perilla está en 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/mover.py" />
+      <source>at rest where single block wants it</source>
+      <translation>en reposo donde lo pide bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/executor/mover.py" />
+      <source>it moves</source>
+      <translation>se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/mover.py" />
+      <source>the spindle changed its speed faster than the slides could follow</source>
+      <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir</translation>
+    </message>
+    <message>
+      <location filename="core/executor/mover.py" />
+      <source>there is none, or it has come to its end</source>
+      <translation>no hay ninguno, o llegó a su final</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>an alarm stands: press Reset first</source>
+      <translation>hay una alarma: oprima primero Reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>drives cannot be switched on in state %1</source>
+      <translation>los servos no se pueden encender en el estado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>feed override %1 is not between 0 and 1.5</source>
+      <translation>la perilla de avance %1 no está entre 0 y 1.5</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>homing: %1</source>
+      <translation>referencia: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>jog: %1</source>
+      <translation>mover a mano: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>no jog in state %1</source>
+      <translation>no se mueve a mano en el estado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>press both palm buttons</source>
+      <translation>oprima los dos botones de palma</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>spindle limit %1 is not between 0 and %2 rpm</source>
+      <translation>el tope del husillo %1 no está entre 0 y %2 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>spindle limit %1 rpm</source>
+      <translation>tope del husillo %1 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>state %1</source>
+      <translation>estado %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
+      <source>there is no switch %1</source>
+      <translation>no hay interruptor %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>no line is ready: type one and press Enter</source>
+      <translation>no hay línea lista: escriba una y oprima Enter</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>no restart is ready: search a line and confirm it</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>press Enter again</source>
+      <translation>oprima Enter otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>search for the line again</source>
+      <translation>busque la línea otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>the collet is %1 and must be %2 at line %3: use MDI</source>
+      <translation>la boquilla está %1 y debe estar %2 en la línea %3: use MDI</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>the program was loaded anew: search for the line again</source>
+      <translation>el programa se cargó de nuevo: busque la línea otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>the slides have moved since this was proved: %1</source>
+      <translation>los carros se movieron desde la comprobación: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>the state has changed since the line was proved: press Enter again</source>
+      <translation>el estado cambió desde que se comprobó la línea: oprima Enter otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>from line %1</source>
+      <translation>desde la línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>part %1, %2 s</source>
+      <translation>pieza %1, %2 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>program end</source>
+      <translation>fin de programa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>program given up by reset</source>
+      <translation>programa abandonado con reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>the line was given up by reset</source>
+      <translation>la línea se abandonó con reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>DRIVES OFF</source>
+      <translation>SERVOS APAGADOS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>RUNNING</source>
+      <translation>EN MARCHA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>STOPPING</source>
+      <translation>DETENIENDO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>WAITING</source>
+      <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>%1 rpm, %2 asked</source>
+      <translation>%1 rpm, se pidieron %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>SPINDLE OVERRIDE AT 0</source>
+      <translation>PERILLA DEL HUSILLO EN 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>SPINDLE STOPPED</source>
+      <translation>HUSILLO PARADO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>SPINDLE SWITCH OFF</source>
+      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/states.py" />
+      <source>state %1 cannot become %2</source>
+      <translation>el estado %1 no puede pasar a %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_watch.py" />
+      <source>OPERATOR STATION SILENT</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_watch.py" />
+      <source>OVERRIDE POT JUMPS</source>
+      <translation>LA PERILLA SALTA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervisor.py" />
+      <source>%1 is %2 off its setpoint</source>
+      <translation>%1 está a %2 de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervisor.py" />
+      <source>while stopping: %1</source>
+      <translation>al detenerse: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/thread_way.py" />
+      <source>a thread has no length or no lead</source>
+      <translation>una rosca no tiene largo o no tiene paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/waits.py" />
+      <source>AT SPEED</source>
+      <translation>A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/executor/waits.py" />
+      <source>DWELL</source>
+      <translation>ESPERA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/waits.py" />
+      <source>SPINDLE STOP</source>
+      <translation>PARO DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/waits.py" />
+      <source>cycle repeat off by M31</source>
+      <translation>repetir ciclo apagado por M31</translation>
+    </message>
+    <message>
+      <location filename="core/executor/waits.py" />
+      <source>the spindle turns at %1 rpm</source>
+      <translation>el husillo gira a %1 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>line itself</source>
+      <translation>línea misma</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>next line</source>
+      <translation>línea siguiente</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>the %1 is too short</source>
+      <translation>el %1 es demasiado corto</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>the lines go on in one direction</source>
+      <translation>las líneas siguen en una misma dirección</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>the next line runs straight back</source>
+      <translation>la línea siguiente regresa sobre sí misma</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/frames.py" />
+      <source>the first and the second point are the same</source>
+      <translation>el primer punto y el segundo son el mismo</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/frames.py" />
+      <source>the first and the third point are the same</source>
+      <translation>el primer punto y el tercero son el mismo</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/frames.py" />
+      <source>the three points lie on one line</source>
+      <translation>los tres puntos están en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/offset.py" />
+      <source>it runs straight back</source>
+      <translation>regresa sobre sí mismo</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/offset.py" />
+      <source>its inside radius is not larger than that</source>
+      <translation>su radio interior no es mayor que eso</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/offset.py" />
+      <source>nothing of it is left between its neighbours</source>
+      <translation>no queda nada de él entre sus vecinos</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/offset.py" />
+      <source>the path beside another one would cut into it</source>
+      <translation>la trayectoria junto a otro lo cortaría</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/offset.py" />
+      <source>the path beside it would cut into another one</source>
+      <translation>la trayectoria junto a él cortaría a otro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>%1 is missing: under G90 and G73, I and K are the centre's coordinates.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>A full circle takes I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Add %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Add R, or I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Arcs cannot be incremental in diameter mode.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Correct I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Correct R or the end point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Give larger arcs I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>I and K are distances from the start here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>I and K are the centre's coordinates here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Keep one way.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>R must be a number over 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>The arc by R ends where it starts.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>The arc has R and %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>The arc has neither R nor I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>The arc's radius is %1 at its start and %2 at its end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>The centre of the arc is its start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arcs.py" />
+      <source>Use G90 or G73 for the arc.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arrival.py" />
+      <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/arrival.py" />
+      <source>Write G04F%1 after it, or longer.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>%1 leaves nothing of the box to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>%1 needs %2 of the corner opposite to the start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>Correct %1 or the start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>The box has no size along %1: its corner lies at the start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>U is less than the way from the start to X.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/box_cycle.py" />
+      <source>the greatest depth of cut</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>A T stands between G35 and G36.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>G%1 is not followed by a G92 with X and Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>G%1 stands alone on its line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>G35 is in force already.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>G36 stands elsewhere than its G35, which was at radius %1, Z %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Move back there before G36.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>No G35 is in force that G36 could end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Put the rest on a line of its own.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Take the line out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>The G92 behind G%1 says another place than radius %2, Z %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Write G35 or G35F2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Write G36 before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/coarse.py" />
+      <source>Write G92 with the present X and Z on the next line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/codes.py" />
+      <source>coarse feed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/codes.py" />
+      <source>nose compensation</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/codes.py" />
+      <source>speed limits</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/codes.py" />
+      <source>spindle mode</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>%1 cannot follow this move.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>%1 with a nose radius of %2 cannot follow this move: %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>Move off the part on a straight line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>Move off the part.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>No move follows the contour between the approach and the departure of %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>Take a smaller nose, or change the contour.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>The departure, the last move before G40, has no length.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>The departure, the move before G40, is no straight line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>Write G40 before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/compensate.py" />
+      <source>Write the contour between them.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>%1 cannot make a corner: %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>A corner needs two straight moves in a row.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>Make it smaller.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>Take C or R out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>The two moves run in one direction: there is no corner to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>it takes %1 of %2, which has %3 left</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>the contour ends here</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>the next move</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>the next move is an arc</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_corners.py" />
+      <source>this move</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>%1 finds no unbroken way along the contour at the distance U.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>%1 passes beside a contour of %2 lines and arcs are too many to work out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Both ends of the contour have the %1 of the start point: there is no area to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Look whether the tool can do so.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Look whether the tool fits.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Lower U, or open the narrow place.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Move the start point away from the contour.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Move the start point beyond both ends.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>P does not say which subroutine describes the contour.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Raise I, or describe the contour in fewer moves.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Run it with fewer, longer moves.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Start farther from the contour in X.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>The contour has %1 lines and arcs; %2 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>The contour leaves nothing to cut between it and the start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>The contour rises and falls again: the tool plunges into the material behind the rise.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>The contour runs back along Z: behind that edge the pass along it cuts all that is there.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>The start point lies between the ends of the contour in %1, not outside of both.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_cycle.py" />
+      <source>Write its number after P.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>%1 and its like do not count in the contour of G%2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>%1 cannot stand in a contour</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>%1: a corner's size must be a number over 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>A contour holds moves, arcs and corners written out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Correct the line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Finish with a contour of its own.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>G%1 cannot stand in a contour</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Keep one of them.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Nose compensation cannot be switched in a contour</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Take it out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>The contour cannot be read here</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>The contour changes modes or coordinates; after the cycle those before it hold again.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>The contour of G%1 has no line or arc.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>The first line of a contour is its first point, which takes no arc and no corner</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>The line has both C and R.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Write X and Z of the point alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Write its points.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/contour_reading.py" />
+      <source>Write the size in full.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>%1 (line %2)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>%1 on line %2 is no straight move</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>Put it on the line with X or Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>an arc</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>another motion</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>it takes %1 of the move on line %2, which has %3 left</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>no move follows</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>no move follows before %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>no straight line</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>nose compensation ends before the next move</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>the move on line %1 has no length</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/corners.py" />
+      <source>the next move, on line %1, is %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/count.py" />
+      <source>Lower the counts of the loops.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/count.py" />
+      <source>The program executes %1 lines; %2 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/count.py" />
+      <source>The program makes %1 blocks; %2 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/count.py" />
+      <source>about 10^%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1 cannot run while nose compensation is active.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1 has no feed: none for cutting is in force.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1 is the first move after the T on line %2: its start point is not known.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1 needs %2, %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1 would make %2 %3; %4 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1: %2, %3, must be over 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Correct %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Look for a lost decimal point in %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Move to X and Z of the start point before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Put G40 and a departure before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Take the sign out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/cycle_blocks.py" />
+      <source>Write F on the %1 line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A Klartext program begins with its first block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A SINUMERIK program begins with its first block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>An OmniTurn program needs a lathe with X, Z and C; this machine has other axes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Choose the machine file of a lathe.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/dialects.py" />
+      <source>Start it from the beginning.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>%1 lies in the hole, not before the depth of the first peck.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>%1 needs Z, the bottom of the hole.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>%1: the rate of the retract goes from over 0 to %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>Correct Z, or start farther out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>R is where the drill comes out of the hole.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>The bottom of the hole at %1 is not beyond the start point at %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>the depth of a peck</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/drilling.py" />
+      <source>the distance before the cut at which the feed begins</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/execute.py" />
+      <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/execute.py" />
+      <source>G04 does not say how long.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/execute.py" />
+      <source>Write G04Fn, n in seconds.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>At %1 rpm this feed is %2; %3 is the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Feed %1 is out of range: %2 to %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Feed %1 is very high for cutting.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>G00 stands with F, G94 or G95, each of which ends the rapid.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>G01 goes back to the last cutting feed, and none has been set after the first line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>G96 is active and no S has given a surface speed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Look at F and at G94/G95.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Look for a lost decimal point, or G94 for G95.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Look for a lost decimal point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Lower F or S.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Set one with G95Fn or G94Fn.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Split the line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Start it with M03 or M04, or use G94.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>The move has no feed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>The spindle stands, and the move runs at %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>This move takes %1 s at its feed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Write F on this line or before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Write S beside G96.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>a feed per revolution</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>constant surface speed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/flow.py" />
+      <source>A subroutine must not call itself.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/flow.py" />
+      <source>Subroutines call each other more than %1 deep.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow.py" />
+      <source>A subprogram must not call itself.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/flow.py" />
+      <source>Calls are nested more than %1 deep at LBL %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source> with %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>%1 %2 is not between %3 and %4.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Correct the angle.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Correct the points.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Look at points, angles and SYM.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>No position of the rotary axes inside their ranges gives this plane%1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>TABLE ROT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Take the word out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>This machine has no rotary axis %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>M%1 stands twice in the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>M%1 starts the spindle, and no TOOL CALL has given S.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>M%1 while M128 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>More than one M function of the block steers the spindle.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>Switch it off with M129 before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>TOOL %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>Take one out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/functions.py" />
+      <source>Write S behind TOOL CALL.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>%1 stand elsewhere than the plane of line %2 asks.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>A move of %1 with M128</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>A move with M128 and %1 swivelled</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>Start it with M3 or M4.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>This feed move runs with the spindle at rest.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/moves.py" />
+      <source>This machine has no axis %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>M128 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>No TOOL CALL has named a tool axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>The datum was shifted in the tilted system of line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>Write MB with a length.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/planes.py" />
+      <source>Write TOOL CALL n Z before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>A file holds one program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Correct the number, or write the label.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>END PGM is missing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Give it another number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>LBL %1 is nowhere in the program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>LBL %1 stands on line %2 too.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Look whether the file is whole.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Move it before END PGM.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>The first block names program and unit.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>The program begins as %1 and ends as %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>The subprogram LBL %1 has no LBL 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>This block stands behind END PGM.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Write LBL 0 behind it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/program.py" />
+      <source>Write the unit of the program in both.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/run.py" />
+      <source>The program makes more than %1 blocks or %2 executed lines.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>A tool by its name</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>S%1 is over the spindle's %2 rpm.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>Set the tool's offset.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>TOOL CALL while M128 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>The tool axis %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/tools.py" />
+      <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Correct the value.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>F must be above zero.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>No feed is in force.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Q%1 has no value yet.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>The last TOOL CALL has no F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Write F behind TOOL CALL.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Write F or FMAX.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Write Q%1 = … before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/words.py" />
+      <source>Write a feed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>%1, less than the nose radius %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>%1, less than twice the nose radius %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>Choose another way for the %1, or the other side.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>Keep twice the nose radius off the part.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>Move farther off the part.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>On the %1 the nose of G%2 cuts into the part.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>The %1 %2 %3 off the part</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/lead.py" />
+      <source>The %1 is %2 long, less than the nose radius %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>M%1 is no code of this machine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>M13 opens the collet while the spindle turns.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>Stop it with M05 first.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>The machine file assigns the outputs.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>%1 is finer than the step of %2 %3; %4 is used.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>%1 is finer than the step; %2 is used.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>Round the number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>The first move after %1 lacks %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>This move is a rapid because of the G00 beside the comment on line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>Write G01 if it is meant to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>Write both X and Z, or G92 before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/moves.py" />
+      <source>the T on line %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>%1 stands while G%2 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>A subroutine is called while G%1 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Approach on a straight line with D.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>D belongs on the first move after G41 or G42 alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>D changes while G%1 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>End G%1 first: a move off the part, then G40.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Enter the nose radius among the offsets.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Enter the nose radius without a sign; G41 and G42 say the side.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>G%1 comes while G%2 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>G%1 does not stand alone on its line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>G%1 stands in a subroutine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Move off the part and write G40 before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Plane switching stands while G%1 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>R of D%1 is 0: G%2 compensates nothing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>R of D%1 is negative.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>The first move after G%1 on line %2 is no straight line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>The first move after G%1 on line %2 names no D.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>The program ends while G%1 is on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Write Dn: its R is the nose radius.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/nose.py" />
+      <source>Write the compensated contour in the main program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>Begin with G90G94F300.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>The first line must say G90 (absolute) or G91 (incremental).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>The program names neither G70 nor G71; it runs in millimetres, as the job before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>Write G70 or G71 on the first line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>(~%1) turns C, which is not locked.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>(~%1) under G95: a plane is fed in inches a minute.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>(~%1) with nose compensation on.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Correct it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>D belongs to (~PLZC).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>D comes where Y is %1: it would move Y.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>D must be a diameter over 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>H belongs to (~PLXC).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>H comes after a move or F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Move there before the plane.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Move to X- before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>The T on line %1 has not been moved to X and Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Write G40 before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Write G94 with F before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Write M19 before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Write it first.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane.py" />
+      <source>Write it where Y is 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>I and J are the centre's coordinates.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>The tool stands meanwhile; lead it past the axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>The tool's centre line stands H beside the axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>The way leads through the axis: C turns by %1 degrees there.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/plane_moves.py" />
+      <source>Z%1 lies beyond the centre: Z is the diameter that the tip touches.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>%1 has no number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>%1 needs a C axis, and the machine file switches it off.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>%1 turns the spindle, which is not locked.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>%1: C turns at more than 0 and at most %2 rpm.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>At %1 rpm of C this feed is %2; %3 is the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>C turns %1 degrees; the way of the slide at this feed needs %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>G89 locks the spindle and stands without M codes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>Set axis.C.enabled.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>The line holds %1 and %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>The slide is fed by the turns of C, and no S has said how fast it turns.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>Turn C further, or raise F: the slide would stop on its way.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>Write M19 or M89 before.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>Write S on the line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/positioning.py" />
+      <source>Write the degrees.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>A comment stands inside a loop.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>Move it before LS.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>Move it before M30, or start a subroutine with }n.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>Plane switching on line %1 has no (END).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>The program is empty.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>This line stands after the end of the program and is in no subroutine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>Write (END) alone on a line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
+      <source>Write G90 and M30.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>%1 and %2 cannot act on one line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>%1 is no code of this control.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>%1 looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Add %1 with its number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Look it up.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Put it on a line of its own.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Take '/' out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Take it out or add its code.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>The line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Write C1 or C0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Write it alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>Write the input's number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>deletes %1, without which the rest has no meaning</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1 besides %2, which stands alone</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1 twice</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1 without %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1, which is neither C1 (on) nor C0 (off)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1, which is no number of an input</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds %1, which nothing on it takes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds two M codes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>holds two codes of one group (%1)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/approach.py" />
+      <source>%1 OFF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/approach.py" />
+      <source>%1 ON</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>Line %1 %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>Line %1 is empty.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>There is no line %1; the program has %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>describes the contour of line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>is in subroutine %1: the line that calls it may be good.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>is in the corner of line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>is in the plane switching that begins on line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>is inside the loop of lines %1 to %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>is under the nose compensation that begins on line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/good.py" />
+      <source>stands after the end of the program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 depends on the input that line %2 asks.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 is in plane switching.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 is no place to go on: %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 is under nose compensation or in a corner.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Nothing has moved before line %1: start the program from its first line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>The program ends on line %1, before line %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>The program has errors before line %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Where the slides stand at line %1 depends on where they stood at Cycle Start.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>what input %1 answered on line %2 is not known.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>what the input of line %1 answered is not known.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>%1 cuts a contour, and its lines would have to follow</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>%1 rounds the corner with the next move</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>/ leaves a line of a program out, and there is nothing to leave out</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>Write it in a program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>begins a loop, and its lines and LF would have to follow</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>begins a subroutine, and those stand in programs</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>begins nose compensation, which looks at the lines that follow</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>belongs to plane switching, whose lines would have to follow</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>calls a subroutine, and those stand in programs</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>ends a contour, and there is none</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>ends a loop, and there is none</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>ends a subroutine, and there is none</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>ends nose compensation, which looks at the lines around it</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/single.py" />
+      <source>needs a G92 on the next line</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>%1 is too small: the ends are %2 mm apart, half of which it takes at least.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>%1: an opening angle lies over 0 and under 360.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>AR stands without an end point and without I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>Add one of them.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>Correct CR or the end point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>I and K are distances from the start, I a radius; AC( ) makes them coordinates.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>Keep two of them.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>Write G18 before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>arcs of X and Z need G18.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the arc by %1 ends where it starts.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the arc has AR, an end point and a centre.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the arc has CR and another way to say where its centre is.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the arc has neither CR, AR nor I and K.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the arc's radius is %1 mm at its start and %2 mm at its end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <source>the centre of the arc is its start point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>A corner needs two moves in a row.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>Give another end point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>Put it behind a G1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>corners of X and Z need G18</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>it takes %1 mm of the move on line %2, which has %3 mm</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>the block is no straight move at feed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>the next move, on line %1, is no straight move of X and Z</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>the size of a corner</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>G96 is in force and no S has given a surface speed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>Start it with S and M3 or M4, or use G94.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>Write F. Between G94 and G95 the old value is forgotten.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>kind of feed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>no feedrate is programmed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>no spindle speed for G95: the spindle stands.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <source>the feed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow.py" />
+      <source>%1 line %2: %3</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow.py" />
+      <source>M%1 ends a main program, and this is a subprogram.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow.py" />
+      <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow.py" />
+      <source>subprograms call each other more than %1 deep.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow.py" />
+      <source>the subprogram %1 does not exist.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/moves.py" />
+      <source>%1 belongs to an arc, and G%2 is in force.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/moves.py" />
+      <source>Write G2 or G3, or take it out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <source>%1: an offset is a plain number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <source>Take C out, or choose a machine file that has it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <source>Write %1 with its number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <source>settable offset</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <source>unknown axis: this machine has no third axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>Add the axes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>G53 acts in a block that moves an axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>Lower the passes of the calls.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>absolute or incremental</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>suppression of offsets</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>the program makes more than %1 blocks or %2 executed lines.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/run.py" />
+      <source>unit of length</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 is a dwell of %2 s; %3 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 is over the spindle's %2 rpm.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 m/min is no surface speed that a tool can stand.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 needs a controlled spindle, which this machine does not have.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 starts the spindle and no S has said how fast.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1 starts the spindle with the collet open.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1: a dwell is 0 or longer.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>Close it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>F counts in seconds, S in revolutions.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>G4 %1 waits for revolutions of a spindle that stands.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>G97 makes S rpm.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>Start it with M3 or M4, or write G4 F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>Write S in the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>kind of spindle speed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>the limit of the speed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/state.py" />
+      <source>%1: %2 must be over 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/state.py" />
+      <source>R%1 has no value: the program has not set it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/state.py" />
+      <source>Write R%1=… before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 and %2 are of one group (%3).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 and %2 stand in one block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 is programmed twice in the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 needs a block of its own, with axes and nothing else.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 stands in a block without X or Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>DIAMON and DIAMOF are of one group.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>G4 needs a block of its own, with F (seconds) or S (revolutions).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>M%1 and M%2 exclude each other.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>One G code of a group per block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>Put it behind a move.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>Split the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>the block holds %1 M codes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/targets.py" />
+      <source>%1 is no position of a modulo axis, which has 0 to &lt;360</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/targets.py" />
+      <source>%1 needs a modulo rotary axis</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/targets.py" />
+      <source>the end point %1 lies beyond -360 to +360 of the machine</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/travel.py" />
+      <source>%1: %2 needs a rotary axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/travel.py" />
+      <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/travel.py" />
+      <source>Correct the target or the offset of C.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/travel.py" />
+      <source>Write %1=AC( ) or %2=IC( ).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/travel.py" />
+      <source>Write an angle from 0 to 359.999, or IC( ) for a distance.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>%1 is no surface speed that a tool can stand.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>Close it with M12 first.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>Correct one of them.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>G%1 needs S, a speed in rpm.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>M%1 starts the spindle and no S has said how fast.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>M%1 starts the spindle with the collet open.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>M%1 starts the spindle, which is locked as the axis C.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>Release it with M05 first.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/spindle.py" />
+      <source>Write G%1Sn.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>%1 has no LF.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Add G75 or G78, or take it out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Add LF where the loop ends.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Add LS with a count, or take it out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Add M99 at its end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>LF ends no loop.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>M30 goes before the subroutines.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>M99 ends no subroutine here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>RF ends no contour here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Subroutine %1 begins on line %2 already.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Subroutine %1 has no M99.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Subroutine %1 is called, and no }%2 begins it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>The contour of G%1 has no RF.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>The main program ends without M30 or M02.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Write RF alone on the line after it, or P with the number of a subroutine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>Write it after M30.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/structure.py" />
+      <source>}%1 has no M99 before this line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>A comment stands on a line by itself.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>A comment stands on the line that starts a subroutine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Move it down a line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Press Return after it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Put it on a line with a command.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Save the file with the line ends of this machine.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Take it out for the original control.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>The comment holds more than letters, digits and blanks.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>The last line has no line end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>The line is blank.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>The lines end in a carriage return.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>The tool number has a leading zero.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Use plain text.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/style.py" />
+      <source>Write T1 for T01.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>%1 leaves nothing to cut: %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>%1 lies on the other side of the spindle axis: %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>%1: %2 stands without a number here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>%1: the angle of infeed is 30 degrees at most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>%1: the lead must be above 0 and at most %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>At %1 rpm this lead is %2; %3 is the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Correct C; bare C is 29 degrees.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Correct Z, or move away before the G33.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>G%1 is active, and a thread is cut without nose compensation.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>G35 allows more.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>G35F2 allows more.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>G96 is active, and a thread needs one speed from first pass to last.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>I is missing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>I, the depth of the first pass, must be above 0.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>K is missing, and %1 is there.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>K, the lead, is missing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Look at the sign of X and at where the tool starts.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Start at the depth of the first pass.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Start farther away from Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Start it with M03 or M04.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>The flank angle moves the start of the last pass beyond its end.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>The spindle stands, and a thread is cut by its turns.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>The thread ends at the Z where it starts.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>The thread would take %1 passes; %2 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Was K%1 meant?</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Write %1 alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Write G97S before it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Write I, the depth of the first pass.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Write K, the lead per revolution.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>X of the last pass is missing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>Z, the end of the thread, is missing.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/thread_words.py" />
+      <source>the tool stands at radius %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/threads.py" />
+      <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/threads.py" />
+      <source>Start farther away, or lower S.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/threads.py" />
+      <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/threads.py" />
+      <source>The thread takes %1 passes.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>G%1 needs X or Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>No T follows this G10, so the work shift never takes effect.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>Put G97 before the T.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>Put it before a T.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
+      <source>Write the coordinates.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/units.py" />
+      <source>%1 mm</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 goes up to %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 has an empty name.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 has no number</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 has no value</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 needs a whole number</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>; '%1' stands here</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>; the line ends here</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Correct the number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Q parameters go up to Q%1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Take another parameter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Write a number such as +10, or a Q parameter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Write a number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>Write the name.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>%1 is not supported here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Contradictory entry</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Entered angle not permitted</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Excessive nesting</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Feed rate is missing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Input value incorrect</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Label defined twice</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Label not found</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Not permitted with M128</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Not supported</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>PLANE not permitted with M128</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Plane wrongly defined</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Program it with L moves and PLANE, or run the program on a control that has it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Program start undefined</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Q parameter not defined</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Syntax error</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Tool axis is missing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Wrong axis programmed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/faults.py" />
+      <source>Wrong rpm</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/feeds.py" />
+      <source>%1 stands twice in the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/feeds.py" />
+      <source>F has no value</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/feeds.py" />
+      <source>Write a number, Q, MAX or AUTO behind F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>%1 is missing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>%1 needs a name and MM or INCH.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>A corner needs X, Y and Z.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>BLK FORM %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>BLK FORM 0.1 needs the tool axis</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>END PGM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>It takes a tool, its axis, S, F, DL and DR.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>No word of BLK FORM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>No word of TOOL CALL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>TOOL CALL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>Write Z behind 0.1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/headers.py" />
+      <source>Write both behind it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>'%1' begins no block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>A block begins with L, PLANE, TOOL CALL, LBL or the like.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>A block over several lines (~)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>BLK FORM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>Break it into lines.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CALL LBL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CALL PGM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CALL SELECTED</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CONTOUR DEF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CYCL CALL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>CYCL DEF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>PATTERN DEF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>SEL CONTOUR</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>SEL PATTERN</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>SEL PGM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>SEL TABLE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>STOP stands alone</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TCH PROBE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TOOL DEF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TRANS DATUM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TRANS MIRROR</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TRANS ROTATION</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>TRANS SCALE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/line.py" />
+      <source>The line has %1 characters.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>An M function was expected</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>It takes axes, R0, a feed and M functions.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>M128 takes a feed in numbers.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>M140 needs MB</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>No word of an L block</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>Radius compensation R%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>The axis has no value</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>There are more than %1 M functions in the block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>Write F and a number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>Write MB and a length, or MB MAX.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/moves.py" />
+      <source>Write a number such as +10.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>'=' was expected behind Q%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>CYCL DEF %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>Call another label.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>LBL 0 ends a subprogram; it cannot be called.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>No word of CALL LBL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>No word of LBL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>No word of TRANS DATUM</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>No word of cycle 7</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>TRANS DATUM AXIS needs X, Y or Z</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>TRANS DATUM TABLE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>TRANS DATUM needs AXIS or RESET</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/others.py" />
+      <source>The formula '%1'</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>%1 %2 missing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>%1 ROT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>%1 stands behind %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>All of them are needed, zeros too.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>COORD ROT or TABLE ROT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>DIST belongs to MOVE, not to %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>MOVE, TURN or STAY is missing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>No word of a PLANE block</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>PLANE %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>PLANE AXIAL needs an axis angle</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>PLANE RELATIV takes one of SPA, SPB and SPC.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>STAY moves nothing: no %1 here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>SYM or SEQ</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>Say how the rotary axes are positioned.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>Take one of them out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>Write A, B or C with its angle.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/planes.py" />
+      <source>Write one angle.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>%1 PGM %2 %3</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>BLK FORM 0.%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>CYCL DEF 7.%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>LBL %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>MB MAX</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>REP %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>TRANS DATUM AXIS</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/klartext/written.py" />
+      <source>TRANS DATUM RESET</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 has a decimal point and no digit.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 has a sign and no number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 has over %2 digits.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 is no word of the language.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 is out of range: %2 goes from %3 to %4.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 is out of range: a loop runs %2 to %3 times.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 must be a whole number without a sign.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1 takes no number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1: %2 takes exactly two digits.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1: offsets go from 1 to 32.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>%1: tools go from 1 to 32.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>'%1' is no part of the language.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>')' closes no comment.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>'/' may only stand first on a line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>A comma is not allowed anywhere.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>A feed is F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>A number stands without a letter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>A sign stands inside a number.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Add '(' or take it out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Comments go in parentheses.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Correct the count.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>D0 cancels.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Lines have no numbers here: N is not allowed.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Look the word up in the language page.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Move it to the front.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Numbers have no exponent here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Round it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Split it into two words.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>T0 cancels the tool.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Take the N word out.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>The comment has no closing parenthesis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>The letter O stands where a zero belongs.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>The number has two decimal points.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write %1%2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write a decimal point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write it after %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write its letter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write the digits.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write the number after it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write the number out; a feed is F.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
+      <source>Write two digits.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1 belongs to an arc, and neither G02 nor G03 is on the line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1 is missing: I and J are the coordinates of the arc's centre.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1 is no word of plane switching.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1 is out of range.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1 stands with other words.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>%1: of the G codes only G02 and G03 may stand in a plane.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>'%1' is no word of plane switching.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>An arc of a plane moves X and Y alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>Between the entry and (END) stand only (X Y Z F), (G02 or G03 X Y I J), (H) and (D).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>G02 and G03 are one shot.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>Look for a lost point.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>Move Z on another line.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>The line holds %1 twice.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>The statement is empty.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>This line is no statement in parentheses.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane.py" />
+      <source>Write (%1n) alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/faults.py" />
+      <source>%1 axis %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/faults.py" />
+      <source>Alarm %1: %2: %3</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/faults.py" />
+      <source>channel %1 block %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 are the most; split it.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 has no value in its brackets</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 is no code</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 is no word</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 is nothing that %2= takes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 is out of range</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 lacks its =</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 lacks its brackets</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 lies between %2 and %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1 stands behind %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1%2 is no number</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>%1= has no value</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>A call stands alone.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>A subprogram's name stands alone in its block.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Codes are whole numbers.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>It takes %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>P%1 is no number of passes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>R parameters are R0 to R%1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write %1 with a number, or %2=…</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write %1=%2(…).</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write %1=…</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write P1 to P%1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write a number or an R parameter.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>Write it at the start.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>a number or an R parameter</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>in line %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>more stands behind %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>syntax error: %1.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>the block has %1 characters</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>the block number does not stand first</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>the bracket of %1 is not closed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>this control does not execute it</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/lexer.py" />
+      <source>this control has no such word</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/spans.py" />
+      <source>in line</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>
+    AMIRROR AROT AROTS ASCALE ASPOS BRISK CALL CASE CFC CFIN CFTCP CIP CT CYCLE DEF DEFAULT DEFINE DIAM90
+    DIAMCYCOF ELSE ENDFOR ENDIF ENDLOOP ENDPROC ENDWHILE EXTERN FFWOF FFWON FOR FRC FRCM G5 GOTO GOTOB GOTOC
+    GOTOF GOTOS IF INVCCW INVCW LOOP MCALL MIRROR MSG OEMIPO OFFN POLF POS POSA PROC REPEAT REPEATB REPOS
+    RET RNDM ROT ROTS SAVE SBLOF SBLON SCALE SETAL SETMS SOFT SPCOF SPCON SPOS STOPRE SUPA TRACYL TRAFOOF
+    TRANSMIT TURN UNTIL VELOLIM WAITM WAITP WAITS WHILE WORKPIECE
+</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>H functions are not part of this control's SINUMERIK subset</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>L is a subprogram only as L with a whole number</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>P stands only behind the name of a subprogram</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>an R parameter stands behind = or is set with =, such as R1=10</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>an arc in G18 has I and K</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>incremental words are written with IC( ), such as X=IC(1)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>incremental words are written with IC( ), such as Z=IC(1)</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>this lathe has no axis A</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>this lathe has no axis B</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>this lathe has no axis Y</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>tool offsets are not part of this control's SINUMERIK subset; use G54 to G59</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/vocabulary.py" />
+      <source>tools are not part of this control's SINUMERIK subset; put the offset into G54 to G59</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>%1 cannot be read: %2.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>%1 holds zero bytes: it is no program text.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>%1 is empty.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>%1 is over 64 MB.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>%1 is stored as UTF-16.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Choose a file that holds a program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Choose a program file with line ends.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Choose a text file.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Line %1 of %2 has %3 characters; %4 are the most.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Look at the name and the disk.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Save it as UTF-8 or plain text.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>Split the program.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/language/source.py" />
+      <source>reading failed</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/motion/limits.py" />
+      <source>%1 of axis %2</source>
+      <translation>%1 del eje %2</translation>
+    </message>
+    <message>
+      <location filename="core/motion/limits.py" />
+      <source>Motion limit %1 is %2; give a positive number in the machine file.</source>
+      <translation>El límite de movimiento %1 es %2; dé un número positivo en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/limits.py" />
+      <source>The step of the slides is %1 mm; give a positive number, or 0.</source>
+      <translation>El paso de los carros es %1 mm; dé un número positivo, o 0.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/mapped.py" />
+      <source>Block %1: the slide needs %2 degrees of C; it turns %3.</source>
+      <translation>Bloque %1: el carro necesita %2 grados de C; gira %3.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/path.py" />
+      <source>Block %1 comes after the end of the path; begin another path.</source>
+      <translation>El bloque %1 viene después del final de la trayectoria; empiece otra.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/path.py" />
+      <source>Block %1 is not on the planned path.</source>
+      <translation>El bloque %1 no está en la trayectoria planeada.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/path.py" />
+      <source>Block %1 starts %2 mm from the end of the block before it; plan it from where the machine stands.</source>
+      <translation>El bloque %1 empieza a %2 mm del final del anterior; planéelo desde donde está la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/path.py" />
+      <source>There is no block to plan a path of; add the blocks first.</source>
+      <translation>No hay bloque de que planear una trayectoria; agregue primero los bloques.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/pieces.py" />
+      <source>Block %1: start and end of the arc lie %2 and %3 mm from its centre; correct the centre or the end point.</source>
+      <translation>Bloque %1: el principio y el final del arco están a %2 y %3 mm de su centro; corrija el centro o el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>A speed of %1 mm/s at the end of the path cannot come to rest; plan before it.</source>
+      <translation>Una velocidad de %1 mm/s al final de la trayectoria no puede parar; planee antes.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>A speed of %1 mm/s cannot come to rest within the %2 mm that are left; plan from a state of this path.</source>
+      <translation>Una velocidad de %1 mm/s no puede parar en los %2 mm que quedan; planee desde un estado de esta trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>A speed of %1 mm/s is too high for what follows, which allows %2 mm/s; plan from a state of this path.</source>
+      <translation>Una velocidad de %1 mm/s es demasiada para lo que sigue, que permite %2 mm/s; planee desde un estado de esta trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>Distance %1 is not on the path from %2 to %3 mm.</source>
+      <translation>La distancia %1 no está en la trayectoria de %2 a %3 mm.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>The %1 override is %2; it must lie between 0 and %3.</source>
+      <translation>La perilla %1 está en %2; debe estar entre 0 y %3.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/plan.py" />
+      <source>The present speed is %1; it must be zero or above.</source>
+      <translation>La velocidad actual es %1; debe ser cero o más.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/rates.py" />
+      <source>Block %1: %2.</source>
+      <translation>Bloque %1: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/rates.py" />
+      <source>a thread does not advance along Z</source>
+      <translation>una rosca no avanza a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/motion/rates.py" />
+      <source>feed per revolution with the spindle stopped; start it first</source>
+      <translation>avance por vuelta con el husillo parado; arránquelo primero</translation>
+    </message>
+    <message>
+      <location filename="core/motion/rates.py" />
+      <source>the feed is not above zero; program an F</source>
+      <translation>el avance no es mayor que cero; programe una F</translation>
+    </message>
+    <message>
+      <location filename="core/motion/rates.py" />
+      <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
+      <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
+    </message>
+    <message>
+      <location filename="core/motion/timeline.py" />
+      <source>A planning window of %1 blocks holds nothing; give at least 1.</source>
+      <translation>Una ventana de planeo de %1 bloques no contiene nada; dé al menos 1.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/timeline.py" />
+      <source>A sampling interval of %1 s gives no samples; give a time above zero.</source>
+      <translation>Un intervalo de muestreo de %1 s no da muestras; dé un tiempo mayor que cero.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/words.py" />
+      <source>Block %1 tells of all axes, another behind it does not.</source>
+      <translation>El bloque %1 habla de todos los ejes, otro después de él no.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/words.py" />
+      <source>Block %1: %2 is not a number; correct the block.</source>
+      <translation>Bloque %1: %2 no es un número; corrija el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/words.py" />
+      <source>Block %1: a %2 block has no time law of its own.</source>
+      <translation>Bloque %1: un bloque %2 no tiene ley de tiempo propia.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/words.py" />
+      <source>Block %1: css is %2 mm/s; program a surface speed with S.</source>
+      <translation>Bloque %1: css es %2 mm/s; programe una velocidad superficial con S.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/interlock.py" />
+      <source>C moves while the spindle turns, and on this machine the spindle itself is C</source>
+      <translation>C se mueve mientras gira el husillo, y en esta máquina el husillo mismo es C</translation>
+    </message>
+    <message>
+      <location filename="core/proving/interlock.py" />
+      <source>stop it with M5 first; a machine whose C has its own drive says so by axis.C.own_drive</source>
+      <translation>párelo primero con M5; una máquina cuyo C tiene servo propio lo dice con axis.C.own_drive</translation>
+    </message>
+    <message>
+      <location filename="core/proving/timeline.py" />
+      <source>change the move that the message names</source>
+      <translation>cambie el movimiento que nombra el mensaje</translation>
+    </message>
+    <message>
+      <location filename="core/proving/travel.py" />
+      <source> (X as a radius)</source>
+      <translation> (X como radio)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/travel.py" />
+      <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
+      <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
+    </message>
+    <message>
+      <location filename="core/proving/travel.py" />
+      <source>check the %1 word and the shifts in force</source>
+      <translation>revise la palabra %1 y los desplazamientos vigentes</translation>
+    </message>
+    <message>
+      <location filename="core/proving/travel.py" />
+      <source>check the %1 word, the offset of T%2 and any G10 or G92</source>
+      <translation>revise la palabra %1, la compensación de T%2 y cualquier G10 o G92</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1 cannot be restored: %2; nothing was changed. Take another backup</source>
+      <translation>%1 no se puede restaurar: %2; no se cambió nada. Use otro respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1 cannot be written (%2); check the folder, its space and rights</source>
+      <translation>no se puede escribir %1 (%2); revise la carpeta, su espacio y sus permisos</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1 is being read by another program; close that one, then restore again</source>
+      <translation>otro programa está leyendo %1; ciérrelo y restaure de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1 is the store itself; name a backup</source>
+      <translation>%1 es el almacén mismo; dé un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1 is the store itself; name another file for the backup</source>
+      <translation>%1 es el almacén mismo; dé otro archivo para el respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>%1: %2; a backup of it would be no use. Restore an older backup</source>
+      <translation>%1: %2; un respaldo así no serviría. Restaure un respaldo anterior</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>there is no store in %1 yet, so there is nothing to back up</source>
+      <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
+    </message>
+    <message>
+      <location filename="core/store/checking.py" />
+      <source>%1 is not what was saved</source>
+      <translation>%1 no es lo que se guardó</translation>
+    </message>
+    <message>
+      <location filename="core/store/checking.py" />
+      <source>a row of %1 points to a row of %2 that is not there</source>
+      <translation>un renglón de %1 apunta a un renglón de %2 que no está</translation>
+    </message>
+    <message>
+      <location filename="core/store/checking.py" />
+      <source>the file is damaged: %1</source>
+      <translation>el archivo está dañado: %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/export.py" />
+      <source># Offsets in inches, X a radius.</source>
+      <translation># Compensaciones en pulgadas, X es radio.</translation>
+    </message>
+    <message>
+      <location filename="core/store/export.py" />
+      <source>%1 is no exported folder (%2); name one that 'store export' wrote</source>
+      <translation>%1 no es una carpeta exportada (%2); dé una escrita por 'store export'</translation>
+    </message>
+    <message>
+      <location filename="core/store/export.py" />
+      <source>%1 is not empty; name a new folder for the export</source>
+      <translation>%1 no está vacía; dé una carpeta nueva para la exportación</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>%1…%2 in</source>
+      <translation>%1…%2 pulg</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>nose radius</source>
+      <translation>radio de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>tip quadrant</source>
+      <translation>cuadrante de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>up to %1 characters in one line</source>
+      <translation>hasta %1 caracteres en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>whole number</source>
+      <translation>número entero</translation>
+    </message>
+    <message>
+      <location filename="core/store/fields.py" />
+      <source>yes or no</source>
+      <translation>sí o no</translation>
+    </message>
+    <message>
+      <location filename="core/store/lock.py" />
+      <source> (process %1)</source>
+      <translation> (proceso %1)</translation>
+    </message>
+    <message>
+      <location filename="core/store/lock.py" />
+      <source>%1 cannot be written (%2); check its rights, or set TURNDESK_HOME</source>
+      <translation>no se puede escribir %1 (%2); revise sus permisos, o ponga TURNDESK_HOME</translation>
+    </message>
+    <message>
+      <location filename="core/store/lock.py" />
+      <source>the store in %1 is in use by another TurnDesk%2; close that one, or enter it there</source>
+      <translation>otro TurnDesk%2 usa el almacén en %1; ciérrelo, o hágalo allá</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets.py" />
+      <source>%1 in</source>
+      <translation>%1 pulg</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets.py" />
+      <source>%1 is out of range; enter %2</source>
+      <translation>%1 está fuera de alcance; escriba %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets.py" />
+      <source>%1%2 does not exist; offsets are %31…32</source>
+      <translation>%1%2 no existe; las compensaciones son %31…32</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets.py" />
+      <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
+      <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets.py" />
+      <source>there is no offset change to undo</source>
+      <translation>no hay cambio de compensación que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/opening.py" />
+      <source>%1 has gone but its log %2 is still there; put the file back, or move the log away</source>
+      <translation>%1 ya no está pero su bitácora %2 sigue ahí; regrese el archivo, o mueva la bitácora</translation>
+    </message>
+    <message>
+      <location filename="core/store/opening.py" />
+      <source>%1 is from an older TurnDesk; start turndesk once to bring it up to date</source>
+      <translation>%1 es de un TurnDesk anterior; arranque turndesk una vez para actualizarlo</translation>
+    </message>
+    <message>
+      <location filename="core/store/opening.py" />
+      <source>the folder %1 cannot be made (%2); set TURNDESK_HOME to a folder of yours</source>
+      <translation>no se puede crear la carpeta %1 (%2); ponga TURNDESK_HOME en una carpeta suya</translation>
+    </message>
+    <message>
+      <location filename="core/store/programs.py" />
+      <source> version %1</source>
+      <translation> versión %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/programs.py" />
+      <source>%1 cannot name a program; take letters, digits, dot, dash and blank</source>
+      <translation>%1 no puede nombrar un programa; use letras, números, punto, guion y espacio</translation>
+    </message>
+    <message>
+      <location filename="core/store/programs.py" />
+      <source>%1 version %2</source>
+      <translation>%1 versión %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/programs.py" />
+      <source>%1 version %2 is not what was saved; load another version or a backup</source>
+      <translation>%1 versión %2 no es lo que se guardó; cargue otra versión o un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/programs.py" />
+      <source>the store has no program %1%2; see the list of programs and versions</source>
+      <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
+    </message>
+    <message>
+      <location filename="core/store/reading.py" />
+      <source>%1 is closed; nothing can be read from it any more</source>
+      <translation>%1 está cerrado; ya no se puede leer nada de él</translation>
+    </message>
+    <message>
+      <location filename="core/store/records.py" />
+      <source>the setting %1 cannot be stored: %2</source>
+      <translation>el ajuste %1 no se puede guardar: %2</translation>
+    </message>
+    <message>
+      <location filename="core/store/store.py" />
+      <source>%1 is open for reading only; nothing can be stored</source>
+      <translation>%1 está abierto sólo para lectura; no se puede guardar nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/writer.py" />
+      <source>nothing was stored (%1); check the disk's space and rights, then enter it again</source>
+      <translation>no se guardó nada (%1); revise el espacio y los permisos del disco, y escríbalo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/writer.py" />
+      <source>the store is closed; nothing can be written any more</source>
+      <translation>el almacén está cerrado; ya no se puede escribir nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/zero.py" />
+      <source>G%1 %2 %3 is out of range; enter -%4…%5 %6</source>
+      <translation>G%1 %2 %3 está fuera de alcance; escriba -%4…%5 %6</translation>
+    </message>
+    <message>
+      <location filename="core/store/zero.py" />
+      <source>G%1 does not exist; settable offsets are G54…G59</source>
+      <translation>G%1 no existe; los ceros ajustables son G54…G59</translation>
+    </message>
+    <message>
+      <location filename="core/store/zero.py" />
+      <source>there is no change of G54…G59 to undo</source>
+      <translation>no hay cambio de G54…G59 que deshacer</translation>
+    </message>
+  </context>
+</TS>

@@ -1,0 +1,67 @@
+"""Sentences, sentences with values, values that are sentences; and texts that are nobody's."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.desk.catalogue import Catalogue
+from app.desk.words import speak, tr
+
+KNOWN = {
+    "READY": "LISTO",
+    "following error": "error de seguimiento",
+    "REFUSED: %1": "RECHAZADO: %1",
+    "%1 is %2 off": "%1 está a %2",
+    "{made} OF {target} PARTS": "DE {target} PIEZAS, {made}",
+    "the entry is longer than %1 characters": "la entrada pasa de %1 caracteres",
+    "LINE %1: ": "LÍNEA %1: ",
+    "WILL NOT RUN: %1%2": "NO CORRERÁ: %1%2",
+}
+
+
+@pytest.fixture
+def spanish() -> Catalogue:
+    return Catalogue(lambda text: KNOWN.get(text, ""), [text for text in KNOWN if "%" in text or "{" in text])
+
+
+@pytest.mark.parametrize(
+    ("english", "told"),
+    [
+        ("READY", "LISTO"),
+        ("FOLLOWING ERROR", "ERROR DE SEGUIMIENTO"),
+        ("REFUSED: Z is 2.1 off", "RECHAZADO: Z está a 2.1"),
+        ("3 OF 9 PARTS", "DE 9 PIEZAS, 3"),
+        ("REFUSED: the entry is longer than 80 characters", "RECHAZADO: la entrada pasa de 80 caracteres"),
+        ("READY  ·  X  ·  READY", "LISTO  ·  X  ·  LISTO"),
+        ("−0.12345", "−0.12345"),
+        ("bushing.nc", "bushing.nc"),
+        ("", ""),
+        ("LISTO", "LISTO"),
+        ("nobody knows this sentence", "nobody knows this sentence"),
+    ],
+)
+def test_what_is_known_is_told(spanish: Catalogue, english: str, told: str) -> None:
+    assert spanish.translate(english) == told
+
+
+def test_the_more_exact_sentence_wins() -> None:
+    known = {"%1 FIRST": "PRIMERO %1", "PRESS %1 FIRST": "OPRIMA PRIMERO %1"}
+    catalogue = Catalogue(lambda text: known.get(text, ""), known)
+    assert catalogue.translate("PRESS R FIRST") == "OPRIMA PRIMERO R"
+    assert catalogue.translate("STOP FIRST") == "PRIMERO STOP"
+
+
+def test_signs_of_patterns_are_only_signs() -> None:
+    known = {"(%1) [word+ *%2": "(%2) [otra+ *%1"}
+    catalogue = Catalogue(lambda text: known.get(text, ""), known)
+    assert catalogue.translate("(a) [word+ *b") == "(b) [otra+ *a"
+
+
+def test_tr_is_english_until_somebody_translates() -> None:
+    assert tr("READY") == "READY"
+    speak(lambda text: {"READY": "LISTO"}.get(text, ""))
+    try:
+        assert tr("READY") == "LISTO"
+        assert tr("ALARM") == "ALARM"
+    finally:
+        speak(None)

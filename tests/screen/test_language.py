@@ -1,0 +1,118 @@
+"""Spanish on the screen: at once, everywhere, and never in what is not ours."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import QTranslator
+from PySide6.QtGui import QRawFont
+
+from app.desk.words import speak
+from app.screen import look
+from app.screen.language import CONTEXT, catalogue, speak_in
+from core.executor.snapshot import Alarm
+from resources.translations.collect import HERE, HOLE
+from resources.translations.collect import catalogue as written
+from tests.screen.hands import Hands, Key
+
+KEY_LABEL = 8  # characters
+
+
+@pytest.fixture
+def spanish(hands: Hands) -> Iterator[Hands]:
+    hands.desk.settings.choose("language", "es")
+    hands.window.refresh()
+    yield hands
+    speak(None)
+
+
+def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Every line that a picture of the window is made of."""
+    texts: list[str] = []
+    real = look.QPainter.drawText
+
+    def spy(painter: look.QPainter, *args: object) -> object:
+        texts.extend(arg for arg in args if isinstance(arg, str))
+        return real(painter, *args)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(look.QPainter, "drawText", spy)
+    hands.window.refresh()
+    hands.window.grab()
+    monkeypatch.undo()
+    return texts
+
+
+def test_the_screen_turns_spanish_at_once_and_back(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "MENU" in drawn(hands, monkeypatch)
+    hands.desk.settings.choose("language", "es")
+    texts = drawn(hands, monkeypatch)
+    assert {"MENÚ", "LISTO", "HUSILLO", "RETENCIÓN", "DE AVANCE"} <= set(texts)
+    hands.desk.settings.choose("language", "en")
+    assert "MENU" in drawn(hands, monkeypatch)
+
+
+def test_program_text_and_comments_are_left_alone(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+    spanish.machine.now = replace(spanish.machine.now, comment="READY", program="SPINDLE.nc")
+    texts = drawn(spanish, monkeypatch)
+    assert "READY" in texts
+    assert "LISTO" in texts
+    assert "SPINDLE.nc" in texts
+
+
+def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+    spanish.machine.fault(
+        Alarm(
+            102, "following", "FOLLOWING ERROR", "Z is 2.1 off its setpoint", "free the slide, Reset", line=4
+        )
+    )
+    texts = " / ".join(drawn(spanish, monkeypatch))
+    assert "ALARMA 102" in texts
+    assert "ERROR DE SEGUIMIENTO" in texts
+    assert "Z está a 2.1 de su consigna" in texts
+    assert "libere el carro, Reset" in texts
+
+
+def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
+    spanish.desk.say("REFUSED: spindle limit 9000 is not between 0 and 3500 rpm")
+    told = catalogue("es").translate(spanish.desk.notice)
+    assert told == "RECHAZADO: el tope del husillo 9000 no está entre 0 y 3500 rpm"
+
+
+def test_no_letter_is_missing_in_the_font() -> None:
+    font = look.QFont(look.FAMILY)
+    missing = {sign for text in written("es").values() for sign in text if not _has(font, sign)}
+    assert missing <= {"\n"}
+
+
+def _has(font: look.QFont, sign: str) -> bool:
+    return QRawFont.fromFont(font).supportsCharacter(ord(sign))
+
+
+def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
+    translator = QTranslator()
+    assert translator.load(str(HERE / "turndesk_es.qm"))
+    for text, told in written("es").items():
+        assert (translator.translate(CONTEXT, text) or "") == told
+
+
+@pytest.mark.parametrize("text", [text for text, told in written("es").items() if told and HOLE.search(text)])
+def test_no_value_is_lost(text: str) -> None:
+    assert sorted(HOLE.findall(written("es")[text])) == sorted(HOLE.findall(text))
+
+
+def test_an_unknown_language_has_no_catalogue() -> None:
+    with pytest.raises(FileNotFoundError, match="turndesk_xx"):
+        speak_in("xx")
+
+
+def test_key_labels_fit(spanish: Hands) -> None:
+    for key in (Key.Key_F1, Key.Key_F8, Key.Key_F9, Key.Key_F10, Key.Key_F3):
+        spanish.key(key)
+        for label in spanish.frame.keys.labels:
+            told = catalogue("es").translate(label)
+            assert len(told) <= KEY_LABEL, f"{label}: {told}"
+        spanish.key(Key.Key_F1)
+    assert re.fullmatch(r"MENÚ", catalogue("es").translate("MENU"))
