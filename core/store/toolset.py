@@ -32,12 +32,14 @@ def touch_off(
 ) -> tuple[Change, ...]:
     """Sets what was touched; the wear of that axis is in the new geometry and begins again at nought.
 
-    The master takes all others along, as one step of the history. A tool that was never set gets 0 on an
-    axis that was not touched. Raises StoreError outside the ranges, then nothing has changed.
+    The master takes all others along, as one step of the history. Raises StoreError outside the ranges, and
+    for half of a tool that was never set; then nothing has changed.
     """
     offsets.check_number(Kind.TOOL, number)
     rows = offsets.tools(connection)
     old = rows.get(number)
+    if old is None and (touch.x is None or touch.z is None):
+        raise StoreError(f"T{number} was never set; touch both X and Z")
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}

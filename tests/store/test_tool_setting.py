@@ -105,6 +105,9 @@ def test_a_touch_sets_geometry_and_ends_the_wear_of_that_axis(store: Store) -> N
 
 
 def test_a_tool_touched_for_the_first_time_is_set(store: Store) -> None:
+    with pytest.raises(StoreError, match="touch both X and Z"):
+        store.touch_off(7, Touch(x=3.0), "half").result()
+    assert store.tools() == {}
     store.touch_off(7, Touch(x=3.0, z=-50.0), "first").result()
     assert store.tools() == {7: ToolRow(3.0, -50.0)}
 

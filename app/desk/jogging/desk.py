@@ -9,7 +9,8 @@ from app.desk.desk import Desk
 from app.desk.jogging.hold import JogHold
 from app.desk.jogging.home import HomeAsk
 from app.desk.jogging.speeds import CONTINUOUS, Speeds
-from app.desk.jogging.tool import TOOL, TOUCH_X, TOUCH_Z, ToolSetting
+from app.desk.jogging.tool import TOOL, ToolSetting
+from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.words import tr
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
@@ -193,6 +194,5 @@ class JogDesk:
         self.hold.let_go()
         self._stop_step()
         self.home.asking, self.armed = False, False
-        self.tool.close()
-        self.tool.half = {}
+        self.tool.forget()
         self.desk.clear()

@@ -1,8 +1,4 @@
-"""Tool setting: a tool is chosen, its tip touches, and what was measured is typed.
-
-Touch X: the tip stands where it cut, the diameter it made is measured and typed; then machine X less half of
-that diameter is where the tip stands on part zero. Touch Z: the position of the face that it touches.
-"""
+"""Tool setting: a tool is chosen, touched off, and its other fields are asked one by one."""
 
 from __future__ import annotations
 
@@ -10,41 +6,41 @@ from dataclasses import dataclass, field
 
 from app.desk.arithmetic import LONGEST, EntryError, value_of
 from app.desk.desk import Desk
+from app.desk.jogging import touch
+from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.desk.offsets import allowed
 from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.cells import ToolCells
 from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.offsets.entry import TOOL_FIELDS, shown_value, value_typed, word
-from app.desk.offsets.figures import in_words, not_set, to_mm
+from app.desk.offsets.figures import not_set
 from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import Snapshot
 from core.store.fields import Sort
 from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
-from core.store.toolset import Touch
 
-TOUCH_X, TOUCH_Z, TOOL = "touch x", "touch z", "tool"
-TOUCHES = {TOUCH_X: ("X", "x"), TOUCH_Z: ("Z", "z")}
-MOVED = 0.005  # mm: more than this since the question was opened is no longer where the tip touched
+TOOL = "tool"
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
 @dataclass(slots=True)
 class ToolSetting:
-    """What is asked of the chosen tool, what is typed, and what was touched so far."""
+    """What is asked of the chosen tool, and what is typed."""
 
     desk: Desk
     book: OffsetBook
     ledger: Ledger = field(init=False)
+    cells: ToolCells = field(init=False)
+    touching: TouchOff = field(default_factory=TouchOff)
     number: int = 0
     asked: str = ""  # a touch, "tool", a field of a tool, or nothing
     text: str = ""
-    alone: bool = False  # of the master: the others stay
-    half: dict[str, float] = field(default_factory=dict)  # X or Z of a tool that was never set
-    _at: float = 0.0  # machine position of the touched axis, when the question was opened
     _active: int = -1  # the tool that was loaded at the last look
 
     def __post_init__(self) -> None:
         self.ledger = Ledger(self.desk, self.book, Kind.TOOL)
+        self.cells = ToolCells(self.ledger)
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -52,6 +48,11 @@ class ToolSetting:
     def row(self) -> ToolRow | None:
         """The chosen tool; None when it was never set."""
         return self.book.tools.get(self.number)
+
+    @property
+    def _masters(self) -> bool:
+        """Whether the master is being touched."""
+        return self.asked in TOUCHES and self.row is not None and self.row.master
 
     @property
     def question(self) -> str:
@@ -68,13 +69,14 @@ class ToolSetting:
     @property
     def note(self) -> str:
         """What has to be known before the answer is entered."""
-        if self.asked in TOUCHES and self.row is not None and self.row.master:
-            if self.alone:
-                return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=self.number)
+        if self._masters and self.touching.alone:
+            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=self.number)
+        if self._masters:
             return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=self.number)
-        if self.half:
-            left = "Z" if "x" in self.half else "X"
-            return tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO").format(number=self.number, axis=left)
+        new = self.cells.new
+        if new.number and new.number == self.number:
+            text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
+            return text.format(number=self.number, axis=new.missing.upper())
         return ""
 
     @property
@@ -82,19 +84,14 @@ class ToolSetting:
         """What the answer would make of the tool, or else the last change."""
         if not self.asked or self.asked == TOOL:
             return self.ledger.last_told
-        mode = self.ledger.mode
-        try:
-            if self.asked in TOUCHES:
-                _axis, name = TOUCHES[self.asked]
-                new = shown_value(name, self._touched(), mode)
-                was = shown_value(name, getattr(self.row, name), mode) if self.row else not_set()
-                return f"{word(name)}  {was}  →  {new}"
-            new = shown_value(self.asked, value_typed(self.asked, self.text, mode), mode)
-        except EntryError:
-            new = "…"
-        name = TOUCHES[self.asked][1] if self.asked in TOUCHES else self.asked
+        mode, name = self.ledger.mode, TOUCHES.get(self.asked, self.asked)
         was = shown_value(name, getattr(self.row, name), mode) if self.row else not_set()
-        return f"{word(name)}  {was}  →  {new}"
+        try:
+            touched = self.asked in TOUCHES
+            value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
+            return f"{word(name)}  {was}  →  {shown_value(name, value, mode)}"
+        except EntryError:
+            return f"{word(name)}  {was}  →  …"  # half a sum is no mistake yet
 
     def tip(self, snapshot: Snapshot) -> tuple[float, float] | None:
         """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
@@ -129,7 +126,8 @@ class ToolSetting:
 
     def _choose(self, number: int) -> None:
         if number != self.number:
-            self.number, self.half = number, {}
+            self.number = number
+            self.cells.new.drop()
 
     # --- questions -----------------------------------------------------------------------------------
 
@@ -141,31 +139,30 @@ class ToolSetting:
             self.desk.say(why)
             return
         self.desk.clear()
-        self.asked, self.text, self.alone = what, "", False
+        self.asked, self.text = what, ""
         if what == "remark" and self.row is not None:
             self.text = self.row.remark
         if what in TOUCHES:
-            self._at = snapshot.tip["XZ".index(TOUCHES[what][0])]
+            self.touching.open(what, snapshot)
 
     def _barred(self, what: str, snapshot: Snapshot) -> str:
         why = self.book.locked or allowed.refusal(snapshot, correction=what in allowed.CORRECTIONS)
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
-        if what not in TOUCHES:
-            return "" if self.row is not None else self._never()
-        axis = TOUCHES[what][0]
-        if not snapshot.homed[snapshot.axes.index(axis)]:
-            return tr("{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET").format(axis=axis)
-        if snapshot.state not in {State.IDLE, State.DISABLED}:
-            return tr("TOUCH OFF WITH THE MACHINE AT REST AND READY")
+        if what in TOUCHES:
+            return touch.refusal(what, snapshot)
+        if self.row is None:
+            return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=self.number)
         return ""
-
-    def _never(self) -> str:
-        return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=self.number)
 
     def close(self) -> None:
         """Nothing is asked any more."""
-        self.asked, self.text, self.alone = "", "", False
+        self.asked, self.text = "", ""
+
+    def forget(self) -> None:
+        """Neither is anything half touched."""
+        self.close()
+        self.cells.new.drop()
 
     def takes(self, key: str) -> bool:
         """Whether a character goes to the entry."""
@@ -182,8 +179,8 @@ class ToolSetting:
         elif len(key) == 1 and self.takes(key):
             if len(self.text) < (REMARK_LONGEST if self.asked == "remark" else LONGEST):
                 self.text += key
-        elif key in {"l", "L"} and self.asked in TOUCHES and self.row is not None and self.row.master:
-            self.alone = not self.alone
+        elif key in {"l", "L"} and self._masters:
+            self.touching.alone = not self.touching.alone
         else:
             return False
         return True
@@ -204,7 +201,7 @@ class ToolSetting:
         why = self._barred(self.asked, snapshot)
         if why:
             return why
-        return self._touch(snapshot) if self.asked in TOUCHES else self._field()
+        return self._touched(snapshot) if self.asked in TOUCHES else self._field()
 
     def _tool(self) -> str:
         value = value_of(self.text)
@@ -214,77 +211,27 @@ class ToolSetting:
         self.close()
         return ""
 
-    def _touched(self) -> float:
-        """Where the tip stands on part zero, by what is typed; machine mm, X a radius. Raises EntryError."""
-        share = 0.5 if self.asked == TOUCH_X else 1.0
-        return self._at - to_mm(value_of(self.text) * share, self.ledger.mode.metric)
-
-    def _touch(self, snapshot: Snapshot) -> str:
-        axis, name = TOUCHES[self.asked]
-        place, new = self._touched(), 0.0
-        if abs(snapshot.tip["XZ".index(axis)] - self._at) > MOVED:
+    def _touched(self, snapshot: Snapshot) -> str:
+        if self.touching.moved(snapshot):
             return tr("THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN")
-        field_ = TOOL_FIELDS[name]
-        new = place
-        if not field_.takes(new):
-            raise EntryError(tr("{axis} would be out of range").format(axis=axis))
-        if self.row is None:
-            return self._first(name, new)
-        why = self.book.touch_off(self.number, Touch(**{name: new}, alone=self.alone), self._reason())
+        why = self.touching.save(self.number, self.text, self.ledger, self.cells.new)
         if not why:
             self.close()
-        return why
-
-    def _first(self, name: str, new: float) -> str:
-        """X and Z of a tool that was never set are saved together: half an offset would run into the part."""
-        values = {**self.half, name: new}
-        if len(values) == 2:
-            why = self.book.touch_off(
-                self.number, Touch(values["x"], values["z"]), tr("touched off, new tool")
-            )
-            if not why:
-                self.half = {}
-                self.close()
-            return why
-        self.half = values
-        self.close()
-        return self.note
-
-    def _reason(self) -> str:
-        """What the history says of a touch."""
-        unit = "MM " if self.ledger.mode.metric else ""
-        what = tr("touched Ø") if self.asked == TOUCH_X else tr("touched Z")
-        return f"{unit}{what} {self.text.strip()}{tr(', alone') if self.alone else ''}"
+        return why or self.note
 
     def _field(self) -> str:
-        name, mode, row = self.asked, self.ledger.mode, self.row
-        following = _AFTER.get(name, "")
-        if row is None:
-            return self._never()
-        keeps = not self.text.strip() and TOOL_FIELDS[name].sort is not Sort.TEXT
-        if not keeps:
-            value = value_typed(name, self.text, mode)
-            if value != getattr(row, name):
-                unit = "MM " if mode.metric else ""
-                why = self.book.change(
-                    Kind.TOOL, self.number, {name: value}, f"{unit}{word(name)} {self.text.strip()}"
-                )
-                if why:
-                    return why
-        self.close()
-        if following:
-            self.asked = following
-        return ""
+        name, text = self.asked, self.text
+        keeps = not text.strip() and TOOL_FIELDS[name].sort is not Sort.TEXT
+        why = "" if keeps else self.cells.save(self.number, name, text)
+        if not why:
+            self.close()
+            self.asked = _AFTER.get(name, "")
+        return why
 
     def master(self) -> None:
         """The chosen tool becomes the master; being it already, none is."""
         why = self._barred("master", self.desk.snapshot())
-        if why or self.row is None:
-            self.desk.say(why)
-        elif self.row.master:
-            self.ledger.answer(self.book.choose_master(0, tr("no master")))
-        else:
-            self.ledger.answer(self.book.choose_master(self.number, tr("chosen as master")))
+        self.ledger.answer(why or self.cells.master(self.number))
 
     def undo(self) -> None:
         """Take the last change of the tools back."""
@@ -293,13 +240,8 @@ class ToolSetting:
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""
-        was = bool(self.asked or self.half)
-        if was:
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number) if self.number else "")
-        self.close()
-        self.half = {}
+        was = bool(self.asked or self.cells.new.number)
+        if was and self.number:
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        self.forget()
         return was
-
-    def described(self) -> str:
-        """The chosen tool in one line."""
-        return in_words(self.row, self.ledger.mode)

@@ -8,14 +8,15 @@ from app.desk.arithmetic import LONGEST, EntryError
 from app.desk.desk import Desk
 from app.desk.offsets import allowed
 from app.desk.offsets.book import OffsetBook
+from app.desk.offsets.cells import ToolCells
 from app.desk.offsets.dialogue import CHARACTERS
-from app.desk.offsets.entry import marked, shown_value, value_added, value_typed, word
+from app.desk.offsets.entry import marked, shown_value, value_typed, word
 from app.desk.offsets.figures import not_set
 from app.desk.offsets.ledger import Ledger
 from app.desk.offsets.shown import Rows
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
-from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow, Value
+from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
 COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
 PAGE = 16  # rows that Page up and Page down go
@@ -29,16 +30,16 @@ class ToolGrid:
     desk: Desk
     book: OffsetBook
     ledger: Ledger = field(init=False)
+    cells: ToolCells = field(init=False)
     number: int = 1
     column: int = 0
     text: str = ""
     writing: bool = False  # a remark is open
     relative: bool = False  # X and Z are shown from the master
-    half: dict[str, Value] = field(default_factory=dict)  # of a tool that was never set: X or Z alone
-    _half_of: int = 0
 
     def __post_init__(self) -> None:
         self.ledger = Ledger(self.desk, self.book, Kind.TOOL)
+        self.cells = ToolCells(self.ledger)
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -56,15 +57,14 @@ class ToolGrid:
         """A cell of the table; X and Z of another tool from the master when that is asked for."""
         row = self.book.tools.get(number)
         if row is None:
-            return self._half(name) if number == self._half_of else ""
+            new = self.cells.new
+            known = number == new.number and name in new.values
+            return shown_value(name, new.values[name], self.ledger.mode) if known else ""
         master = self.book.tools.get(self.book.master)
         if self.relative and master is not None and name in {"x", "z"} and number != self.book.master:
             at = "xz".index(name)
             return shown_value(name, row.offset[at] - master.offset[at], self.ledger.mode)
         return shown_value(name, getattr(row, name), self.ledger.mode)
-
-    def _half(self, name: str) -> str:
-        return shown_value(name, self.half[name], self.ledger.mode) if name in self.half else ""
 
     @property
     def question(self) -> str:
@@ -116,7 +116,7 @@ class ToolGrid:
         """Once a frame: an entry in another unit is given up."""
         before = self.ledger.mode
         self.ledger.look(snapshot)
-        if self.ledger.mode != before and (self.text or self.half):
+        if self.ledger.mode != before and (self.text or self.cells.new.number):
             self._drop()
             self.desk.say(
                 tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
@@ -177,8 +177,9 @@ class ToolGrid:
             return
         self.number = max(OFFSETS[0], min(OFFSETS[-1], number))
         self.column = max(0, min(len(COLUMNS) - 1, column))
-        if self.half and self.number != self._half_of:
-            self.desk.say(tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=self._half_of))
+        new = self.cells.new
+        if new.number and self.number != new.number:
+            self.desk.say(tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=new.number))
             self._drop()
 
     def _enter(self) -> None:
@@ -194,66 +195,26 @@ class ToolGrid:
     def _open(self) -> None:
         why = self.barred(self.desk.snapshot())
         if why or self.tool is None:
-            self.desk.say(why or self._never())
+            self.desk.say(why or self.cells.never(self.number))
             return
         self.writing, self.text = True, self.tool.remark
 
     def _master(self) -> None:
-        """The tool that the others are relative to; entered on the master itself there is none."""
-        why = self.barred(self.desk.snapshot())
-        if why or self.tool is None:
-            self.desk.say(why or self._never())
-        elif self.tool.master:
-            self.ledger.answer(self.book.choose_master(0, tr("no master")))
-        else:
-            self.ledger.answer(self.book.choose_master(self.number, tr("chosen as master")))
-
-    def _never(self) -> str:
-        return tr("T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE").format(
-            number=self.number
-        )
+        self.ledger.answer(self.barred(self.desk.snapshot()) or self.cells.master(self.number))
 
     def _store(self, *, adding: bool) -> None:
+        """Save the cell; of a new tool go on to what is missing."""
         why = self.barred(self.desk.snapshot())
         try:
-            why = why or self._save(adding)
+            why = why or self.cells.save(self.number, self.name, self.text, adding=adding)
         except EntryError as error:
             why = tr("REFUSED: {why}").format(why=error)
         if why:
             self.desk.say(why)
-        else:
-            self.text, self.writing = "", False
-
-    def _save(self, adding: bool) -> str:
-        """Save the cell; the answer is why not. Raises EntryError for a text that is no value."""
-        name, mode, row = self.name, self.ledger.mode, self.tool
-        if row is None:
-            return self._first(value_typed(name, self.text, mode))
-        value = value_added(name, row, self.text, mode) if adding else value_typed(name, self.text, mode)
-        if value == getattr(row, name):
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
-            return ""
-        typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{self.text.strip()}"
-        return self.book.change(Kind.TOOL, self.number, {name: value}, typed)
-
-    def _first(self, value: Value) -> str:
-        """X and Z of a tool that was never set are saved together: half an offset would run into the part."""
-        if self.name not in {"x", "z"}:
-            return self._never()
-        values = {**(self.half if self._half_of == self.number else {}), self.name: value}
-        if len(values) == 2:
-            why = self.book.change(Kind.TOOL, self.number, values, tr("entered by hand"))
-            if not why:
-                self._drop()
-            return why
-        self.half, self._half_of = values, self.number
-        self.column = 1 - COLUMNS.index(self.name)
-        self.desk.say(
-            tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE").format(
-                axis=word(self.name), number=self.number
-            )
-        )
-        return ""
+            return
+        self.text, self.writing = "", False
+        if self.cells.new.number:
+            self.column = COLUMNS.index(self.cells.new.missing)
 
     def undo(self) -> None:
         """Take the last change of the tools back."""
@@ -273,7 +234,7 @@ class ToolGrid:
         """Esc closes the history, takes an entry back; False when the page may be left."""
         if self.ledger.looking_back is not None:
             self.ledger.looking_back = None
-        elif self.text or self.writing or self.half:
+        elif self.text or self.writing or self.cells.new.number:
             self._drop()
             self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
         else:
@@ -281,7 +242,8 @@ class ToolGrid:
         return True
 
     def _drop(self) -> None:
-        self.text, self.writing, self.half, self._half_of = "", False, {}, 0
+        self.text, self.writing = "", False
+        self.cells.new.drop()
 
     def leave(self) -> None:
         """The page goes: nothing stays half entered."""

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk import pages
 from app.desk.jogging.desk import JogDesk
-from app.desk.jogging.tool import TOUCH_X, TOUCH_Z
+from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.desk.words import tr

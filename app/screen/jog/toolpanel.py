@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
 from app.desk.jogging.desk import JogDesk
-from app.desk.jogging.tool import TOOL, TOUCH_X, TOUCH_Z
+from app.desk.jogging.tool import TOOL
+from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.offsets.entry import marked, shown_value, word
 from app.desk.offsets.figures import Mode, not_set, signed
 from app.desk.words import tr

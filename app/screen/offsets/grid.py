@@ -50,7 +50,7 @@ class GridTable(Panel):
         shown = (
             model.book.tools,
             (model.number, model.column, self.top, model.relative, model.ledger.mode),
-            dict(model.half),
+            dict(model.cells.new.values),
             tuple(change.number for change in model.ledger.last),
         )
         if shown != self._shown:
@@ -112,7 +112,7 @@ class GridTable(Panel):
                 painter.setPen(look.pen("accent", 0.24))
                 painter.drawRect(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u))
             self.place(cell, partial(self.choose, number, at))
-        if unset and not (here and model.half):
+        if unset and number != model.cells.new.number:
             painter.setPen(look.colour("soft"))
             painter.setFont(look.font(1.7))
             put(painter, QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height()), LEFT, not_set())
