@@ -15,6 +15,7 @@ from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
 from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
+from app.compose.searchto import give_searchto
 from app.compose.simulated import simulated
 from app.compose.special import furnish
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
@@ -114,6 +115,7 @@ def desk_and_executor(
     )
     furnish(desk, machine, journal or NothingKept(), workshop(machine, offsets, zero=zero))
     give_mdi(desk, machine, offsets, journal or NothingKept())
+    give_searchto(desk, machine)
     heard.append(desk)
     return desk, executor
 

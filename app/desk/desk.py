@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from app.desk.files.files import FilesDesk
     from app.desk.mdi.mdi import MdiDesk
     from app.desk.offsets.effect import Effect
+    from app.desk.searchto.search import SearchDesk
     from app.desk.special.special import SpecialDesk
     from core.machine.model import Machine
 
@@ -87,6 +88,7 @@ class Desk:
     special: SpecialDesk | None = None
     files: FilesDesk | None = None
     mdi: MdiDesk | None = None
+    searchto: SearchDesk | None = None
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunRecord = field(default_factory=RunRecord)
@@ -282,10 +284,6 @@ class Desk:
         except StoreError as error:
             self.say(f"NOT KEPT: {error}")
 
-    def later(self, key: str) -> None:
-        """A key whose page is not there yet says so."""
-        self.say(prompts.LATER[key])
-
     # --- station -------------------------------------------------------------------------------------
 
     def start_button(self) -> None:
@@ -315,8 +313,9 @@ class Desk:
         """Why the palms start nothing now; empty when they may."""
         if not self.starts_here:
             return prompts.NOT_HERE
-        if self.mdi is not None and self.mdi.open:
-            return self.mdi.barred()
+        for page in (self.mdi, self.searchto):
+            if page is not None and page.open:
+                return page.barred()
         if self.restoring:
             return prompts.RESTORING
         loaded = self.session.now
@@ -334,7 +333,7 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
-        for part in (self.editor, self.special, self.files, self.mdi, self.effect):
+        for part in (self.editor, self.special, self.files, self.mdi, self.searchto, self.effect):
             if part is not None:
                 part.close()
         self.shut()

@@ -82,7 +82,8 @@ def _spindle(modal: Modal) -> tuple[InForce, ...]:
 def _frame(modal: Modal) -> tuple[InForce, ...]:
     pair = _pair
     return (
-        InForce("tool", tr("TOOL"), f"T{modal.tool}  {pair(modal, modal.tool_x, modal.tool_z)}"),
+        InForce("tool", tr("TOOL"), f"T{modal.tool}"),
+        InForce("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
         InForce("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
         InForce("shift", tr("G10 IN FORCE"), pair(modal, modal.shift_x, modal.shift_z)),
         InForce("pending", tr("G10 AT NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
@@ -95,10 +96,10 @@ def _d(modal: Modal) -> str:
 
 
 def _pair(modal: Modal, x: float, z: float) -> str:
-    """X as a radius, because offsets are kept so."""
+    """X and Z; X as a radius and marked so, because offsets are kept so."""
     if not x and not z:
         return "0"
-    return f"X R{formats.length(x, modal.metric)}  Z {formats.length(z, modal.metric)}"
+    return f"R{formats.length(x, modal.metric)} Z{formats.length(z, modal.metric)}"
 
 
 def _functions(modal: Modal) -> tuple[InForce, ...]:

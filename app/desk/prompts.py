@@ -5,9 +5,6 @@ from __future__ import annotations
 from app.desk.session import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 
-LATER = {
-    "F6": "SEARCHTO COMES WITH A LATER VERSION",
-}
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
 ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SECCMP, SPECIAL, TOOLS, ZERO
+from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SEARCHTO, SECCMP, SPECIAL, TOOLS, ZERO
 from app.screen.menu import MenuPage
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
@@ -60,6 +60,15 @@ def _jog(host: Host, parent: QWidget) -> Page:
     return JogPage(host, host.desk.lathe, parent)
 
 
+def _searchto(host: Host, parent: QWidget) -> Page:
+    from app.screen.searchto.page import SearchPage
+
+    model = host.desk.searchto
+    if model is None:
+        raise RuntimeError("the desk was put together without SEARCHTO")
+    return SearchPage(host, model, parent)
+
+
 MAKERS: Mapping[str, MakePage] = {
     MENU: MenuPage,
     EDITOR: _editor,
@@ -67,6 +76,7 @@ MAKERS: Mapping[str, MakePage] = {
     JOG: _jog,
     PROGRAMS: _programs,
     SPECIAL: _special,
+    SEARCHTO: _searchto,
     SECCMP: SeccmpPage,
     TOOLS: ToolsPage,
     ZERO: ZeroPage,

@@ -118,7 +118,7 @@ class AutomaticPage(Page):
             "F3": self._edit,
             "F4": self.desk.next_readout,
             "F5": self.path.fit,
-            "F6": partial(self.desk.later, "F6"),
+            "F6": partial(self._go, pages.SEARCHTO),
             "F8": partial(self._go, pages.TOOLS),
             "F9": partial(self._go, pages.SECCMP),
             "F10": partial(self._go, pages.SPECIAL),

@@ -30,11 +30,11 @@ class Loading:
             self._prepare(command)
 
     def _load(self, command: LoadJob) -> None:
-        """A restart belonged to the program before; an open MDI stays open."""
+        """A restart belonged to the program before; an open SEARCHTO or MDI stays open."""
         standing = self._conductor.standing
         standing.job, standing.proof, standing.start_refused = command.job, command.proof, ""
         if standing.starts is Starts.RESTART:
-            self._prepare(Prepare())
+            self._prepare(Prepare(Starts.RESTART))
         self._bench.say("load", command.job.source.name)
 
     def _prepare(self, command: Prepare) -> None:

@@ -9,6 +9,10 @@ from core.executor.job import Job
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Standing
 
+_NOTHING = {
+    Starts.LINE: "no line is ready: type one and press Enter",
+    Starts.RESTART: "no restart is ready: search a line and confirm it",
+}
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
 
 
@@ -22,8 +26,8 @@ def refusal(bench: Bench, state: State, standing: Standing) -> str:
     job, proof = job_of(standing), standing.proof
     if standing.starts is not Starts.PROGRAM:
         proof = standing.prepared_proof
-    if standing.starts is Starts.LINE and job is None:
-        return gate.hindrance(bench, state) or "no line is ready: type one and press Enter"
+    if job is None and standing.starts in _NOTHING:
+        return gate.hindrance(bench, state) or _NOTHING[standing.starts]
     return gate.refusal(bench, state, job, proof) or (_moved(bench, job) or _changed(bench, standing, job))
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import SILENT, Desk
-from app.desk.prompts import CONTROL_SILENT, GIVE_UP, LATER, ONE_PALM
+from app.desk.prompts import CONTROL_SILENT, GIVE_UP, ONE_PALM
 from app.desk.session import Phase, Session, Workshop
 from app.desk.shelf import Shelf
 from app.desk.view import Tone
@@ -186,18 +186,12 @@ def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> 
 
 
 def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine) -> None:
-    desk.later("F6")
+    desk.say("AN ANSWER")
     snapshot, _view, loaded = desk.look()
-    assert desk.prompt(snapshot, loaded) == LATER["F6"]
+    assert desk.prompt(snapshot, loaded) == "AN ANSWER"
     at(machine, State.DISABLED)
     snapshot, _view, loaded = desk.look()
     assert desk.prompt(snapshot, loaded) == "DRIVES ARE OFF: PRESS D FOR DRIVES ON"
-
-
-@pytest.mark.parametrize("key", ["F6"])
-def test_pages_to_come_are_announced(desk: Desk, key: str) -> None:
-    desk.later(key)
-    assert desk.notice.endswith("WITH A LATER VERSION")
 
 
 def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:

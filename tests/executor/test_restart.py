@@ -183,7 +183,8 @@ def test_loading_a_program_takes_a_prepared_restart_back() -> None:
     prepare(rig, restart_job(rig, 8))
     assert rig.shot.starts is Starts.RESTART
     rig.load(PART, TOOLS)
-    assert (rig.shot.starts, rig.shot.prepared) == (Starts.PROGRAM, "")
+    assert (rig.shot.starts, rig.shot.prepared) == (Starts.RESTART, "")
+    assert refused(rig) == "no restart is ready: search a line and confirm it"
 
 
 def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:

@@ -224,14 +224,6 @@ def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Ha
     assert hands.page.path.view == before
 
 
-@pytest.mark.parametrize("key", [Key.Key_F6])
-def test_pages_to_come_say_so(hands: Hands, key: Key) -> None:
-    hands.key(key)
-    assert hands.prompt().endswith("WITH A LATER VERSION")
-    hands.key(Key.Key_Escape)
-    assert hands.prompt() == "PRESS F2 TO CHOOSE A PROGRAM"
-
-
 def test_block_delete_proves_the_program_again(hands: Hands) -> None:
     hands.load("grooves")
     whole = hands.desk.session.now.picture

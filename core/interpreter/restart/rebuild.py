@@ -65,7 +65,7 @@ class Rebuild:
 
     def __init__(self, source: Source, setup: Setup, watch: Watch) -> None:
         self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
-        self._watch = watch
+        self.watch = watch
         self._program: Program = read_program(source, setup.strict)
         self.lines = Lines(self._program)
         self._asks = _asks(self._program, self.lines)
@@ -124,7 +124,7 @@ class Rebuild:
         for block in self._walk.before(line):
             self._count += 1
             if self._count % _WATCHED == 0:
-                self._watch(self._count)
+                self.watch(self._count)
             if block.action is None:
                 self._see(block)
             elif isinstance(block.action, ProgramEnd):

@@ -1,0 +1,1 @@
+"""SEARCHTO: a program goes on from any good line."""

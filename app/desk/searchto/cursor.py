@@ -1,0 +1,61 @@
+"""Choosing a line of a program: by its number, by a text in it, or by going there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+LONGEST = 60  # characters of what is typed
+_QUOTE = '"'
+
+
+@dataclass(slots=True)
+class Cursor:
+    """A line of the program, counted from 1, and what is being typed to find another."""
+
+    lines: Sequence[str] = ()
+    line: int = 1
+    text: str = ""
+
+    @property
+    def number(self) -> int | None:
+        """What was typed as the number of a line; None when it is a text to look for."""
+        return int(self.text) if self.text.isdecimal() else None
+
+    @property
+    def wanted(self) -> str:
+        """The text to look for; a quotation mark in front makes figures a text."""
+        return self.text.removeprefix(_QUOTE).upper()
+
+    def show(self, lines: Sequence[str], line: int) -> None:
+        """Another program, or another line to begin with."""
+        self.lines, self.text = lines, ""
+        self.go(line)
+
+    def go(self, line: int) -> None:
+        """To this line, or the nearest there is."""
+        self.line = max(1, min(line, len(self.lines)))
+
+    def type(self, key: str) -> bool:
+        """A character or an editing key; False when it means nothing here."""
+        if key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        elif len(key) == 1 and key.isprintable():
+            self.text = (self.text + key)[:LONGEST]
+        else:
+            return False
+        return True
+
+    def find(self, way: int) -> bool:
+        """To the next (1) or the previous (-1) line that holds the text, round the end; False: in none."""
+        count, wanted = len(self.lines), self.wanted
+        if not wanted:
+            return False
+        for step in range(1, count + 1):
+            at = (self.line - 1 + way * step) % count
+            if wanted in self.lines[at].upper():
+                self.line = at + 1
+                return True
+        return False

@@ -1,0 +1,262 @@
+"""SEARCHTO without Qt: a line is chosen, its state rebuilt, the restart confirmed, proved and started."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+
+from app.desk.searchto.cursor import Cursor
+from app.desk.searchto.finder import Answer, Finder
+from app.desk.searchto.plan import Plan, plan_of
+from app.desk.searchto.prompting import prompt
+from app.desk.searchto.stage import Stage
+from app.desk.session import Loaded, Phase, Proved, Session
+from app.desk.words import tr
+from core.executor.commands import Command, Prepare
+from core.executor.job import Job, make_job
+from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.states import CYCLE
+from core.interpreter.restart.approach import Choices
+from core.interpreter.restart.rebuild import Found, NotGood
+from core.language.dialect import Dialect
+
+
+@dataclass(slots=True)
+class SearchDesk:
+    """The model behind the SEARCHTO page. ``say`` answers on the prompt line, ``clear`` takes that back."""
+
+    session: Session
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    say: Callable[[str], None]
+    clear: Callable[[], None]
+    choices: Choices = field(default_factory=Choices)
+    cursor: Cursor = field(default_factory=Cursor)
+    stage: Stage = Stage.CHOOSE
+    open: bool = False
+    answer: NotGood | None = None
+    plan: Plan | None = None
+    proved: Proved | None = None
+    started: bool = False  # the restart was started: what is to be seen now is the Automatic page
+    finder: Finder = field(init=False)
+    _job: Job | None = None
+    _of: Job | None = None  # the program's job that was searched
+    _accepted: bool = False
+
+    def __post_init__(self) -> None:
+        self.finder = Finder(self.session.workshop.prove)
+
+    # --- page ----------------------------------------------------------------------------------------
+
+    def opens(self) -> bool:
+        """Whether it may be opened now; says why not."""
+        why = self._why_closed(self.snapshot(), self.session.now)
+        if why:
+            self.say(why)
+        return not why
+
+    def opened(self) -> None:
+        """From now on Cycle Start begins a confirmed restart and nothing else."""
+        loaded, snapshot = self.session.now, self.snapshot()
+        self.open, self.started = True, False
+        lines = loaded.source.lines if loaded.source is not None else ()
+        before = self.cursor.line if self.cursor.lines is lines else 1
+        self.cursor.show(lines, snapshot.interrupted or before)
+        self._forget()
+
+    def leave(self) -> None:
+        """Cycle Start begins programs again."""
+        if self.open:
+            self.open = False
+            self._withdraw()
+            self.post(Prepare(Starts.PROGRAM))
+
+    def close(self) -> None:
+        """End the worker."""
+        self.finder.close()
+
+    def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:
+        if snapshot.state in CYCLE:
+            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO")
+        if loaded.source is None or loaded.job is None:
+            return tr("CHOOSE A PROGRAM FIRST (F2)")
+        if loaded.source.dialect is not Dialect.OMNITURN:
+            return tr("SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE")
+        if loaded.phase is not Phase.READY:
+            return tr("THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT")
+        return ""
+
+    # --- choosing ------------------------------------------------------------------------------------
+
+    def move(self, lines: int) -> None:
+        """The cursor so many lines on."""
+        self.cursor.go(self.cursor.line + lines)
+        self._forget()
+
+    def go(self, line: int) -> None:
+        """To this line, and rebuild its state."""
+        if line:
+            self.cursor.go(line)
+            self.cursor.text = ""
+            self.search()
+
+    def typed(self, key: str) -> bool:
+        """A character or an editing key of the question; False when it means nothing here."""
+        if not self.cursor.type(key):
+            return False
+        self.clear()
+        return True
+
+    def enter(self) -> None:
+        """A number: that line. A text: the next line that holds it. Nothing: the line of the cursor."""
+        number = self.cursor.number
+        if number is not None:
+            self.go(number)
+        elif self.cursor.text:
+            self.find(1)
+        else:
+            self.search()
+
+    def find(self, way: int) -> None:
+        """The next or the previous line that holds the text."""
+        self._forget()
+        self.clear()
+        if not self.cursor.text or self.cursor.number is not None:
+            self.say(tr("TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE"))
+        elif not self.cursor.find(way):
+            self.say(tr("{text} IS IN NO LINE").format(text=self.cursor.wanted))
+
+    def search(self) -> None:
+        """Rebuild the state of the cursor's line."""
+        loaded = self.session.now
+        self._forget()
+        self.clear()
+        job, line = loaded.job, self.cursor.line
+        if job is None:
+            return
+        self.stage, self._of = Stage.SEARCHING, job
+        self.finder.find(job, line)
+
+    def nearest(self, way: int) -> None:
+        """To the good line before or after one that was refused."""
+        if self.answer is not None:
+            self.go(self.answer.before if way < 0 else self.answer.after)
+
+    # --- deciding ------------------------------------------------------------------------------------
+
+    def turn_inside(self) -> None:
+        """Outside of the part, X in last, or inside a bore, Z in last."""
+        self._choose(replace(self.choices, inside=not self.choices.inside))
+
+    def turn_coolant(self) -> None:
+        """Whether coolant starts, where the line had it on."""
+        self._choose(replace(self.choices, coolant=not self.choices.coolant))
+
+    def confirm(self) -> None:
+        """Yes to what will start and to the way: prove it, and make it ready for Cycle Start."""
+        snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
+        if self.stage is not Stage.SHOWN or plan is None or whole is None:
+            self.say(tr("CHOOSE A GOOD LINE FIRST"))
+            return
+        if snapshot.state is not State.IDLE:
+            self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
+            return
+        plan = self.plan = plan_of(plan.found, snapshot, self.choices)
+        if plan.trouble:
+            self.say(plan.trouble)
+            return
+        setup = replace(whole.setup, start=snapshot.demand, begin=plan.begin)
+        self.stage = Stage.PROVING
+        self.finder.check(make_job(whole.source, setup, whole.digest))
+
+    def escape(self) -> bool:
+        """One step back; False when there is none to go."""
+        if self.cursor.text:
+            self.cursor.text = ""
+            return True
+        if self.stage is Stage.CHOOSE:
+            return False
+        self._forget()
+        return True
+
+    def _choose(self, choices: Choices) -> None:
+        self.choices = choices
+        if self.plan is not None:
+            found = self.plan.found
+            self._forget()
+            self._show(found)
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """Take up what the worker has found; a program that is read anew has to be searched anew."""
+        if self._of is not None and loaded.job is not self._of:
+            self._of = None
+            self._forget()
+        if self.stage is Stage.READY:
+            self._see_start(snapshot)
+        future = self.finder.poll()
+        if future is not None:
+            self._take_up(future)
+
+    def prompt(self, snapshot: Snapshot, start: str) -> str:
+        """What can be done now; ``start`` names what starts a cycle here."""
+        trouble = self.plan.trouble if self.plan is not None else ""
+        return "" if snapshot.state in CYCLE else prompt(self.stage, snapshot, trouble, start)
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        if self.stage is Stage.READY or self.snapshot().state in CYCLE:
+            return ""
+        return tr("NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)")
+
+    def settle(self, timeout: float) -> None:
+        """Wait for the worker; for scripts and tests, never for the screen."""
+        self.finder.settle(timeout)
+        self.look(self.snapshot(), self.session.now)
+
+    def _see_start(self, snapshot: Snapshot) -> None:
+        waits = self._job is not None and snapshot.prepared == self._job.digest
+        if self._accepted and not waits:
+            self.started = snapshot.state in CYCLE
+            self._withdraw()
+        self._accepted = waits
+
+    def _take_up(self, future: Future[Answer]) -> None:
+        error = future.exception()
+        if error is not None:
+            self.stage = Stage.CHOOSE
+            self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=error))
+            return
+        answer = future.result()
+        if isinstance(answer, Found):
+            self._show(answer)
+        elif isinstance(answer, NotGood):
+            self.stage, self.answer = Stage.REFUSED, answer
+        else:
+            self._made_ready(*answer)
+
+    def _show(self, found: Found) -> None:
+        self.stage = Stage.SHOWN
+        self.plan = plan_of(found, self.snapshot(), self.choices)
+
+    def _made_ready(self, job: Job, proved: Proved) -> None:
+        self.proved = proved
+        if proved.proof.errors:
+            self.stage = Stage.SHOWN
+            self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
+            return
+        self.stage, self._job, self._accepted = Stage.READY, job, False
+        self.post(Prepare(Starts.RESTART, job, proved.proof))
+
+    def _forget(self) -> None:
+        """Nothing is shown and nothing is ready."""
+        self._withdraw()
+        if self.open:
+            self.post(Prepare(Starts.RESTART))
+
+    def _withdraw(self) -> None:
+        self.finder.give_up()
+        self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
+        self._job, self._accepted = None, False

@@ -1,0 +1,179 @@
+"""F6 SEARCHTO: a line, the state it inherits beside the one of now, the way there, and what will start."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.searchto.search import SearchDesk
+from app.desk.searchto.stage import Stage
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.desk.words import tr
+from app.screen.listing import Listing
+from app.screen.pages import Doings, Host, Page
+from app.screen.path.aspects import tip_of
+from app.screen.pathview import PathView
+from app.screen.searchto.asked import AskedPanel
+from app.screen.searchto.beside import Near, StatePanel, StateShown
+from app.screen.searchto.starts import StartsPanel
+from core.executor.snapshot import Snapshot
+
+LIST, STATE, ASKED, STARTS = 0.3, 0.4, 4.6, 19.0  # shares of the width; units of height
+ALWAYS_KEYS = frozenset("EeHh ")
+
+
+class SearchPage(Page):
+    """The model decides, this only shows it and hands the keys on."""
+
+    NAME = pages.SEARCHTO
+    LABELS = (
+        "MENU",
+        "NEXT",
+        "PREVIOUS",
+        "IN/OUT",
+        "COOLANT",
+        "SEARCH",
+        "ALARMS",
+        "BEFORE",
+        "AFTER",
+        "CONFIRM",
+    )
+    STARTS = True
+
+    def __init__(self, host: Host, model: SearchDesk, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.asked = AskedPanel(self.look, self)
+        self.listing = Listing(self.look, self)
+        self.state = StatePanel(self.look, host.press, self)
+        self.path = PathView(self.look, self)
+        self.starts = StartsPanel(self.look, self)
+        self._loaded: Loaded | None = None
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        model = self.model
+        return {
+            "F2": partial(model.find, 1),
+            "F3": partial(model.find, -1),
+            "F4": model.turn_inside,
+            "F5": model.turn_coolant,
+            "F6": model.search,
+            "F8": partial(model.nearest, -1),
+            "F9": partial(model.nearest, 1),
+            "F10": model.confirm,
+            "Zoom in": partial(self.path.zoom, 1),
+            "Zoom out": partial(self.path.zoom, -1),
+        }
+
+    def takes(self, key: str) -> bool:
+        """Characters are the question's; E and H stop the machine as long as nothing is typed."""
+        return len(key) == 1 and (bool(self.model.cursor.text) or key not in ALWAYS_KEYS)
+
+    def typed(self, key: str) -> bool:
+        """Arrows choose a line, everything else is typed."""
+        steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
+        if key in steps:
+            self.model.move(steps[key])
+            return True
+        if key == "Enter":
+            self.model.enter()
+            return True
+        if len(key) == 1 and not self.takes(key):
+            return False
+        return self.model.typed(key)
+
+    def prompt(self) -> str:
+        """What can be done now."""
+        return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
+
+    def opens(self) -> bool:
+        """With a proved program, and none under way."""
+        return self.model.opens()
+
+    def opened(self) -> None:
+        """Cycle Start now means a confirmed restart."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Cycle Start means programs again."""
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """One step back, and from the first one to the Automatic page."""
+        if not self.model.escape():
+            self.host.go(pages.AUTOMATIC)
+        return True
+
+    def dress(self) -> None:
+        """Other colours are in force."""
+        self.path.restart()
+
+    def refresh(self, snapshot: Snapshot, _view: View, loaded: Loaded) -> None:
+        """The line, its state, the way; a restart that has begun is followed on the Automatic page."""
+        model = self.model
+        model.look(snapshot, loaded)
+        if model.started:
+            self.host.go(pages.AUTOMATIC)
+            return
+        if loaded is not self._loaded:
+            self._loaded = loaded
+            self.listing.show_source(model.cursor.lines, {})
+            self.path.show_picture(loaded.picture)
+        self.asked.show_text(model.cursor.text)
+        self.listing.show_run(model.cursor.line, "", "")
+        self.state.show_state(self._shown())
+        self._show_plan()
+        self.path.show_tip(tip_of(snapshot)._replace(block=0))
+        self.path.advance()
+
+    def _shown(self) -> StateShown:
+        model, line = self.model, self.model.cursor.line
+        answer, plan = model.answer, model.plan
+        if answer is not None:
+            title = tr("LINE {line} IS NOT GOOD").format(line=answer.line)
+            near = (("F8", tr("GOOD BEFORE"), answer.before), ("F9", tr("GOOD AFTER"), answer.after))
+            return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
+        if plan is not None:
+            return StateShown(tr("STATE AT LINE {line}").format(line=plan.found.line), plan.rows)
+        if model.stage is Stage.SEARCHING:
+            words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
+            return StateShown(f"{words}  ·  {model.finder.reached}")
+        return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
+
+    def _near(self, key: str, label: str, line: int) -> Near:
+        if not line:
+            return Near(key, tr("{which}: NONE").format(which=label), 0, "")
+        words = tr("{which}: LINE {line}").format(which=label, line=line)
+        return Near(key, words, line, self.model.cursor.lines[line - 1].strip())
+
+    def _show_plan(self) -> None:
+        model, plan = self.model, self.model.plan
+        if plan is None:
+            self.path.show_approach(None)
+            self.starts.show_starts((), (), "", confirmed=False)
+            return
+        self.path.show_approach(plan.legs)
+        inside = tr("F4: INSIDE A BORE, Z LAST") if model.choices.inside else tr("F4: OUTSIDE, X LAST")
+        choices = [inside]
+        if plan.found.checkpoint.modal.coolant:
+            choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
+        self.starts.show_starts(plan.starts, choices, plan.trouble, confirmed=model.stage is Stage.READY)
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Program, state, and the way over what will start."""
+        u = self.look.u
+        gap, asked, starts = max(4, round(0.7 * u)), round(ASKED * u), round(STARTS * u)
+        wide, high = self.width(), self.height()
+        left, state = round(LIST * wide), round(STATE * wide)
+        right = left + gap + state + gap
+        self.asked.setGeometry(0, 0, left, asked)
+        self.listing.setGeometry(0, asked + gap, left, high - asked - gap)
+        self.state.setGeometry(left + gap, 0, state, high)
+        self.path.setGeometry(right, 0, wide - right, high - starts - gap)
+        self.starts.setGeometry(right, high - starts, wide - right, starts)

@@ -1,0 +1,268 @@
+"""SEARCHTO by keys alone: from an E-stop in the middle of a part to the finished part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.desk import pages
+from app.desk.searchto.search import SearchDesk
+from app.desk.searchto.stage import Stage
+from app.screen.look import Look
+from app.screen.pictures import Stage as Lathe
+from app.screen.searchto.page import SearchPage
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import Starts, State
+from tests.screen.lathe import Key, Operator
+
+
+@pytest.fixture
+def operator(qapp: object) -> Iterator[Operator]:
+    stage = Lathe()
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    window.open_desk(stage.desk)
+    window.show()
+    yield Operator(stage, window)
+    window.put_away()
+    stage.close()
+
+
+def model_of(operator: Operator) -> SearchDesk:
+    assert operator.stage.desk.searchto is not None
+    return operator.stage.desk.searchto
+
+
+def page_of(operator: Operator) -> SearchPage:
+    operator.window.refresh()
+    page = operator.frame.page
+    assert isinstance(page, SearchPage)
+    return page
+
+
+def loaded(operator: Operator) -> None:
+    """The sample program on the desk, proved; drives on."""
+    desk = operator.stage.desk
+    desk.choose("bushing")
+    desk.session.settled(30.0)
+    operator.drives_on()
+
+
+def estop_and_recover(operator: Operator) -> None:
+    operator.key(Key.Key_E)
+    operator.reaches(State.ESTOP)
+    operator.key(Key.Key_E, shift=True)
+    operator.reaches(State.DISABLED)
+    operator.key(Key.Key_D)
+    operator.reaches(State.IDLE)
+
+
+def found(operator: Operator) -> SearchPage:
+    """Enter, and wait for the worker."""
+    operator.key(Key.Key_Return)
+    model_of(operator).settle(10.0)
+    operator.pause(0.05)
+    return page_of(operator)
+
+
+def confirmed(operator: Operator) -> None:
+    operator.key(Key.Key_F10)
+    model_of(operator).settle(10.0)
+    operator.pause(0.05)
+    assert model_of(operator).stage is Stage.READY
+
+
+def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(operator: Operator) -> None:
+    operator.stage.start()
+    operator.until(lambda: operator.shot.line == 18, 120.0)
+    operator.pause(0.2)
+    estop_and_recover(operator)
+    operator.key(Key.Key_F6)
+    assert operator.frame.title.page == pages.SEARCHTO
+    assert operator.prompt().startswith("LINE 18 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    page = found(operator)
+    assert page.state.shown.title == "STATE AT LINE 18"
+    assert page.starts.starts == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
+    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 X"]
+    assert operator.shot.rpm_command == 0.0
+    assert "coolant" not in operator.shot.outputs  # nothing starts before it is confirmed and started
+    confirmed(operator)
+    assert operator.prompt().startswith("TO START THE RESTART PRESS BOTH PALM BUTTONS")
+    operator.palms()
+    operator.window.refresh()
+    assert operator.frame.page is operator.frame.automatic
+    assert operator.shot.state in {State.RUN, State.WAIT}
+    operator.until(lambda: operator.shot.line == 26, 60.0)
+    assert operator.shot.modal.diameter
+    assert operator.shot.modal.secondary == 1
+    operator.until(lambda: operator.shot.parts == 1, 240.0)
+
+
+def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("7")
+    page = found(operator)
+    rows = {row.label: row for row in page.state.shown.rows}
+    assert (rows["X WORDS"].wanted, rows["X WORDS"].now) == ("G72 Ø", "G73 R")
+    assert (rows["SPINDLE"].wanted, rows["SPINDLE"].now) == ("M03", "M05")
+    assert (rows["F THAT IS A RAPID"].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
+    assert rows["COOLANT"].differs
+    assert not rows["UNITS"].differs
+    assert page.state.grab().width() > 0
+
+
+def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("(FINISH")
+    operator.key(Key.Key_Return)
+    assert model_of(operator).cursor.line == 22
+    operator.key(Key.Key_Escape)
+    operator.type("x.75")
+    operator.key(Key.Key_F2)
+    assert model_of(operator).cursor.line == 25
+    operator.key(Key.Key_F3)
+    assert model_of(operator).cursor.line == 22
+    operator.key(Key.Key_Escape)
+    operator.type("QQ")
+    operator.key(Key.Key_Return)
+    assert operator.prompt() == "QQ IS IN NO LINE"
+
+
+def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> None:
+    desk = operator.stage.desk
+    desk.choose("pin")
+    desk.session.settled(30.0)
+    operator.drives_on()
+    operator.key(Key.Key_F6)
+    operator.type("8")
+    page = found(operator)
+    assert page.state.shown.why.startswith("Line 8 is inside the loop of lines")
+    before, after = page.state.shown.near
+    assert (before.key, after.key) == ("F8", "F9")
+    operator.key(Key.Key_F10)
+    assert operator.prompt() == "CHOOSE A GOOD LINE FIRST"
+    operator.key(Key.Key_F9)
+    model_of(operator).settle(10.0)
+    assert page_of(operator).state.shown.title == f"STATE AT LINE {after.line}"
+
+
+def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.palms()
+    assert operator.prompt().startswith("NO START: SEARCH A LINE AND CONFIRM IT FIRST")
+    operator.type("7")
+    found(operator)
+    operator.palms()
+    assert operator.shot.state is State.IDLE
+    assert operator.shot.starts is Starts.RESTART
+
+
+def test_leaving_the_page_takes_a_ready_restart_back(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("7")
+    found(operator)
+    confirmed(operator)
+    operator.key(Key.Key_F1, Key.Key_F2)
+    operator.pause(0.05)
+    assert operator.shot.starts is Starts.PROGRAM
+    assert operator.shot.prepared == ""
+
+
+def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("38")
+    page = found(operator)
+    assert page.starts.starts[-1] == "COOLANT"
+    operator.key(Key.Key_F5)
+    page = page_of(operator)
+    assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
+    operator.key(Key.Key_F4)
+    page = page_of(operator)
+    assert page.starts.choices == ("F4: INSIDE A BORE, Z LAST", "F5: WITHOUT COOLANT")
+    confirmed(operator)
+    operator.key(Key.Key_F4)  # another way is not the one that was proved
+    assert model_of(operator).stage is Stage.SHOWN
+    assert operator.shot.prepared != ""
+    operator.pause(0.05)
+    assert operator.shot.prepared == ""
+
+
+def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F1, Key.Key_F4)
+    operator.pause(0.05)
+    operator.run("M13")
+    operator.key(Key.Key_F2, Key.Key_F6)
+    operator.type("7")
+    page = found(operator)
+    assert page.starts.trouble.startswith("THE COLLET IS OPEN AND MUST BE CLOSED")
+    operator.key(Key.Key_F10)
+    assert operator.prompt().startswith("THE COLLET IS OPEN")
+    assert model_of(operator).stage is Stage.SHOWN
+
+
+def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: Operator) -> None:
+    operator.key(Key.Key_F6)
+    assert operator.frame.page is operator.frame.automatic
+    assert operator.prompt() == "CHOOSE A PROGRAM FIRST (F2)"
+    operator.stage.start()
+    operator.key(Key.Key_F6)
+    assert operator.prompt().startswith("A PROGRAM IS UNDER WAY")
+
+
+def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
+    desk = operator.stage.desk
+    desk.choose("bushing")
+    desk.session.settled(30.0)
+    operator.until(lambda: operator.shot.state is State.DISABLED)
+    operator.key(Key.Key_F6)
+    operator.type("7")
+    found(operator)
+    operator.key(Key.Key_F10)
+    assert operator.prompt() == "SWITCH THE DRIVES ON FIRST (D)"
+
+
+def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("7")
+    found(operator)
+    confirmed(operator)
+    desk = operator.stage.desk
+    path = desk.session.now.path
+    assert path is not None
+    desk.session.load(path)
+    desk.session.settled(30.0)
+    operator.pause(0.1)
+    page_of(operator)
+    assert model_of(operator).stage is Stage.CHOOSE
+    operator.palms()
+    assert operator.shot.state is State.IDLE
+
+
+def test_estop_keeps_its_key_as_long_as_nothing_is_typed(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("xe")
+    assert page_of(operator).asked.text == "xe"
+    operator.key(Key.Key_Escape)
+    operator.key(Key.Key_E)
+    operator.reaches(State.ESTOP)
+
+
+def test_escape_goes_back_step_by_step(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("7")
+    found(operator)
+    operator.key(Key.Key_Escape)
+    assert model_of(operator).stage is Stage.CHOOSE
+    operator.key(Key.Key_Escape)
+    assert operator.frame.page is operator.frame.automatic
