@@ -163,3 +163,9 @@ def test_changing_between_g94_and_g95_forgets_f(change: str) -> None:
 
 def test_g94_again_keeps_f() -> None:
     assert times("G1 Z0 F600\nG94\nZ-10")[-1][1] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_g96_says_that_f_still_counts_in_minutes() -> None:
+    """The maker's controls differ here: on some of them G96 makes F a feed per revolution."""
+    assert [each.code for each in run("N5 G96 S120 M3").found] == ["g96-by-minute"]
+    assert run("G95 G96 S120 M3").found == []

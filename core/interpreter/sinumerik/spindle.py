@@ -43,10 +43,20 @@ def _modes(state: State, made: Statement) -> None:
     if code == 96 and not state.modal.css:
         _demand_controlled(state, made, made.g["kind of spindle speed"])
         state.adopt(state.modal._replace(css=True))
+        if not state.modal.per_rev:
+            _warn_of_minutes(state, made)
     elif code == 97 and state.modal.css:
         # The spindle goes on at the speed it has; going back to an old S would be a surprise.
         rpm = abs(state.rpm) if state.modal.spindle else state.modal.rpm
         state.adopt(state.modal._replace(css=False, rpm=rpm))
+
+
+def _warn_of_minutes(state: State, made: Statement) -> None:
+    """Some controls read F as mm a revolution from G96 on; this one goes by G94 and G95 alone."""
+    text = "G96 is in force and F counts in mm/min (G94)."
+    hint = "Write G95 where F is meant as mm a revolution."
+    found = made.refuse(made.g["kind of spindle speed"], "g96-by-minute", text, hint).diagnostic
+    state.log.warn(found.line, found.column, found.code, found.message, found.hint)
 
 
 def _limit(state: State, made: Statement) -> None:
