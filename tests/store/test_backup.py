@@ -147,9 +147,9 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     assert (tmp_path / "out/programs/PIN.nc").read_bytes() == b"G90\r\nM30\r\n"
     offsets = tomllib.loads((tmp_path / "out/offsets.toml").read_text())
     assert offsets["tool"]["1"] == {
-            **{"x": 1.25, "z": -0.5, "nose_radius": 0.015, "wear_x": 0.0, "wear_z": 0.0},
-            **{"quadrant": 0, "remark": "", "master": False},
-        }
+        **{"x": 1.25, "z": -0.5, "nose_radius": 0.015, "wear_x": 0.0, "wear_z": 0.0},
+        **{"quadrant": 0, "remark": "", "master": False},
+    }
     assert offsets["secondary"]["4"] == {"x": -0.0005, "z": 0.0, "r": 0.0}
     with (tmp_path / "out/events.csv").open(newline="") as file:
         rows = list(csv.reader(file))

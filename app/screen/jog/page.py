@@ -166,7 +166,7 @@ class JogPage(Page):
         foot = tool.note or (
             tr("Return enters it, Esc leaves it as it was")
             if entering
-            else tr("F10 takes the last change back")
+            else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
         self.asked.show_asked(Asked("", tool.question, tool.text, tool.old_to_new, foot))
 
