@@ -11,6 +11,7 @@ from app.desk.drawing.trail import Stroke
 from app.screen.look import Look
 
 Line = Qt.PenStyle
+BAND = 0.45  # how much of a band covers what it marks
 
 
 class Ink(Enum):
@@ -20,12 +21,16 @@ class Ink(Enum):
     DONE = ("done", 0.26, Line.SolidLine)
     BEFORE = ("mark", 0.16, Line.DashLine)
     AFTER = ("accent", 0.24, Line.SolidLine)
-    MARKED = ("lit", 0.5, Line.SolidLine)  # the blocks of the line under the cursor
+    MARKED = ("lit", 1.2, Line.SolidLine)  # a band along the blocks of the line under the cursor
 
     def pens(self, look: Look) -> dict[int, QPen]:
         """The pen of each stroke; two programs are compared by their cuts alone."""
         colour, width, style = self.value
         cut = _round(look.pen(colour, width), style)
+        if self is Ink.MARKED:
+            band = cut.color()
+            band.setAlphaF(BAND)
+            cut.setColor(band)
         if self in {Ink.BEFORE, Ink.AFTER}:
             return {Stroke.TURN: cut, Stroke.MILL: cut}
         rapid = _round(look.pen("rapid", 0.10), Line.SolidLine if self is Ink.DONE else Line.DashLine)

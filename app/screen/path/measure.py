@@ -12,7 +12,7 @@ from PySide6.QtGui import QKeyEvent, QPainter
 from app.desk.drawing import measured
 from app.desk.drawing.features import Features
 from app.desk.drawing.spots import Kind, Spot, kind_words
-from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.look import LEFT, RIGHT, put
 from app.screen.path.aspects import Aspect
 from app.screen.path.pane import Pane
 
@@ -126,7 +126,7 @@ class Measure:
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: QPainter, metric: bool) -> None:
+    def draw(self, painter: QPainter) -> None:
         """The painter's origin is the corner of the pane."""
         look, pane = self.pane.look, self.pane
         if self.first is not None:
@@ -137,7 +137,6 @@ class Measure:
                 painter.setBrush(look.colour("lit"))
                 painter.drawEllipse(held, 0.6 * look.u, 0.6 * look.u)
         self._cross(painter, pane.spot(*self.cursor[:2]))
-        self._table(painter, look, self.rows(metric), "mm" if metric else "in")
 
     def _cross(self, painter: QPainter, at: QPointF) -> None:
         look, u = self.pane.look, self.pane.look.u
@@ -149,19 +148,21 @@ class Measure:
             painter.setPen(look.pen("tip", 0.3))
             painter.drawRect(QRectF(at.x() - u, at.y() - u, 2 * u, 2 * u))
 
-    def _table(self, painter: QPainter, look: Look, rows: list[measured.Row], unit: str) -> None:
-        """In the corner that is farther from the cross."""
-        u, room = look.u, self.pane.room
+    def draw_figures(self, painter: QPainter, room: QRectF, metric: bool) -> None:
+        """The table, in the corner of ``room`` that is farthest from the cross; places of the widget."""
+        look, u, rows = self.pane.look, self.pane.look.u, self.rows(metric)
         wide, high = min(TABLE[0] * u, room.width() - 2 * u), TABLE[1] * u
-        low = self.pane.spot(*self.cursor[:2]).y() < room.height() / 2
-        y = room.height() - (len(rows) + 1) * high - 3.4 * u if low else 2.6 * u
-        box = QRectF(1.0 * u, y, wide, (len(rows) + 1) * high + 0.6 * u)
+        tall = (len(rows) + 1) * high + 0.6 * u
+        cross = self.pane.room.topLeft() + self.pane.spot(*self.cursor[:2])
+        x = room.x() + u if cross.x() > room.center().x() else room.right() - wide - u
+        y = room.bottom() - tall - 2.8 * u if cross.y() < room.center().y() else room.y() + 2.6 * u
+        box = QRectF(x, y, wide, tall)
         painter.fillRect(box, look.colour("ground"))
         painter.setPen(look.pen("lit", 0.2))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         row = QRectF(box.x() + 0.8 * u, box.y() + 0.3 * u, box.width() - 1.6 * u, high)
-        self._row(painter, row, (kind_words(self.cursor.kind), unit), "soft")
+        self._row(painter, row, (kind_words(self.cursor.kind), "mm" if metric else "in"), "soft")
         for pair in rows:
             row.translate(0, high)
             self._row(painter, row, pair, "text")

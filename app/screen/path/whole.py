@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRectF
@@ -29,6 +30,9 @@ def draw_view(painter: QPainter, view: PathView) -> None:
         return
     for pane in view.panes:
         _pane(painter, view, pane)
+    if view.ruler is not None:  # beside what is measured, where there is another pane
+        beside = next((pane for pane in view.panes if pane is not view.ruler.pane), view.ruler.pane)
+        view.ruler.draw_figures(painter, beside.room, view.in_mm)
     _title(painter, view)
     furniture.draw_buttons(painter, look, view.room(), _buttons(view), view.place)
     legend = furniture.compared_legend(look) if view.comparing else furniture.run_legend(look)
@@ -46,12 +50,12 @@ def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
     if view.legs and pane.aspect is Aspect.PATH:
         draw_approach(painter, view.look, pane, view.legs)
     if view.ruler is not None and view.ruler.pane is pane:
-        view.ruler.draw(painter, view.in_mm)
+        view.ruler.draw(painter)
     painter.restore()
     if pane.frame is not None:
         furniture.draw_scale(painter, view.look, pane.room, pane.frame, view.in_mm)
     if pane.aspect is not Aspect.PATH:
-        furniture.draw_words(painter, view.look, pane.room, _name_of(pane))
+        furniture.draw_words(painter, view.look, pane.room, _name_of(pane, view.in_mm))
         if pane is not view.panes[0]:
             furniture.draw_border(painter, view.look, pane.room)
 
@@ -65,10 +69,11 @@ def _apart_words(apart: Apart, in_mm: bool) -> str:
     )
 
 
-def _name_of(pane: Pane) -> str:
+def _name_of(pane: Pane, in_mm: bool) -> str:
     if pane.aspect is Aspect.FACE:
         return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
-    return tr("SIDE  ·  UNROLLED")
+    diameter = formats.length(pane.trail.round * 360.0 / math.pi, in_mm)
+    return tr("SIDE  ·  UNROLLED AT Ø {diameter}").format(diameter=diameter)
 
 
 def _buttons(view: PathView) -> list[furniture.Button]:
