@@ -91,7 +91,7 @@ def test_the_pivot_keeps_its_place_while_all_five_axes_run(words: str, depth: fl
     text = TOOL + f"L X+5 Y+8 Z+50 R0 FMAX\nPLANE AXIAL A+45 C+90 {words}"
     axes, lines = traced(whole(text))
     moved = axes[lines == 4]
-    assert np.ptp(moved[:, 3]) == pytest.approx(45.0)
+    assert np.ptp(moved[:, 3]) == pytest.approx(45.0, abs=0.1)  # the rows between its ends
     a, c = np.radians(moved[:, 3]), np.radians(moved[:, 4])
     x, y, z = moved[:, 0], moved[:, 1], moved[:, 2] - depth
     dy, dz = y - 250.0, z + 430.0

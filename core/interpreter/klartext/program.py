@@ -9,6 +9,7 @@ from core.interpreter.log import MOST_OF_A_KIND
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.klartext import faults, read_line
 from core.language.klartext.nodes import Begin, BlankForm, Call, End, KlartextLine, Label
+from core.language.klartext.written import written
 from core.language.source import Source
 
 Name = int | str
@@ -24,12 +25,20 @@ class Program:
     end: int = 0
     inch: bool = False
     problems: list[Diagnostic] = field(default_factory=list)
+    _texts: dict[int, str] = field(default_factory=dict)
     blank: tuple[BlankForm, ...] = ()
 
     @property
     def blocks(self) -> int:
         """Lines that hold more than a comment."""
         return sum(1 for line in self.lines if line.node is not None or line.error is not None)
+
+    def text(self, line: KlartextLine) -> str:
+        """The block of a line as it is shown, written once however often it is executed."""
+        text = self._texts.get(line.number)
+        if text is None:
+            text = self._texts[line.number] = written(line)
+        return text
 
     def subprogram_end(self, label: int) -> int | None:
         """Index of the LBL 0 that ends the subprogram whose label stands at this index."""

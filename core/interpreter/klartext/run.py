@@ -33,7 +33,6 @@ from core.language.klartext.nodes import (
     Stop,
     ToolCall,
 )
-from core.language.klartext.written import written
 
 MOST_Q = 999_999_999.999999
 
@@ -103,7 +102,7 @@ class Interpreter:
             if self._stopped and (to_first_error or self._log.full):
                 return
         if not self._stopped and flow.at == flow.end < len(lines):
-            yield functions.end(self._state, flow.end + 1, written(lines[flow.end]))
+            yield functions.end(self._state, flow.end + 1, self._program.text(lines[flow.end]))
 
     def _guarded(self, line: KlartextLine) -> Iterator[Block]:
         """The blocks of a line; an error of it is kept and ends them."""
@@ -126,9 +125,9 @@ class Interpreter:
             case Codes():
                 yield from self._codes(line, node)
             case Plane():
-                yield from plane(state, number, written(line), node)
+                yield from plane(state, number, self._program.text(line), node)
             case ToolCall():
-                yield from tool_call(state, number, written(line), node, self._tools)
+                yield from tool_call(state, number, self._program.text(line), node, self._tools)
             case Datum():
                 _datum(state, number, node)
             case Label():
@@ -141,7 +140,7 @@ class Interpreter:
                 yield state.action(number, "STOP", ProgramStop(optional=False, message=line.comment or ""))
 
     def _move(self, line: KlartextLine, node: Move) -> Iterator[Block]:
-        state, number, text = self._state, line.number, written(line)
+        state, number, text = self._state, line.number, self._program.text(line)
         functions.check(state, number, node.codes)
         yield from functions.before(state, number, text, node.codes)
         machine = any(code.number == functions.M91 for code in node.codes)
@@ -149,7 +148,7 @@ class Interpreter:
         yield from self._behind(line, text, node.codes)
 
     def _codes(self, line: KlartextLine, node: Codes) -> Iterator[Block]:
-        text = written(line)
+        text = self._program.text(line)
         functions.check(self._state, line.number, node.codes)
         yield from functions.before(self._state, line.number, text, node.codes)
         yield from self._behind(line, text, node.codes)

@@ -30,7 +30,12 @@ class Cursor:
     def __init__(self, line: int, text: str, at: int = 0) -> None:
         self.line = line
         self.text = text
-        self.upper = "".join(sign.upper() if sign.isascii() else sign for sign in text)
+        # Letters such as ß have capitals of another length, and no word of the language holds one.
+        self.upper = (
+            text.upper()
+            if text.isascii()
+            else "".join(sign.upper() if sign.isascii() else sign for sign in text)
+        )
         self.at = at
         self.blanks()
 
@@ -52,8 +57,10 @@ class Cursor:
 
     def blanks(self) -> None:
         """Go to the next sign that is no blank."""
-        while self.at < len(self.upper) and self.upper[self.at].isspace():
-            self.at += 1
+        upper, at, end = self.upper, self.at, len(self.upper)
+        while at < end and upper[at].isspace():
+            at += 1
+        self.at = at
 
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """What the pattern matches here, and go behind it."""

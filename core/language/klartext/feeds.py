@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext import faults
@@ -38,9 +39,14 @@ def retract(cursor: Cursor) -> Retract | None:
     return Retract(cursor.number("MB"), column)
 
 
+@lru_cache(maxsize=16)
+def _axis_word(letters: str, incremental: bool) -> re.Pattern[str]:
+    return re.compile(rf"({'I?' if incremental else ''})([{letters}])(?=\s*[+\-0-9.,Q])")
+
+
 def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tuple[AxisWord, ...]:
     """All axis words that stand here, each letter once. Raises ProgramError for a doubled one."""
-    pattern = re.compile(rf"({'I?' if incremental else ''})([{letters}])(?=\s*[+\-0-9.,Q])")
+    pattern = _axis_word(letters, incremental)
     found: list[AxisWord] = []
     while True:
         column, match = cursor.column, cursor.take(pattern)

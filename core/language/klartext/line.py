@@ -40,7 +40,7 @@ def read_line(number: int, text: str) -> KlartextLine:
     block, skip = head.group(2), bool(head.group(1) or head.group(3))
     number_of_block = int(block) if block is not None and len(block) <= 9 else None
     try:
-        node = _node(Cursor(number, code, head.end()))
+        node = _node(Cursor(number, code.rstrip(), head.end()))
     except ProgramError as problem:
         return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic)
     return KlartextLine(number, node, number_of_block, skip, comment)
@@ -48,6 +48,8 @@ def read_line(number: int, text: str) -> KlartextLine:
 
 def _without_comment(text: str) -> tuple[str, str | None]:
     """Code and comment; a semicolon in a quoted name begins none."""
+    if ";" not in text:
+        return text, None
     quoted = False
     for at, sign in enumerate(text):
         if sign == '"':
@@ -60,10 +62,12 @@ def _without_comment(text: str) -> tuple[str, str | None]:
 def _node(cursor: Cursor) -> Node | None:
     if cursor.done:
         return None
+    if cursor.text[-1] != "~" and cursor.take(_L):
+        return moves.move(cursor)
     if cursor.text[cursor.at] == "*":
         return Heading(cursor.rest()[1:].strip().removeprefix("-").strip())
-    if cursor.text.rstrip().endswith("~"):
-        raise faults.unsupported(cursor.line, len(cursor.text.rstrip()), "A block over several lines (~)")
+    if cursor.text[-1] == "~":
+        raise faults.unsupported(cursor.line, len(cursor.text), "A block over several lines (~)")
     return _by_keyword(cursor) or _by_letter(cursor)
 
 
@@ -96,8 +100,6 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
 
 
 def _by_letter(cursor: Cursor) -> Node:
-    if cursor.take(_L):
-        return moves.move(cursor)
     if _M.match(cursor.upper, cursor.at):
         return moves.codes_alone(cursor)
     if cursor.take(_FN_0):
