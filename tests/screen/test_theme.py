@@ -13,7 +13,7 @@ from app.screen.theme import DARK, PALETTES, Palette, contrast
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),
     *(("on_state", tone) for tone in ("ready", "run", "pause", "wait", "alarm", "off")),
-    *((ink, "here") for ink in ("text", "accent")),
+    *((ink, "here") for ink in ("text", "accent", "soft")),
     *((sign, "panel") for sign in ("alarm", "pause", "mark")),
     ("on_mark", "mark"),
     ("on_lit", "lit"),
@@ -22,6 +22,13 @@ TEXT = [
 ]
 SHAPES = [
     *((line, "panel") for line in ("todo", "done", "rapid", "centre", "tip", "frame", "lit", "run", "pause")),
+    *(
+        (tone, ground)
+        for tone in ("ready", "run", "pause", "wait", "alarm", "off")
+        for ground in ("panel", "here")
+    ),
+    *((line, "here") for line in ("lit", "accent", "mark")),
+    ("accent", "key"),
     ("frame", "ground"),
     ("estop", "estop_plate"),
 ]
@@ -43,6 +50,68 @@ def test_text_is_readable(palette: Palette, ink: str, ground: str) -> None:
 @pytest.mark.parametrize(("shape", "ground"), SHAPES)
 def test_shapes_stand_out(palette: Palette, shape: str, ground: str) -> None:
     assert contrast(getattr(palette, shape), getattr(palette, ground)) >= 3.0
+
+
+# Machado, Oliveira and Fernandes (2009): what eyes without L, M or S cones see, in linear RGB.
+BLIND = {
+    "protan": (
+        (0.152286, 1.052583, -0.204868),
+        (0.114503, 0.786281, 0.099216),
+        (-0.003882, -0.048116, 1.051998),
+    ),
+    "deutan": (
+        (0.367322, 0.860646, -0.227968),
+        (0.280085, 0.672501, 0.047413),
+        (-0.011820, 0.042940, 0.968881),
+    ),
+    "tritan": (
+        (1.255528, -0.076749, -0.178779),
+        (-0.078411, 0.930809, 0.147602),
+        (0.004733, 0.691367, 0.303900),
+    ),
+}
+TOLD_APART = [
+    ("run", "alarm"),
+    ("run", "pause"),
+    ("alarm", "wait"),
+    ("run", "off"),
+    ("pause", "wait"),
+    ("alarm", "off"),
+]
+
+
+def linear(colour: str) -> list[float]:
+    shares = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    return [s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in shares]
+
+
+def lab(rgb: list[float]) -> tuple[float, float, float]:
+    """CIE L*a*b* of linear sRGB, white D65."""
+    r, g, b = (max(0.0, min(1.0, share)) for share in rgb)
+    xyz = (
+        (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505,
+        0.2126 * r + 0.7152 * g + 0.0722 * b,
+        (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089,
+    )
+    x, y, z = (v ** (1 / 3) if v > 0.008856 else 7.787 * v + 16 / 116 for v in xyz)
+    return 116 * y - 16, 500 * (x - y), 200 * (y - z)
+
+
+@pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
+@pytest.mark.parametrize("eyes", BLIND)
+@pytest.mark.parametrize(("one", "other"), TOLD_APART)
+def test_states_stay_apart_for_colour_blind_eyes(palette: Palette, eyes: str, one: str, other: str) -> None:
+    """A difference of 10 in L*a*b* is seen at a glance; words and shapes tell the states as well."""
+    seen = [
+        lab(
+            [
+                sum(k * share for k, share in zip(row, linear(getattr(palette, name)), strict=True))
+                for row in BLIND[eyes]
+            ]
+        )
+        for name in (one, other)
+    ]
+    assert sum((a - b) ** 2 for a, b in zip(*seen, strict=True)) ** 0.5 >= 10
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)

@@ -22,14 +22,13 @@ FILTERS: Mapping[str, frozenset[str]] = {
     "RUNS": frozenset({"load", "start", "end", "part", "stop"}),
     "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets"}),
 }
-LABELS = {"ALL": "ALL", "ALARMS": "ALARMS", "RUNS": "RUNS", "OPERATOR": "OPERATOR"}
 
 
 class EventsSection(Section):
     """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
 
     name = "EVENT LOG"
-    use = "what happened when; search and filter"
+    use = "what happened when; search"
 
     def __init__(self, desk: Desk, keep: Keep, worker: Worker) -> None:
         super().__init__(desk)
@@ -89,9 +88,7 @@ class EventsSection(Section):
 
     def keys(self) -> Mapping[str, Key]:
         """Search and filter."""
-        names = list(FILTERS)
-        following = names[(names.index(self.filter) + 1) % len(names)]
-        return {"F4": Key("SEARCH", self._search), "F5": Key(LABELS[following], self._filter)}
+        return {"F4": Key("SEARCH", self._search), "F5": Key("FILTER", self._filter)}
 
     def _search(self) -> None:
         self.searching = True

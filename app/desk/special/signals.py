@@ -48,7 +48,7 @@ class SignalsSection(Section):
     """F4 goes from list to list; Return on an output switches it over, after asking."""
 
     name = "INPUTS AND OUTPUTS"
-    use = "live state, switching outputs by hand, machine lamps"
+    use = "live state, outputs by hand, lamps"
 
     def __init__(self, desk: Desk, machine: Machine) -> None:
         super().__init__(desk)

@@ -21,7 +21,7 @@ class SpeedSection(Section):
     """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
 
     name = "MAXIMUM SPINDLE SPEED"
-    use = "a limit until the control is started again"
+    use = "a limit until restart"
 
     def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
         super().__init__(desk)
