@@ -12,6 +12,7 @@ It is made when it is first opened. What a page gives:
 ``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
               E, D, R, A and the pots work on every page, as does F1.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
+``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
 ``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
 ``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
               ``Page up``, ``Page down``; True when it was taken. A stock widget
@@ -86,6 +87,9 @@ class Page(QWidget):
 
     def key_up(self, _event: QKeyEvent) -> None:
         """A key comes up."""
+
+    def pressed(self) -> None:
+        """A key or a finger is about to do something else, here or beside the page."""
 
     def let_go(self) -> None:
         """The keyboard has gone elsewhere."""

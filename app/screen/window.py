@@ -62,6 +62,8 @@ class MainWindow(QWidget):
         frame = self.frame
         action = (frame.doings().get(key) if frame else None) or self._keys.get(key)
         if action is not None:
+            if frame is not None:
+                frame.page.pressed()
             action()
             self.refresh()
 

@@ -193,18 +193,18 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     for _ in range(4):
         hands.key(Key.Key_Right)
-    hands.sees(lambda: tools_of(hands).asked.asked.question == "T1  WEAR X R?")
+    hands.sees(lambda: tools_of(hands).asked.asked.question == "T1  WEAR X Ø?")
     hands.type("-.0005")
     hands.key(Key.Key_F2)
     hands.sees(lambda: hands.prompt() == "T1 SAVED")
     hands.type("-.0002")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.0007 * 25.4))
+    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00035 * 25.4))
     hands.sees(lambda: any(isinstance(command, UseOffsets) for command in hands.machine.posted))
     used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)][-1]
-    assert used.tools[1].x == pytest.approx(-12.7 - 0.0007 * 25.4)
+    assert used.tools[1].x == pytest.approx(-12.7 - 0.00035 * 25.4)
     hands.key(Key.Key_F4)
-    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.0005 * 25.4))
+    hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 
 
 def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:

@@ -108,6 +108,16 @@ class JogDesk:
 
     # --- keys ----------------------------------------------------------------------------------------
 
+    def ask(self, what: str) -> None:
+        """A question of the tool; what is held ends."""
+        self.hold.other_key()
+        self.tool.ask(what)
+
+    def choose_master(self) -> None:
+        """The chosen tool becomes the master; what is held ends."""
+        self.hold.other_key()
+        self.tool.master()
+
     def next_step(self) -> None:
         """F2: another increment ends what is held."""
         self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))

@@ -10,7 +10,6 @@ from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import Kind, ToolRow, Value
 
 TOOL_FIELDS = FIELDS[Kind.TOOL]
-_X = frozenset({"x", "wear_x"})
 
 
 def value_typed(name: str, text: str, mode: Mode) -> Value:
@@ -53,8 +52,11 @@ def _taken(field: Field, value: Value, mode: Mode) -> Value:
 
 
 def _doubled(name: str, mode: Mode) -> float:
-    """What a typed X is more than the radius that is kept."""
-    return 2.0 if mode.diameter and name in _X else 1.0
+    """What a typed X is more than the radius that is kept.
+
+    Wear comes from measured diameters, and between two parts the control is back in radius: it is always Ø.
+    """
+    return 2.0 if name == "wear_x" or (name == "x" and mode.diameter) else 1.0
 
 
 def shown_value(name: str, value: Value, mode: Mode) -> str:
@@ -70,9 +72,9 @@ def shown_value(name: str, value: Value, mode: Mode) -> str:
 
 def marked(name: str, mode: Mode) -> str:
     """Ø or R where a field is an X, nothing elsewhere."""
-    if name not in _X:
+    if name not in {"x", "wear_x"}:
         return ""
-    return "Ø" if mode.diameter else "R"
+    return "Ø" if _doubled(name, mode) > 1.0 else "R"
 
 
 def word(name: str) -> str:

@@ -50,21 +50,21 @@ def in_words(offset: Row | None, mode: Mode) -> str:
     if offset is None:
         return not_set()
     if isinstance(offset, ToolRow):
-        return f"{_pair(offset.x, offset.z, mode)}{_more(offset, mode)}"
+        return f"{_pair(offset.x, offset.z, mode.metric, mode.diameter)}{_more(offset, mode)}"
     x, z, r = offset
     return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
 
 
-def _pair(x: float, z: float, mode: Mode) -> str:
-    mark = "Ø" if mode.diameter else ""
-    return f"X{mark} {signed(2 * x if mode.diameter else x, mode.metric)}  Z {signed(z, mode.metric)}"
+def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
+    mark = "Ø" if diameter else ""
+    return f"X{mark} {signed(2 * x if diameter else x, metric)}  Z {signed(z, metric)}"
 
 
 def _more(tool: ToolRow, mode: Mode) -> str:
     """What else there is of a tool, as far as it is anything."""
     parts = [f"  R {formats.length(tool.nose_radius, mode.metric)}"]
     if tool.wear_x or tool.wear_z:
-        parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode)}")
+        parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.metric, True)}")
     if tool.quadrant:
         parts.append(f"  {tr('TIP')} {tool.quadrant}")
     if tool.master:

@@ -96,6 +96,10 @@ class JogPage(Page):
         elif key == Key.Key_Shift:
             self.model.hold.shift_released()
 
+    def pressed(self) -> None:
+        """Whoever reaches for something else does not look at the slide."""
+        self.model.hold.other_key()
+
     def let_go(self) -> None:
         """The keyboard or the window is gone."""
         self.pad.let_go()

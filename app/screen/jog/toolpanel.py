@@ -79,14 +79,14 @@ class ToolPanel(Panel):
         """Which tool, how its tip lies, where it stands."""
         look, u, tool = self.look, self.look.u, self._model.tool
         box = QRectF(room.x(), room.y(), 13 * u, room.height())
-        self._target(painter, box, partial(tool.ask, TOOL), lit=tool.asked == TOOL)
+        self._target(painter, box, partial(self._model.ask, TOOL), lit=tool.asked == TOOL)
         painter.setPen(look.colour("text"))
         painter.setFont(look.font(5.0, bold=True))
         put(painter, box.adjusted(0, 0.6 * u, 0, 0), CENTRE, f"T{tool.number}" if tool.number else "T–")
         self._key(painter, box, "T")
         side = room.height()
         tip = QRectF(box.right() + 0.8 * u, room.y(), side, side)
-        self._target(painter, tip, partial(tool.ask, "quadrant"), lit=False)
+        self._target(painter, tip, partial(self._model.ask, "quadrant"), lit=False)
         draw_tip(
             painter,
             tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u),
@@ -131,9 +131,10 @@ class ToolPanel(Panel):
             self._cell(painter, box, name, key)
 
     def _cell(self, painter: QPainter, box: QRectF, name: str, key: str) -> None:
-        look, u, tool, mode = self.look, self.look.u, self._model.tool, self._mode
+        look, u, mode = self.look, self.look.u, self._mode
+        model, tool = self._model, self._model.tool
         asks = _ASKS.get(name, name)
-        press: Callable[[], None] = tool.master if name == "master" else partial(tool.ask, asks)
+        press: Callable[[], None] = model.choose_master if name == "master" else partial(model.ask, asks)
         self._target(painter, box, press, lit=tool.asked == asks)
         mark = marked(name, mode)
         label = {"x": tr("TOUCH X"), "z": tr("TOUCH Z")}.get(name, word(name)) + (f" {mark}" if mark else "")

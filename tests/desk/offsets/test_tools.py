@@ -39,6 +39,7 @@ def write(grid: ToolGrid, text: str) -> None:
         (False, "x", "1.25", 1.25 * INCH),
         (True, "x", "1.25", 0.625 * INCH),
         (True, "wear_x", "-.001", -0.0005 * INCH),
+        (False, "wear_x", "-.001", -0.0005 * INCH),
         (True, "wear_z", "-.001", -0.001 * INCH),
         (True, "nose_radius", ".0156", 0.0156 * INCH),
         (False, "z", "-3-.25", -3.25 * INCH),
@@ -62,7 +63,7 @@ def test_f2_adds_to_what_is_there(room: Room) -> None:
         write(grid, ".0001")
         grid.add()
         room.settle(grid)
-    assert room.store.tools()[1].wear_x == 0.001 * INCH
+    assert room.store.tools()[1].wear_x == 0.0005 * INCH
     assert room.store.history()[0].why == "WEAR X + .0001"
     grid.add()
     assert room.desk.notice.startswith("TYPE WHAT IS TO BE ADDED FIRST")
@@ -187,7 +188,7 @@ def test_at_a_stop_only_wear_may_change(room: Room, name: str) -> None:
     grid.choose(1, 4)
     room.enter(grid, "-.001")
     assert room.desk.notice == "T1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
-    assert room.store.tools()[1].wear_x == pytest.approx(-0.0254)
+    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
 
 
 def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
@@ -216,7 +217,7 @@ def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
         ("x", "51", "REFUSED: X would become +51.00000 in; it may be -50…50"),
         ("x", "0,5", "REFUSED: , in 0,5 is no number"),
         ("nose_radius", "-.1", "REFUSED: nose radius would become −0.10000 in; it may be 0…2"),
-        ("wear_x", ".11", "REFUSED: wear X would become +0.11000 in; it may be -0.1…0.1"),
+        ("wear_x", ".21", "REFUSED: wear X would become +0.21000 in; it may be -0.2…0.2"),
         ("quadrant", "10", "REFUSED: tip quadrant takes 0…9"),
         ("quadrant", "2.5", "REFUSED: tip quadrant takes 0…9"),
     ],

@@ -12,6 +12,7 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.compose.offsets import offsets_of
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.offsets.book import OffsetBook
@@ -135,8 +136,8 @@ class JogBench:
 def bench_on(folder: Path, *, absolute: bool = True) -> JogBench:
     """Desk, lathe and window; the drives are on and the Jog page is open."""
     clock = StepClock()
-    desk, executor = desk_and_executor(shipped(folder, absolute=absolute), lambda: ({}, {}), clock)
     store = Store.open(folder / "home")
+    desk, executor = desk_and_executor(shipped(folder, absolute=absolute), lambda: offsets_of(store), clock)
     desk.book = OffsetBook(store)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))

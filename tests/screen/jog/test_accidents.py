@@ -268,3 +268,35 @@ def test_a_finger_and_a_key_at_once(jog: JogBench) -> None:
     QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
     stands(jog, at)
     QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+
+
+def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.window.grab()
+    box, _press = jog.page.tool._places[0]  # the tool's number
+    QTest.mouseClick(jog.page.tool, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    assert jog.page.model.tool.asked
+    stands(jog, at)
+
+
+def test_a_finger_on_a_lamp_while_a_key_is_held(jog: JogBench) -> None:
+    at = moving(jog)
+    jog.window.grab()
+    box, _press = jog.frame.strip._places[0]  # single block
+    QTest.mouseClick(jog.frame.strip, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    stands(jog, at)
+
+
+@pytest.mark.parametrize("size", [(1024, 600), (1280, 1024), (1920, 1080)])
+def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size: tuple[int, int]) -> None:
+    jog.window.resize(*size)
+    jog.run(0.02)
+    jog.window.grab()
+    boxes = [control.box for control in jog.page.pad.controls]
+    assert len(boxes) == 5 + 5 + 4 + 6
+    for number, box in enumerate(boxes):
+        assert min(box.width(), box.height()) >= 30
+        assert jog.page.pad.area().contains(box)
+        assert not any(box.intersects(other) for other in boxes[number + 1 :])
+    for box in boxes[-6:]:
+        assert min(box.width(), box.height()) >= 70

@@ -155,7 +155,7 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
     row = jog.store.tools()[1]
     assert row.nose_radius == pytest.approx(0.4)
     assert (row.quadrant, row.remark) == (3, "Hardened END")
-    assert row.wear_x == pytest.approx(-0.0254)
+    assert row.wear_x == pytest.approx(-0.0127)
     assert jog.shot.state is State.IDLE  # H, E and D were letters of the remark
 
 
@@ -166,7 +166,7 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
         ("x", "", "REFUSED: nothing is entered"),
         ("x", "200", "REFUSED: X would be out of range"),
         ("q", "11", "REFUSED: tip quadrant takes 0…9"),
-        ("w", ".2", "REFUSED: wear X would become +0.20000 in; it may be -0.1…0.1"),
+        ("w", ".3", "REFUSED: wear X would become +0.30000 in; it may be -0.2…0.2"),
     ],
 )
 def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:

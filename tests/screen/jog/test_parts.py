@@ -1,0 +1,89 @@
+"""Wear between two parts, on the lathe: the second part is cut by as much deeper as was entered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from core.executor.snapshot import State
+from tests.screen.jog.bench import INCH, JogBench, Key
+
+PROGRAM = "G90G94F300\nG72\nT1\nM03S1000\nX1Z.1\nG01F60X.5Z.1\nZ-.5\nX1Z.5G00\nM30\n"
+
+
+def load(jog: JogBench, folder: Path) -> None:
+    path = folder / "part.nc"
+    path.write_text(PROGRAM, encoding="utf-8")
+    assert jog.desk.choose(str(path))
+    proved(jog)
+
+
+def proved(jog: JogBench) -> None:
+    jog.run(0.05)
+    assert not jog.desk.session.settled(30).errors
+    jog.run(0.05)
+
+
+def cut(jog: JogBench) -> float:
+    """Both palms, one part; the least machine X on the way, mm."""
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F2)
+    jog.run(0.5)
+    jog.down(Key.Key_F11)
+    jog.down(Key.Key_F12)
+    jog.until(lambda: jog.shot.state is not State.IDLE, 2.0)
+    jog.up(Key.Key_F11)
+    jog.up(Key.Key_F12)
+    least = [0.0]
+
+    def ended() -> bool:
+        least.append(jog.shot.demand[0])
+        return jog.shot.state is State.IDLE
+
+    jog.until(ended, 60.0)
+    return min(least)
+
+
+def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> None:
+    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
+    jog.desk.book.__post_init__()
+    load(jog, tmp_path)
+    first = cut(jog)
+    assert first == pytest.approx((-1.0 + 0.25) * INCH, abs=1e-6)  # Ø .5 with the tip 1 in further in
+    jog.key(Key.Key_F8)
+    for _ in range(4):
+        jog.key(Key.Key_Right)
+    jog.type("-.002")  # the part is .002 too large on its diameter
+    jog.key(Key.Key_F2)
+    jog.saved()
+    assert jog.prompt == "T1 SAVED"
+    proved(jog)
+    assert cut(jog) - first == pytest.approx(-0.001 * INCH, abs=1e-6)
+
+
+def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
+    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
+    jog.desk.book.__post_init__()
+    load(jog, tmp_path)
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F2)
+    jog.run(0.5)
+    jog.down(Key.Key_F11)
+    jog.down(Key.Key_F12)
+    jog.until(lambda: jog.shot.state is State.RUN, 2.0)
+    jog.up(Key.Key_F11)
+    jog.up(Key.Key_F12)
+    jog.key(Key.Key_F8)
+    jog.enter("5")
+    jog.run(0.02)
+    assert jog.prompt == "A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY"
+    assert jog.store.tools()[1].x == -1.0 * INCH
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F5)
+    jog.down(Key.Key_Left)
+    jog.run(0.1)
+    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY")
+    jog.up(Key.Key_Left)
+    jog.key(Key.Key_H)
+    jog.until(lambda: jog.shot.state is State.HOLD)
