@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Callable
 from importlib.resources import files
@@ -70,6 +71,7 @@ def build_desk(
 
     desk.shut = shut
     desk.unkept = lambda: journal.trouble
+    gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     return desk
 
