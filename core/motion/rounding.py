@@ -57,7 +57,8 @@ def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: Moti
     both = joined([written, new])
     eased = unrounded(both, limits)[len(written) - redo :]
     begin = known.point(known.length)[-1] if redo == 0 else known.start[len(known) - redo]
-    if not len(eased) or (eased.start[0] == begin).all():
+    # Only a chord has an end that was moved: a turn of C, whose slides differ by noise, has no other length.
+    if not len(eased) or not _chords(eased[:1], limits)[0] or (eased.start[0] == begin).all():
         return eased
     joints = np.vstack([eased.start, eased.point(eased.length)[-1:]])
     joints[0] = begin

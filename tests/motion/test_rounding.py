@@ -172,3 +172,14 @@ def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> Non
     before = joints(builder.path())
     builder.add(blocks[200:], float(builder.path().s[-1 - SUPPORT // 2]))
     assert joints(builder.path())[:201] == pytest.approx(before, abs=0)
+
+
+def test_a_turn_of_c_behind_a_path_under_way_keeps_its_length() -> None:
+    """Its start differs from the end of the path by the noise of sums; a slide that stands has no chord."""
+    builder = PathBuilder(STEPPED)
+    builder.add([dataclasses.replace(line((10.0, 5.0), (20.0, 7.0)), c=-345.0)])
+    turn = dataclasses.replace(line((20.0, 7.0), (20.0, 7.0), 120.0, n=2), c0=-345.0 + 1e-12, c=-355.0)
+    builder.add([turn], math.inf)
+    path = builder.path()
+    assert path.pieces.length[-1] == pytest.approx(10.0)
+    assert path.point(path.s[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
