@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
+from app.compose.backends import connect, played
 from app.compose.effect import drawer
 from app.compose.journal import Journal
 from app.compose.logs import Log
@@ -17,7 +18,6 @@ from app.compose.machine import read_machine, setup_for
 from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.searchto import give_searchto
-from app.compose.simulated import simulated
 from app.compose.special import furnish
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.desk import Desk
@@ -35,7 +35,7 @@ from core.executor.thread import ExecutorThread
 from core.language.dialect import Dialect
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
-from core.ports import Clock
+from core.ports import Clock, DriverError
 from drivers.simulated import RealClock, StepClock
 
 if TYPE_CHECKING:
@@ -57,15 +57,18 @@ def build_desk(
 ) -> Desk:
     """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
 
-    Raises CommandError for a bad machine file and for a machine that is not simulated.
+    Raises CommandError for a bad machine file and for a machine that does not answer.
     """
     sys.setswitchinterval(GIVE_WAY)
     clock, journal = RealClock(), Journal.at_home()
     desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
     thread, log = ExecutorThread(executor, clock), Log()
 
+    let_go = desk.shut
+
     def shut() -> None:
         thread.close()
+        let_go()
         journal.close()
         log.close()
 
@@ -86,11 +89,10 @@ def desk_and_executor(
 ) -> tuple[Desk, Executor]:
     """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
-    if machine.backend != "sim":
-        raise CommandError(
-            f"{machine.source}: the screen drives simulated machines only, not {machine.backend}"
-        )
-    simulation = simulated(machine, clock)
+    try:
+        connected = connect(machine, clock)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
     heard: list[Desk] = []
 
     def hear(event: Event) -> None:
@@ -99,18 +101,18 @@ def desk_and_executor(
         if journal is not None:
             journal.hear(event)
 
-    executor = Executor(machine, simulation.ports, hear)
+    executor = Executor(machine, connected.ports, hear)
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
         session=Session(workshop(machine, offsets, journal, zero=zero), executor.post),
         shelf=Shelf((home() / "programs", samples())),
-        station=simulation.machine,
+        station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         lathe=machine,
         effect=Effect(drawer(machine)),
-        machine=f"{machine.name} · SIMULATED",
+        machine=f"{machine.name} · {'SIMULATED' if played(machine) else machine.backend.upper()}",
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),
         editor=_editor(workshop(machine, offsets, zero=zero), journal),
@@ -119,6 +121,9 @@ def desk_and_executor(
     give_mdi(desk, machine, offsets, journal or NothingKept())
     give_searchto(desk, machine)
     heard.append(desk)
+    desk.shut = connected.close
+    for warning in connected.ports.warnings:
+        hear(Event(clock.now(), "warning", warning))
     return desk, executor
 
 
