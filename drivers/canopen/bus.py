@@ -60,10 +60,10 @@ class Bus(canopen.Network):
             wait = 0.0
             self._take(message)
 
-    def beat(self) -> None:
-        """Our heartbeat, when it is due."""
+    def beat(self, *, at_once: bool = False) -> None:
+        """Our heartbeat, when it is due. A node begins to watch it with the first that it hears."""
         now = self.clock.now()
-        if now >= self._next_beat and not self.trouble:
+        if (at_once or now >= self._next_beat) and not self.trouble:
             self._next_beat = now + self.config.heartbeat
             self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 
@@ -123,6 +123,8 @@ class Bus(canopen.Network):
 
 class WaitingSdo(SdoClient):
     """An SDO client that reads the bus itself while it waits."""
+
+    RESPONSE_TIMEOUT = 1.0  # s; some drives take their time over what they store
 
     def __init__(self, rx_cobid: int, tx_cobid: int, dictionary: canopen.ObjectDictionary) -> None:
         SdoClient.__init__(self, rx_cobid, tx_cobid, dictionary)

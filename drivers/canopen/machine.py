@@ -84,6 +84,7 @@ class CanopenMachine:
         if self.spindle is not None:
             self.spindle.drive.operational()
         self.io.operational()
+        self.bus.beat(at_once=True)
         self._exchange()
         self.bus.wait(self._answered, _FIRST)
 

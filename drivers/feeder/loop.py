@@ -52,6 +52,7 @@ def serve(sock: socket.socket, driven: Driven, warnings: list[str]) -> None:
             elif select.select([sock], [], [], left)[0]:
                 feeder.orphaned = not _talk(sock, inbox, feeder)
         if feeder.orphaned:
+            sock.close()
             gone += PERIOD
             if gone > _LAST:
                 break

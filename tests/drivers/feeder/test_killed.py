@@ -1,0 +1,165 @@
+"""kill -9, with real processes and real drives' reactions: what stops, what stays."""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.canopen import canopen_peers
+from core.machine.load import load_machine
+from drivers.canopen.peer.machine import Peers
+from drivers.simulated import StepClock
+
+PATIENCE = 60.0  # s of a loaded computer
+END = 20.0 * 1.42  # mm at which the path ends
+# A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
+TIMES = (
+    ("sync_ms = 10 ", "sync_ms = 100 "),
+    ("heartbeat_ms = 100 ", "heartbeat_ms = 1000 "),
+    ("commit_ms = 140", "commit_ms = 200"),
+    ("low_water_ms = 200", "low_water_ms = 250"),
+    ("lease_ms = 200", "lease_ms = 220"),
+    ("clearance = 1.25", "clearance = 2"),
+    ("absolute = false", "absolute = true"),
+)
+
+
+class SteadyClock(StepClock):
+    """Goes with the day, but never more than 5 ms at once: after a stall it catches up step by step."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._zero = time.monotonic()
+
+    def step(self) -> bool:
+        """On by one step; False when it has caught up."""
+        late = time.monotonic() - self._zero - self.now()
+        self.advance(min(max(late, 0.0), 0.005))
+        return late > 0.005
+
+
+@dataclass
+class Shop:
+    """The drives here, the control and its feeder in processes of their own."""
+
+    peers: Peers
+    clock: SteadyClock
+    control: subprocess.Popen[bytes]
+    feeder: int = 0
+    lines: list[dict[str, object]] = field(default_factory=list)
+
+    def until(self, ready: Callable[[], bool]) -> None:
+        """Play the drives until ``ready``."""
+        end = time.monotonic() + PATIENCE
+        while not ready():
+            assert time.monotonic() < end, (self.x, self.peers.plant.drives["X"].power.state, self.lines)
+            while self.clock.step():
+                self.peers.pump()
+            self.peers.pump(0.001)
+            self._listen()
+
+    def play(self, seconds: float) -> None:
+        """Play the drives for so long."""
+        end = self.clock.now() + seconds
+        self.until(lambda: self.clock.now() >= end)
+
+    @property
+    def x(self) -> float:
+        return self.peers.plant.drives["X"].p
+
+    def _listen(self) -> None:
+        out = self.control.stdout
+        assert out is not None
+        if select.select([out], [], [], 0.0)[0] and (line := out.readline()):
+            self.lines.append(json.loads(line))
+
+
+@pytest.fixture
+def shop(tmp_path: Path) -> Iterator[Shop]:
+    """X and Z on their way, at a third of it; spindle and coolant on."""
+    text = resources.machine_file("gt75-canopen.toml").replace('"socketcan"', '"udp_multicast"')
+    group = f"239.74.{os.getpid() // 250 % 250}.{os.getpid() % 250 + 1}"
+    text = text.replace('channel = "can0"', f'channel = "{group}"')
+    for old, new in TIMES:
+        assert old in text, old
+        text = text.replace(old, new)
+    path = tmp_path / "shop.toml"
+    path.write_text(text)
+    clock = SteadyClock()
+    peers = canopen_peers(load_machine(path), clock)
+    words = [sys.executable, "-m", "tests.drivers.feeder.control", str(path)]
+    control = subprocess.Popen(words, stdout=subprocess.PIPE)
+    made = Shop(peers, clock, control)
+    try:
+        made.until(lambda: bool(made.lines))
+        made.feeder = int(str(made.lines[0]["feeder"]))
+        made.until(lambda: made.x > 5.0)
+        yield made
+    finally:
+        for pid in (control.pid, made.feeder):
+            if pid and _alive(pid):
+                os.kill(pid, signal.SIGKILL)
+        control.wait()
+        assert control.stdout is not None
+        control.stdout.close()
+        peers.close()
+
+
+def _alive(pid: int) -> bool:
+    """Not ended, and no zombie either."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> None:
+    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    off: list[float] = []
+    os.kill(shop.control.pid, signal.SIGKILL)
+    while _alive(shop.feeder):
+        shop.play(0.02)
+        off.append(abs(drives["X"].p - drives["Z"].p))
+    assert max(off) < 0.01  # on the diagonal all the way: both drives together
+    assert shop.x == pytest.approx(END, abs=0.01)  # to the end of what was queued
+    shop.until(lambda: not drives["X"].power.powered)  # an orphan takes the power too
+    shop.play(2.0)
+    assert not board.outputs["coolant"]
+    assert board.outputs["collet"]
+    shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0)
+
+
+def test_a_killed_feeder_leaves_it_to_the_drives(shop: Shop) -> None:
+    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    before = shop.x
+    os.kill(shop.feeder, signal.SIGKILL)
+    shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
+    # 160 ms in the drives' queues, then v²/2a: less than 5 mm
+    assert shop.x - before < 6.0
+    assert shop.x < END - 5.0
+    shop.until(lambda: not board.outputs["coolant"])  # three heartbeats
+    assert board.outputs["collet"]
+    shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0)
+    shop.until(lambda: len(shop.lines) > 1)
+    assert "feeder process has ended" in str(shop.lines[1]["fault"])
+
+
+def test_a_stopped_feeder_is_no_life_sign(shop: Shop) -> None:
+    """SIGSTOP: the process is there and does nothing. Its heartbeat must not go on."""
+    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    os.kill(shop.feeder, signal.SIGSTOP)
+    shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
+    shop.until(lambda: not board.outputs["coolant"])
+    shop.until(lambda: len(shop.lines) > 1)
+    assert "has not answered" in str(shop.lines[1]["fault"])

@@ -1,0 +1,220 @@
+"""The feeder within one thread: what it does when its control is silent, and what it answers to nonsense."""
+
+from __future__ import annotations
+
+import dataclasses
+import socket
+import threading
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from core.ports import DriverError, MachinePorts
+from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.hands import FeederHands
+from drivers.feeder.links import LoopLink, SocketLink
+from drivers.feeder.loop import serve
+from drivers.feeder.server import Feeder
+from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
+from drivers.simulated import RealClock, Simulation, StepClock, build_simulation
+from tests.drivers.contract.rigs import SimDriven
+from tests.drivers.machines import CONFIG, ramp
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+@dataclasses.dataclass
+class Bench:
+    sim: Simulation
+    clock: StepClock
+    feeder: Feeder
+    line: Line
+    ports: MachinePorts
+
+    def alone(self, seconds: float) -> None:
+        """Time passes for the feeder; the control says nothing."""
+        for _ in range(round(seconds / 0.01)):
+            self.clock.advance(0.01)
+            self.feeder.tick()
+
+
+@pytest.fixture
+def bench() -> Bench:
+    clock = StepClock()
+    sim = build_simulation(CONFIG, clock)
+    feeder = Feeder(SimDriven(sim.ports, sim.machine), ["without real-time priority"])
+    line = Line(LoopLink(feeder), clock)
+    return Bench(sim, clock, feeder, line, feeder_ports(line))
+
+
+def working(bench: Bench) -> None:
+    bench.ports.axes.enable(True)
+    bench.ports.spindle.run(600.0)
+    bench.ports.io.write("coolant", True)
+    bench.ports.axes.splice(ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0))
+
+
+def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(bench: Bench) -> None:
+    working(bench)
+    bench.alone(0.9)
+    assert bench.sim.machine.spindle_rpm() > 500.0  # the tool is still in the cut
+    assert bench.sim.ports.io.outputs()["coolant"]
+    bench.alone(2.0)
+    sample = bench.sim.ports.axes.sample()
+    assert sample.actual[0] == pytest.approx(50.0 * 1.0167, abs=0.01)
+    assert sample.fault == ""
+    assert sample.enabled  # it may come back; the slides are held
+    assert not bench.sim.ports.io.outputs()["coolant"]
+    assert bench.sim.ports.io.outputs()["collet"]
+    bench.alone(2.0)
+    assert bench.sim.machine.spindle_rpm() == 0.0
+
+
+def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
+    working(bench)
+    bench.alone(0.5)
+    assert bench.ports.axes.sample().moving
+    bench.alone(0.1)
+    assert bench.ports.io.outputs()["coolant"]
+    assert bench.sim.machine.spindle_rpm() > 500.0
+
+
+def test_what_the_feeder_did_alone_is_told(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
+    working(bench)
+    bench.alone(3.0)
+    bench.ports.axes.sample()
+    assert "spindle stopped, outputs safe" in caplog.text
+    assert "silent for 3.00 s" in caplog.text
+
+
+def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
+    working(bench)
+    bench.line.close()
+    bench.alone(0.5)
+    assert bench.sim.ports.axes.sample().enabled
+    assert [bench.feeder.done] == [False]
+    bench.alone(1.0)
+    assert bench.feeder.done
+    bench.alone(0.1)
+    assert not bench.sim.ports.axes.sample().enabled
+
+
+def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
+    assert bench.ports.warnings == ("without real-time priority",)
+
+
+def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
+    hands = FeederHands(bench.line)
+    hands.press_estop()
+    assert not bench.sim.ports.station.snapshot().estop
+    bench.ports.axes.sample()
+    assert bench.sim.ports.station.snapshot().estop
+    hands.set_input("TB2-5", True)
+    assert bench.sim.ports.io.inputs()["TB2-5"]
+    with pytest.raises(DriverError, match="input '77'"):
+        hands.set_input("77", True)
+
+
+@pytest.mark.parametrize(
+    ("head", "expected"),
+    [
+        ({"do": "fly"}, "does not know this request"),
+        ({}, "does not know this request"),
+        ({"do": "do", "what": "explode"}, "does not know this order"),
+        ({"do": "do", "what": "run"}, "no number as rpm"),
+        ({"do": "do", "what": "run", "rpm": "fast"}, "no number as rpm"),
+        ({"do": "splice"}, "damaged"),
+        ({"do": "demand"}, "no number as t"),
+        ({"do": "hand", "name": "__class__", "values": []}, "no simulated station"),
+        ({"do": "hand", "name": "press_estop", "values": 3}, "no simulated station"),
+    ],
+)
+def test_nonsense_is_refused_and_changes_nothing(
+    bench: Bench, head: dict[str, object], expected: str
+) -> None:
+    answer = bench.feeder.handle(Message(head, NOTHING))
+    assert expected in str(answer.head["error"])
+    assert not bench.sim.ports.axes.sample().enabled
+    assert not bench.sim.ports.station.snapshot().estop
+
+
+def test_messages_in_pieces_and_in_heaps() -> None:
+    one = Message({"do": "look", "t": 0.1}, np.array([1.5, -2.0]))
+    two = Message({"do": "hello"}, NOTHING)
+    data = packed(one) + packed(two)
+    inbox = Inbox()
+    found = [message for byte in data for message in inbox.feed(bytes([byte]))]
+    assert [message.head for message in found] == [one.head, two.head]
+    assert found[0].numbers.tolist() == [1.5, -2.0]
+    assert [message.head for message in Inbox().feed(data)] == [one.head, two.head]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"\x04\x00\x00\x00\x00\x00\x00\x00nope",
+        b"\x02\x00\x00\x00\x00\x00\x00\x00[]",
+        b"\x02\x00\x00\x00\x07\x00\x00\x00{}1234567",
+        (LARGEST + 1).to_bytes(4, "little") + b"\x00\x00\x00\x00",
+    ],
+)
+def test_garbage_on_the_socket_is_an_error(data: bytes) -> None:
+    with pytest.raises(DriverError, match="no message"):
+        list(Inbox().feed(data))
+
+
+@pytest.fixture
+def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
+    """The loop of the feeder's process in a thread, and the control's end of its socket."""
+    ours, theirs = socket.socketpair()
+    clock = RealClock()
+    sim = build_simulation(CONFIG, clock)
+    thread = threading.Thread(target=serve, args=(theirs, SimDriven(sim.ports, sim.machine), []))
+    thread.start()
+    yield ours, sim, thread
+    ours.close()
+    thread.join(20.0)
+    theirs.close()
+    assert not thread.is_alive()
+
+
+def assert_off(sim: Simulation) -> None:
+    """The drives lose power with the next step of the model."""
+    clock = sim.ports.clock
+    end = clock.now() + 5.0
+    while sim.ports.axes.sample().enabled:
+        assert clock.now() < end
+
+
+def test_the_loop_answers_and_ends_with_its_control(
+    served: tuple[socket.socket, Simulation, threading.Thread],
+) -> None:
+    ours, sim, thread = served
+    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
+    ports.axes.enable(True)
+    assert ports.axes.sample().enabled
+    ours.close()
+    thread.join(20.0)
+    assert not thread.is_alive()
+    assert_off(sim)
+
+
+def test_garbage_from_the_control_counts_as_its_end(
+    served: tuple[socket.socket, Simulation, threading.Thread],
+) -> None:
+    ours, sim, thread = served
+    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
+    ports.axes.enable(True)
+    ours.sendall(b"\xff" * 64)
+    thread.join(20.0)
+    assert not thread.is_alive()
+    assert_off(sim)
+    assert "feeder process has ended" in ports.axes.sample().fault
+
+
+def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
+    ours, theirs = socket.socketpair()
+    line = Line(SocketLink(ours), RealClock())
+    with ours, theirs, pytest.raises(DriverError, match="has not answered"):
+        feeder_ports(line)
