@@ -83,7 +83,23 @@ def test_one_mistake_a_block_with_its_column() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "\x00", "ß=5", "=5", "X==5", "C=DC((5))", "N", "/", "C=AC", "X=+", "(" * 500]
+    "text",
+    [
+        "",
+        "\x00",
+        "ß=5",
+        "=5",
+        "X==5",
+        "C=DC((5))",
+        "N",
+        "/",
+        "C=AC",
+        "X=+",
+        "(" * 500,
+        "G" + "9" * 400,
+        "X" + "9" * 400,
+        "R" + "9" * 400 + "=1",
+    ],
 )
 def test_nothing_breaks_the_lexer(text: str) -> None:
     lex_line(1, text)
@@ -107,3 +123,8 @@ def test_the_parts_of_other_lines() -> None:
     assert spans("%_N_NUT_SPF")[0].ink is Ink.CALL
     assert spans("NUT P2")[0] == (0, 3, Ink.CALL)
     assert spans("X5 T1")[-1] == (3, 1, Ink.FAULT)
+
+
+def test_numbers_without_end_are_refused() -> None:
+    for letter in "GMXFS":
+        assert lex_line(1, letter + "9" * 400).errors[0].code == "12080"

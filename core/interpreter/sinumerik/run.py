@@ -16,8 +16,9 @@ from core.interpreter.sinumerik.arcs import arc
 from core.interpreter.sinumerik.corners import Corners, corner_of
 from core.interpreter.sinumerik.feeds import feed_words
 from core.interpreter.sinumerik.flow import Flow, ends_main
+from core.interpreter.sinumerik.modes import modes
 from core.interpreter.sinumerik.moves import straight
-from core.interpreter.sinumerik.offsets import programmed_offset, settable_offset
+from core.interpreter.sinumerik.offsets import programmed_offset
 from core.interpreter.sinumerik.spindle import dwell, spindle_words
 from core.interpreter.sinumerik.state import State
 from core.interpreter.sinumerik.statement import Statement, statement
@@ -148,7 +149,7 @@ class Interpreter:
         if made.offset_key is not None:
             programmed_offset(state, made)
             return
-        self._modes(made)
+        modes(state, made)
         feed_words(state, made)
         if "dwell" in made.g:
             yield dwell(state, made)
@@ -160,24 +161,6 @@ class Interpreter:
             text = "G53 acts in a block that moves an axis."
             raise made.refuse(made.g["suppression of offsets"], "word-unused", text, "Add the axes.")
         yield from self._stops(made)
-
-    def _modes(self, made: Statement) -> None:
-        """The codes that stay in force."""
-        state = self._state
-        modal = state.modal
-        state.motion = _chosen(made.code("motion"), state.motion)
-        state.plane = _chosen(made.code("plane"), state.plane)
-        metric, absolute = made.code("unit of length"), made.code("absolute or incremental")
-        if "DIAMON" in made.keys or "DIAMOF" in made.keys:
-            modal = modal._replace(diameter="DIAMON" in made.keys)
-        if metric is not None:
-            modal = modal._replace(metric=metric == 71)
-        if absolute is not None:
-            modal = modal._replace(absolute=absolute == 90)
-        if modal.rapid != (state.motion == 0):
-            modal = modal._replace(rapid=state.motion == 0)
-        state.adopt(modal)
-        settable_offset(state, made)
 
     def _stops(self, made: Statement) -> Iterator[Block]:
         """M0, M1, and the end."""
@@ -209,7 +192,3 @@ class Interpreter:
         self._refuse(
             refused(line.number, 0, "too-many-blocks", line.block, text, "Lower the passes of the calls.")
         )
-
-
-def _chosen(code: int | None, before: int) -> int:
-    return before if code is None else code

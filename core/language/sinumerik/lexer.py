@@ -3,31 +3,20 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
 from core.language.sinumerik import vocabulary as known
 from core.language.sinumerik.faults import SYNTAX, alarm, refused
+from core.language.sinumerik.values import NUMBER, PARAMETER, beyond, value_at
 from core.language.sinumerik.words import LONGEST_LINE, Form, Line, Word
 
-NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
-_NUMBER = re.compile(NUMBER)
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
-_R = re.compile(r"R([0-9]+)")
 _REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
 _PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
 _MOST_PASSES = 9999
-
-
-class _Value(NamedTuple):
-    """What stands behind = or in brackets, and where it ends."""
-
-    number: float | None
-    r: int | None
-    end: int
 
 
 def lex_line(number: int, text: str) -> Line:
@@ -116,7 +105,7 @@ class _Scanner:
         if letter not in known.LETTERS:
             why = known.LETTERS_OUTSIDE.get(letter, "this control has no such word")
             return self._outside(at, at + 1, letter, why)
-        match = _NUMBER.match(text, at + 1)
+        match = NUMBER.match(text, at + 1)
         if match is None:
             return self._skip(at, f"{letter} has no number", f"Write {letter} with a number, or {letter}=…")
         return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
@@ -154,7 +143,7 @@ class _Scanner:
     def _assigned(self, match: re.Match[str]) -> int:
         """A word with =."""
         name, at, end = match[1], match.start(), match.end()
-        is_r = _R.fullmatch(name)
+        is_r = PARAMETER.fullmatch(name)
         if is_r is None and name not in known.ASSIGNED:
             why = known.LETTERS_OUTSIDE.get(name, "this control has no such word")
             return self._outside(at, end, name, why)
@@ -162,9 +151,9 @@ class _Scanner:
             return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
         form = Form.PLAIN
         found = _FORM.match(self._text, end)
-        if found is not None and not _R.match(self._text, end):
+        if found is not None and not PARAMETER.match(self._text, end):
             return self._target(name, at, found)
-        value = self._value(end)
+        value = value_at(self._text, end)
         if value is None:
             return self._skip(at, f"{name}= has no value", "Write a number or an R parameter.")
         written = "".join(self._text[at : value.end].split())
@@ -178,7 +167,7 @@ class _Scanner:
             return self._skip(at, f"{form} is nothing that {name}= takes", f"It takes {allowed}.")
         if bracket is None:
             return self._skip(at, f"{form} lacks its brackets", f"Write {name}={form}(…).")
-        value = self._value(found.end())
+        value = value_at(self._text, found.end())
         if value is None:
             return self._skip(at, f"{form} has no value in its brackets", f"Write {name}={form}(…).")
         close = value.end
@@ -190,34 +179,12 @@ class _Scanner:
         word = Word(name, value.number, at + 1, written, Form(form), value.r)
         return self._keep(word, close + 1)
 
-    def _value(self, at: int) -> _Value | None:
-        """A number or an R parameter."""
-        r = _R.match(self._text, at)
-        if r is not None:
-            number = int(r[1][:9])
-            return _Value(None, number, r.end()) if number <= known.MOST_R else None
-        match = _NUMBER.match(self._text, at)
-        return None if match is None else _Value(float(match[0]), None, match.end())
-
     def _keep(self, word: Word, end: int) -> int:
         after = self._text[end : end + 1]
         if after in {".", "+", "-", "*", "=", "(", ")", ","}:
             return self._skip(word.column - 1, f"{word.text}{after} is no number", "Correct the number.")
-        fault = self._beyond(word)
+        fault = beyond(word)
         if fault:
             self.refuse(word.column, *fault)
         self.words.append(word)
         return end
-
-    def _beyond(self, word: Word) -> tuple[str, str] | None:
-        """What is wrong with the number of a word."""
-        value = word.value
-        if value is None:
-            return None
-        if word.name in {"G", "M"}:
-            digits = word.text[1:]
-            return None if digits.isdigit() else (f"{word.text} is no code", "Codes are whole numbers.")
-        low, high = known.REACH["R" if _R.fullmatch(word.name) else word.name]
-        if low <= value <= high:
-            return None
-        return f"{word.text} is out of range", f"{word.name} lies between {low:g} and {high:g}."
