@@ -48,7 +48,7 @@ class PathView(Panel):
         self._set: Panes | None = None
         self._tip = Tip()
         self._pointer, self.ruling = Pointer(self), Ruling(self, picked)
-        self.grabGesture(Qt.GestureType.PinchGesture)
+        self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     @property
     def panes(self) -> Sequence[Pane]:
@@ -229,10 +229,8 @@ class PathView(Panel):
             self.measure(on=False)
 
     def event(self, event: QEvent) -> bool:
-        """Two fingers."""
-        if self._pointer.gesture(event):
-            return True
-        return super().event(event)
+        """Fingers; everything else goes its usual way."""
+        return self._pointer.takes(event) or super().event(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The wheel zooms about the pointer."""
@@ -240,16 +238,15 @@ class PathView(Panel):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """A button of the view, or the start of a drag."""
-        if not self.touch(event.position()):
-            self._pointer.press(event)
+        self._pointer.press(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Drag the picture along."""
-        self._pointer.move(event)
+        self._pointer.move(event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """The drag is over."""
-        self._pointer.release(event)
+        self._pointer.release(event.position())
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Another size: the whole part again."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QColor, QImage, QMouseEvent
+from PySide6.QtGui import QColor, QImage, QMouseEvent, QPointingDevice
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -169,6 +169,43 @@ def test_a_touched_line_names_its_block_and_a_drag_does_not(view: PathView) -> N
         QApplication.sendEvent(view, event)
     assert found == [2]
     assert view.view != before
+
+
+def fingers(view: PathView, device: QPointingDevice, act: str, *places: tuple[int, int]) -> None:
+    """Put fingers down, move them, or lift them."""
+    with_all = QTest.touchEvent(view, device, False)
+    for number, place in enumerate(places):
+        getattr(with_all, act)(number, QPoint(*place), view)
+    with_all.commit()
+
+
+def test_two_fingers_spread_the_picture_and_touch_nothing(view: PathView) -> None:
+    device = QTest.createTouchDevice()
+    before = view.view
+    assert before is not None
+    fingers(view, device, "press", (380, 250), (420, 250))
+    for far in (10, 20, 30, 40):
+        fingers(view, device, "move", (380 - far, 250), (420 + far, 250))
+    fingers(view, device, "release", (340, 250), (460, 250))
+    assert view.view is not None
+    assert view.view.scale == pytest.approx(3 * before.scale)  # from 40 pixels to 120
+    assert FOUND == []
+
+
+def test_one_finger_drags_and_touches(view: PathView) -> None:
+    device = QTest.createTouchDevice()
+    at = on_widget(view, -9.0, 5.0)
+    fingers(view, device, "press", (at.x(), at.y()))
+    fingers(view, device, "release", (at.x(), at.y()))
+    assert FOUND == [2]
+    before = view.view
+    assert before is not None
+    fingers(view, device, "press", (at.x(), at.y()))
+    for far in (20, 40):
+        fingers(view, device, "move", (at.x() + far, at.y()))
+    fingers(view, device, "release", (at.x() + 40, at.y()))
+    assert FOUND == [2]
+    assert view.view == before.moved(40, 0)
 
 
 def test_face_and_side_come_with_a_program_that_has_them(view: PathView) -> None:

@@ -8,7 +8,10 @@ from app.screen.layout import Rect
 
 
 class EditorPlaces(NamedTuple):
-    """The parts of the page; ``ask`` is empty while nothing is asked."""
+    """The parts of the page; ``ask`` is empty while nothing is asked.
+
+    ``path`` is the place of all pictures of the program: a view of the part being cut is one more choice there.
+    """
 
     head: Rect
     text: Rect

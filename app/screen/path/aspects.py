@@ -1,4 +1,4 @@
-"""From where a program is looked at."""
+"""From where a program is looked at. A view of the part being cut is to be one more of these choices."""
 
 from __future__ import annotations
 
