@@ -10,7 +10,7 @@ from app.screen.layout import Rect
 class EditorPlaces(NamedTuple):
     """The parts of the page; ``ask`` is empty while nothing is asked.
 
-    ``path`` is the place of all pictures of the program: a view of the part being cut is one more choice there.
+    ``path`` is the place of all pictures of the program: one of the part being cut is one more choice.
     """
 
     head: Rect
