@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +33,7 @@ from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event
 from core.executor.thread import ExecutorThread
+from core.interpreter.modal import Modal
 from core.language.dialect import Dialect
 from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
@@ -102,10 +104,14 @@ def desk_and_executor(
             journal.hear(event)
 
     executor = Executor(machine, connected.ports, hear)
+
+    def left() -> Modal:
+        return executor.snapshot.modal
+
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
-        session=Session(workshop(machine, offsets, journal, zero=zero), executor.post),
+        session=Session(workshop(machine, offsets, journal, zero=zero, left=left), executor.post),
         shelf=Shelf((home() / "programs", samples())),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
@@ -143,14 +149,19 @@ def workshop(
     journal: Journal | None = None,
     *,
     zero: Callable[[], Zero] = stored_zero,
+    left: Callable[[], Modal] | None = None,
 ) -> Workshop:
-    """What loading needs; the offsets are those of the moment of loading."""
+    """What loading needs; offsets, and unit and rapid rate that the job before has ``left``, are those of
+    the moment of loading."""
 
     def new_job(source: Source, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
         tools, secondary = offsets()
         setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero(), block_delete=block_delete)
+        if left is not None:
+            modal = left()
+            setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_whole(source), setup)
 
     def prove_job(job: Job, watch: Watch) -> Proved:

@@ -37,6 +37,7 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
+from core.executor.job import outdated
 from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.errors import StoreError
 
@@ -202,7 +203,7 @@ class Desk:
         self._changes = self.book.changes + self.zero.changes
         if trouble:
             self.say(f"REFUSED: {trouble}")
-        if self._changes != before:
+        if self._changes != before or self._outdated(snapshot):
             self._rebuild = True
         if self._rebuild and snapshot.state not in UNDER_WAY and not (self.book.busy or self.zero.busy):
             self._rebuild = False
@@ -210,6 +211,12 @@ class Desk:
             now = self.session.now
             if now.path is not None:
                 self.session.load(now.path, now.block_delete)
+
+    def _outdated(self, snapshot: Snapshot) -> bool:
+        """The job before has left another unit than this program was proved with, and it names none."""
+        now = self.session.now
+        at_rest = snapshot.state is State.IDLE and not now.busy and now.phase is not Phase.UNREADABLE
+        return at_rest and now.job is not None and bool(outdated(now.job, snapshot.modal))
 
     # --- keys ----------------------------------------------------------------------------------------
 

@@ -36,10 +36,11 @@ def hindrance(bench: Bench, state: State) -> str:
 
 def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) -> str:
     """Why this job may not be started now; empty when it may."""
-    return hindrance(bench, state) or _program(job, proof)
+    return hindrance(bench, state) or unproved(job, proof)
 
 
-def _program(job: Job | None, proof: Proof | None) -> str:
+def unproved(job: Job | None, proof: Proof | None) -> str:
+    """What proving leaves to be done before this job may be started; empty when nothing."""
     if job is None:
         return "no program is loaded"
     if proof is None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass
 
+from core.interpreter.carried import RAPID, UNITS, carried
+from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
 from core.language.source import Source
 
@@ -17,6 +20,7 @@ class Job:
     setup: Setup
     digest: str
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
+    carries: frozenset[str] = frozenset()  # what the program has from the job before it
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
 
 
@@ -49,4 +53,15 @@ def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     text.update(repr(circumstances).encode())
-    return Job(source, setup, text.hexdigest(), frozenset(setup.tools), part_of)
+    return Job(source, setup, text.hexdigest(), frozenset(setup.tools), carried(source), part_of)
+
+
+def outdated(job: Job, left: Modal) -> str:
+    """Whether the job before has left another unit or rapid rate than this job was proved with; in words."""
+    if job.setup.begin is not None:
+        return ""
+    if UNITS in job.carries and job.setup.metric != left.metric:
+        return f"the control counts in {'mm' if left.metric else 'inches'} now"
+    if RAPID in job.carries and not math.isclose(job.setup.last_rapid, left.rapid_rate):
+        return "the rapid rate is another one now"
+    return ""

@@ -91,9 +91,9 @@ class Mover:
     def _last_block(self) -> int | None:
         now = self._bench.now
         current = self.player.block(now)
-        first = self._single_from or (current.n if current else None)
+        first = self._single_from if self._single_from is not None else (current.n if current else None)
         last = self.player.settle_at(first, now)
-        self._single_from = last or first
+        self._single_from = first if last is None else last
         return last
 
     def _refill(self, feed: BlockFeed) -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from core.executor import gate
 from core.executor.bench import Bench
 from core.executor.inherited import as_it_is
-from core.executor.job import Job
+from core.executor.job import Job, outdated
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Standing
+from core.interpreter.begin import Begin
+from core.interpreter.modal import Modal
 
 _NOTHING = {
     Starts.LINE: "no line is ready: type one and press Enter",
@@ -43,17 +45,26 @@ def _moved(bench: Bench, job: Job | None) -> str:
 
 
 def _changed(bench: Bench, standing: Standing, job: Job | None) -> str:
-    """Whether what the line or the restart was proved for is still so."""
-    begin = job.setup.begin if job is not None else None
-    if job is None or begin is None:
+    """Whether what the program, the line or the restart was proved for is still so."""
+    if job is None:
         return ""
-    now, wanted = as_it_is(standing.modal, bench), begin.checkpoint.modal
-    if begin.single:
-        same = now == wanted
-        return "" if same else "the state has changed since the line was proved: press Enter again"
+    begin = job.setup.begin
+    if begin is None:
+        old = outdated(job, standing.modal)
+        return f"{old}, and the program says nothing of it: load it again" if old else ""
+    now = as_it_is(standing.modal, bench)
+    if not begin.single:
+        return _restart(standing, job, begin, now)
+    same = now == begin.checkpoint.modal
+    return "" if same else "the state has changed since the line was proved: press Enter again"
+
+
+def _restart(standing: Standing, job: Job, begin: Begin, now: Modal) -> str:
+    """The program must still be the one that is loaded, and the collet as the line has it."""
     if standing.job is None or standing.job.digest != job.part_of:
         return "the program was loaded anew: search for the line again"
-    if now.collet_closed != wanted.collet_closed:
+    wanted = begin.checkpoint.modal.collet_closed
+    if now.collet_closed != wanted:
         is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
         return f"the collet is {is_now} and must be {must} at line {begin.line}: use MDI"
-    return ""
+    return gate.unproved(standing.job, standing.proof)

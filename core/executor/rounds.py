@@ -10,13 +10,14 @@ from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.inherited import as_it_is, given_up, interrupted
 from core.executor.interpret import circumstances
-from core.executor.job import Job
+from core.executor.job import Job, outdated
 from core.executor.player import Player
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Counters, Standing
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
+from core.language.dialect import Dialect
 from core.motion.limits import MotionLimits
 
 
@@ -85,6 +86,10 @@ class Rounds:
         self.player.forget()
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
+        """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
+        job, before = self.standing.job, self.standing.modal
+        if not self._line and job is not None and job.source.dialect is not Dialect.OMNITURN:
+            modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
         self.standing.modal, self.standing.tool_open = modal, tool_open
 
     def look(self) -> None:
@@ -115,8 +120,11 @@ class Rounds:
         counters.last_cycle, counters.cycle = counters.cycle, 0.0
         bench.say("part", f"part {counters.parts}, {counters.last_cycle:.2f} s")
         if end is not None and end.reset and bench.switches.cycle_repeat and job is not None:
-            self._open(job)
-            return
+            old = outdated(job, self.cycle.modal) if self.cycle is not None else ""
+            if not old:
+                self._open(job)
+                return
+            bench.say("refused", f"no repeat: {old}, and the program says nothing of it")
         bench.say("end", "program end")
         self._over()
 

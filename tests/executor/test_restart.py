@@ -218,3 +218,33 @@ def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
     assert "is under way" in rig.said("refused")[-1]
     rig.post(LoadJob(job))
     assert rig.shot.starts is Starts.PROGRAM
+
+
+def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.executor._bench.switches.single_block = True
+    restart(rig, 4)  # so early that the way has more blocks than the program before it
+    texts = []
+    for _ in range(20):
+        rig.until(State.BLOCK_END, State.IDLE)
+        texts.append(rig.shot.block_text)
+        if rig.shot.line == 6:
+            break
+        rig.run(0.4)
+        rig.post(CycleStart())
+        rig.run(0.1)
+    assert texts[:3] == ["X", "Z", "M03S900"]
+    assert texts[-1] == "X.8"
+
+
+def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    bare = replace(whole, tools_set=frozenset())
+    rig.post(LoadJob(bare, Proof(bare.digest, (), tools=(1,))))
+    prepare(rig, job)
+    assert refused(rig) == "tool offset T1 has never been set"

@@ -31,7 +31,7 @@ def test_m30_leaves_units_and_the_frame_of_the_tool_and_m02_the_m_functions_too(
     assert (left.spindle, left.rpm, left.coolant) == (1, 900.0, True)
     assert rig.shot.offset == (-12.7, -50.8)
     assert rig.shot.spindle_asked == 900.0
-    rig.start("G90G94F300\nX-.3\nM30\n")
+    rig.start("G90G70G94F300\nX-.3\nM30\n")
     rig.until(State.IDLE)
     assert (rig.shot.modal.tool, rig.shot.modal.spindle, rig.shot.modal.coolant) == (0, 0, False)
     assert rig.shot.rpm_command == 0.0

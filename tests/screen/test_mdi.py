@@ -192,3 +192,16 @@ def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator)
     at_mdi.key(Key.Key_Escape)
     at_mdi.run("T1")
     assert value(at_mdi, "tool").startswith("T1")
+
+
+def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Operator) -> None:
+    desk = at_mdi.stage.desk
+    desk.choose("bushing")
+    desk.session.settled(30.0)
+    at_mdi.run("G71")
+    at_mdi.key(Key.Key_F2)
+    at_mdi.window.refresh()
+    loaded = desk.session.settled(30.0)
+    assert loaded.job is not None
+    assert loaded.job.setup.metric
+    assert any(found.code == "units-unnamed" for found in loaded.diagnostics)

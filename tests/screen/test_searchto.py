@@ -121,9 +121,9 @@ def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) ->
     operator.key(Key.Key_Return)
     assert model_of(operator).cursor.line == 22
     operator.key(Key.Key_Escape)
-    operator.type("x.75")
+    operator.type("x.5")
     operator.key(Key.Key_F2)
-    assert model_of(operator).cursor.line == 25
+    assert model_of(operator).cursor.line == 37
     operator.key(Key.Key_F3)
     assert model_of(operator).cursor.line == 22
     operator.key(Key.Key_Escape)

@@ -1,0 +1,83 @@
+"""Unit and rapid rate outlive a job: a program that says none of its own has those of the job before it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import State
+from core.interpreter.carried import RAPID, UNITS, carried
+from core.language.dialect import Dialect
+from core.language.source import Source
+from tests.executor.lines import mdi
+from tests.executor.rig import INCH, Rig
+
+NAMES_NONE = "G90G94F300\nX.1\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("first", "carries"),
+    [
+        ("G90G94F300", {UNITS}),
+        ("G90G70G94F300(PART)", set()),
+        ("(TITLE G71)\ng90 g72", {UNITS, RAPID}),
+        ("G90G71G95F.01", {RAPID}),
+        ("G90G71", {RAPID}),
+    ],
+)
+def test_what_the_first_line_does_not_say_is_carried_over(first: str, carries: set[str]) -> None:
+    assert carried(Source("PART", f"{first}\nX1\nM30\n")) == carries
+
+
+def test_other_dialects_say_all_themselves() -> None:
+    assert carried(Source("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
+
+
+def after_a_metric_job() -> Rig:
+    rig = Rig()
+    mdi(rig, "G71")
+    assert rig.shot.modal.metric
+    return rig
+
+
+def load(rig: Rig, job: Job) -> None:
+    rig.run(0.4)
+    rig.post(LoadJob(job, Proof(job.digest, ())))
+    rig.post(CycleStart())
+
+
+def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
+    rig = after_a_metric_job()
+    job = rig.load(NAMES_NONE)
+    load(rig, job)
+    assert rig.shot.start_refused.startswith("no line is ready")  # MDI is still open
+    rig.post(Prepare())
+    load(rig, job)
+    assert rig.shot.start_refused == (
+        "the control counts in mm now, and the program says nothing of it: load it again"
+    )
+    load(rig, make_job(job.source, replace(job.setup, metric=True)))
+    rig.until(State.IDLE)
+    assert rig.shot.actual[0] == pytest.approx(0.1, abs=0.006)
+
+
+def test_a_program_that_names_its_unit_starts_whatever_was_before() -> None:
+    rig = Rig()
+    rig.start("G90G71G94F300\nX1\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.modal.metric
+    rig.start("G90G70G94F300\nX.1\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
+
+
+def test_no_repeat_in_another_unit_than_the_first_time() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("cycle_repeat", True))
+    rig.start("G90G94F300\nX.1\nG71\nX2\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.said("refused")[-1].startswith("no repeat: the control counts in mm now")
