@@ -41,6 +41,12 @@ def tools_of(hands: Hands) -> ToolsPage:
     return page
 
 
+def in_force(hands: Hands) -> float:
+    """X of T1 that the control was told last; 0 before that."""
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
+    return used[-1].tools[1].x if used else 0.0
+
+
 def answer(hands: Hands, *texts: str) -> None:
     for text in texts:
         hands.type(text)
@@ -152,8 +158,8 @@ def test_no_correction_while_running_but_at_a_stop_and_it_counts_afterwards(
     hands.machine.idle()
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
-    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)][-1]
-    assert used.secondary[1].x == pytest.approx(0.05 * 25.4)
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
+    assert used[-1].secondary[1].x == pytest.approx(0.05 * 25.4)
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
@@ -200,9 +206,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.type("-.0002")
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00035 * 25.4))
-    hands.sees(lambda: any(isinstance(command, UseOffsets) for command in hands.machine.posted))
-    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)][-1]
-    assert used.tools[1].x == pytest.approx(-12.7 - 0.00035 * 25.4)
+    hands.sees(lambda: in_force(hands) == pytest.approx(-12.7 - 0.00035 * 25.4))
     hands.key(Key.Key_F4)
     hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 

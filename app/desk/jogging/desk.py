@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 
 from app.desk import prompts
 from app.desk.desk import Desk
+from app.desk.jogging.asked import TOOL
 from app.desk.jogging.hold import JogHold
 from app.desk.jogging.home import HomeAsk
 from app.desk.jogging.speeds import CONTINUOUS, Speeds
-from app.desk.jogging.tool import TOOL, ToolSetting
+from app.desk.jogging.tool import ToolSetting
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.words import tr
 from core.executor.commands import JogStop

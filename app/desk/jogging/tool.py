@@ -7,20 +7,19 @@ from dataclasses import dataclass, field
 from app.desk.arithmetic import LONGEST, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.jogging import touch
-from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
+from app.desk.jogging.asked import TOOL, note
+from app.desk.jogging.touch import TOUCHES, TouchOff
 from app.desk.offsets import allowed
 from app.desk.offsets.book import OffsetBook
 from app.desk.offsets.cells import ToolCells
 from app.desk.offsets.dialogue import CHARACTERS
-from app.desk.offsets.entry import TOOL_FIELDS, shown_value, value_typed, word
-from app.desk.offsets.figures import not_set
+from app.desk.offsets.entry import TOOL_FIELDS
 from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.store.fields import Sort
 from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
-TOOL = "tool"
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
@@ -50,63 +49,9 @@ class ToolSetting:
         return self.book.tools.get(self.number)
 
     @property
-    def _masters(self) -> bool:
+    def masters(self) -> bool:
         """Whether the master is being touched."""
         return self.asked in TOUCHES and self.row is not None and self.row.master
-
-    @property
-    def question(self) -> str:
-        """What is asked now; empty when nothing is."""
-        name = f"T{self.number}"
-        if self.asked == TOOL:
-            return tr("TOOL NUMBER?")
-        if self.asked == TOUCH_X:
-            return tr("{tool} MEASURED DIAMETER?").format(tool=name)
-        if self.asked == TOUCH_Z:
-            return tr("{tool} Z POSITION OF THE FACE?").format(tool=name)
-        return f"{name}  {word(self.asked)}?" if self.asked else ""
-
-    @property
-    def note(self) -> str:
-        """What has to be known before the answer is entered."""
-        if self._masters and self.touching.alone:
-            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=self.number)
-        if self._masters:
-            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=self.number)
-        new = self.cells.new
-        if new.number and new.number == self.number:
-            text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
-            return text.format(number=self.number, axis=new.missing.upper())
-        return ""
-
-    @property
-    def old_to_new(self) -> str:
-        """What the answer would make of the tool, or else the last change."""
-        if not self.asked or self.asked == TOOL:
-            return self.ledger.last_told
-        mode, name = self.ledger.mode, TOUCHES.get(self.asked, self.asked)
-        was = shown_value(name, getattr(self.row, name), mode) if self.row else not_set()
-        try:
-            touched = self.asked in TOUCHES
-            value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
-            return f"{word(name)}  {was}  →  {shown_value(name, value, mode)}"
-        except EntryError:
-            return f"{word(name)}  {was}  →  …"  # half a sum is no mistake yet
-
-    def tip(self, snapshot: Snapshot) -> tuple[float, float] | None:
-        """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
-        if self.row is None:
-            return None
-        x, z = self.row.offset
-        return snapshot.tip[0] - x, snapshot.tip[1] - z
-
-    def from_master(self) -> tuple[float, float] | None:
-        """How far this tip stands from that of the master, mm; None without two such tools."""
-        master = self.book.tools.get(self.book.master)
-        if self.row is None or master is None:
-            return None
-        (x, z), (mx, mz) = self.row.offset, master.offset
-        return x - mx, z - mz
 
     # --- every frame ---------------------------------------------------------------------------------
 
@@ -179,7 +124,7 @@ class ToolSetting:
         elif len(key) == 1 and self.takes(key):
             if len(self.text) < (REMARK_LONGEST if self.asked == "remark" else LONGEST):
                 self.text += key
-        elif key in {"l", "L"} and self._masters:
+        elif key in {"l", "L"} and self.masters:
             self.touching.alone = not self.touching.alone
         else:
             return False
@@ -217,7 +162,7 @@ class ToolSetting:
         why = self.touching.save(self.number, self.text, self.ledger, self.cells.new)
         if not why:
             self.close()
-        return why or self.note
+        return why or note(self)
 
     def _field(self) -> str:
         name, text = self.asked, self.text

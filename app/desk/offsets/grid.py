@@ -6,12 +6,10 @@ from dataclasses import dataclass, field
 
 from app.desk.arithmetic import LONGEST, EntryError
 from app.desk.desk import Desk
-from app.desk.offsets import allowed
+from app.desk.offsets import allowed, gridwords
 from app.desk.offsets.book import OffsetBook
 from app.desk.offsets.cells import ToolCells
 from app.desk.offsets.dialogue import CHARACTERS
-from app.desk.offsets.entry import marked, shown_value, value_typed, word
-from app.desk.offsets.figures import not_set
 from app.desk.offsets.ledger import Ledger
 from app.desk.offsets.shown import Rows
 from app.desk.words import tr
@@ -53,53 +51,16 @@ class ToolGrid:
         """The tool under the cursor; None when it was never set."""
         return self.book.tools.get(self.number)
 
-    def shown(self, number: int, name: str) -> str:
-        """A cell of the table; X and Z of another tool from the master when that is asked for."""
-        row = self.book.tools.get(number)
-        if row is None:
-            new = self.cells.new
-            known = number == new.number and name in new.values
-            return shown_value(name, new.values[name], self.ledger.mode) if known else ""
-        master = self.book.tools.get(self.book.master)
-        if self.relative and master is not None and name in {"x", "z"} and number != self.book.master:
-            at = "xz".index(name)
-            return shown_value(name, row.offset[at] - master.offset[at], self.ledger.mode)
-        return shown_value(name, getattr(row, name), self.ledger.mode)
-
-    @property
-    def question(self) -> str:
-        """What is asked: tool and field."""
-        mark = marked(self.name, self.ledger.mode)
-        return f"T{self.number}  {word(self.name)}{f' {mark}' if mark else ''}?"
-
-    @property
-    def old_to_new(self) -> str:
-        """The cell before and after what is typed, or else the last change."""
-        if not (self.text or self.writing):
-            return self.ledger.last_told
-        was = self.shown(self.number, self.name) or (not_set() if self.tool is None else "")
-        try:
-            new = shown_value(
-                self.name, value_typed(self.name, self.text, self.ledger.mode), self.ledger.mode
-            )
-        except EntryError:
-            new = "…"  # half a sum is no mistake yet
-        return f"{was}  →  {new}"
-
     def proposed(self) -> Rows:
         """The tables as they would be with what is typed."""
-        tools, secondary, row = self.book.tools, self.book.secondary, self.tool
-        if row is None or not self.text:
-            return tools, secondary
-        try:
-            value = value_typed(self.name, self.text, self.ledger.mode)
-        except EntryError:
-            return tools, secondary
-        return {**tools, self.number: row._replace(**{self.name: value})}, secondary  # type: ignore[arg-type]
+        return gridwords.proposed(self)
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
-        why = self.barred(snapshot) or allowed.standing(snapshot)
+        correction = self.name in allowed.CORRECTIONS
+        why = (
+            self.book.locked or allowed.refusal(snapshot, correction=correction) or allowed.standing(snapshot)
+        )
         if why:
             return why
         if self.ledger.looking_back is not None:
@@ -110,6 +71,8 @@ class ToolGrid:
 
     def barred(self, snapshot: Snapshot) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""
+        if self.relative and self.name in {"x", "z"}:
+            return tr("X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME")
         return self.book.locked or allowed.refusal(snapshot, correction=self.name in allowed.CORRECTIONS)
 
     def look(self, snapshot: Snapshot) -> None:

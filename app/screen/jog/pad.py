@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -15,6 +15,7 @@ from app.desk.jogging.speeds import CONTINUOUS, rapid_word, speed_words, step_wo
 from app.desk.offsets.figures import Mode
 from app.desk.words import tr
 from app.screen.fingers import Control, FingerPanel
+from app.screen.jog.tiles import Tiles, draw_tiles
 from app.screen.look import CENTRE, LEFT, Look, put
 from core.executor.snapshot import Snapshot
 
@@ -78,7 +79,7 @@ class JogPad(FingerPanel):
         words = (tr("CONT"), *step_words(model.hold.mode))
         chosen = model.speeds.step - CONTINUOUS
         presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
-        self._tiles(painter, row, (unit, "F2"), words, chosen, presses)
+        self._tiles(painter, row, Tiles((unit, "F2"), words, presses, chosen))
 
     def _speeds(self, painter: QPainter, row: QRectF) -> None:
         model, mode = self._model, self._model.hold.mode
@@ -90,7 +91,7 @@ class JogPad(FingerPanel):
             *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
             model.arm,
         ]
-        self._tiles(painter, row, (unit, "F3"), words, chosen, presses, warn=model.armed)
+        self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
 
     def _homing(self, painter: QPainter, row: QRectF) -> None:
         model = self._model
@@ -103,43 +104,10 @@ class JogPad(FingerPanel):
             i for i, known in enumerate(self._known.values(), 1) if known in {Known.LOST, Known.LOOKING}
         )
         chosen = 0 if model.home.asking else -1
-        self._tiles(painter, row, ("", ""), tuple(words), chosen, presses, alarmed=lost)
+        self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, alarmed=lost))
 
-    def _tiles(
-        self,
-        painter: QPainter,
-        row: QRectF,
-        name: tuple[str, str],
-        words: tuple[str, ...],
-        chosen: int,
-        presses: Sequence[Callable[[], None]],
-        *,
-        warn: bool = False,
-        alarmed: frozenset[int] = frozenset(),
-    ) -> None:
-        look, u = self.look, self.look.u
-        left = row.x()
-        if name[0]:
-            left += 8.4 * u
-            painter.setPen(look.colour("soft"))
-            painter.setFont(look.fit(name[0], 1.5, 7.8 * u, bold=True))
-            put(painter, QRectF(row.x(), row.y(), 7.8 * u, row.height() / 2), LEFT, name[0])
-            painter.setPen(look.colour("accent"))
-            painter.setFont(look.font(1.6, bold=True))
-            put(painter, QRectF(row.x(), row.center().y(), 7.8 * u, row.height() / 2), LEFT, name[1])
-        shares = [1.0 + 0.11 * max(0, len(word) - 4) for word in words]
-        part = (row.right() - left + 0.6 * u) / sum(shares)
-        for number, (word, share, press) in enumerate(zip(words, shares, presses, strict=True)):
-            box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
-            left += share * part
-            lit = ("pause" if warn else "lit") if number == chosen else ""
-            painter.setPen(look.pen(lit or ("alarm" if number in alarmed else "frame"), 0.16))
-            painter.setBrush(look.colour(lit or "key"))
-            painter.drawRect(box)
-            ink = ("on_state" if warn else "on_lit") if lit else ("alarm" if number in alarmed else "text")
-            painter.setPen(look.colour(ink))
-            painter.setFont(look.fit(word, 2.1, box.width() - 0.8 * u, bold=True))
-            put(painter, box, CENTRE, word)
+    def _tiles(self, painter: QPainter, row: QRectF, tiles: Tiles) -> None:
+        for box, press in draw_tiles(painter, self.look, row, tiles):
             self.controls.append(Control(box, self._presser(press)))
 
     def _presser(self, press: Callable[[], None]) -> Callable[[QPointF], None]:

@@ -7,6 +7,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk import pages
+from app.desk.jogging import asked
 from app.desk.jogging.desk import JogDesk
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.session import Loaded
@@ -167,12 +168,12 @@ class JogPage(Page):
         self.numbers.setVisible(entering)
         self.pad.show_jog(snapshot)
         self.tool.show_tool(snapshot)
-        foot = tool.note or (
+        foot = asked.note(tool) or (
             tr("Return enters it, Esc leaves it as it was")
             if entering
             else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
         )
-        self.asked.show_asked(Asked("", tool.question, tool.text, tool.old_to_new, foot))
+        self.asked.show_asked(Asked("", asked.question(tool), tool.text, asked.old_to_new(tool), foot))
 
     def _has_keyboard(self) -> bool:
         """Whether keys still come here: no dialog, no menu, no other window in front."""

@@ -10,8 +10,9 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import length
+from app.desk.jogging import asked
+from app.desk.jogging.asked import TOOL
 from app.desk.jogging.desk import JogDesk
-from app.desk.jogging.tool import TOOL
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.offsets.entry import marked, shown_value, word
 from app.desk.offsets.figures import Mode, not_set, signed
@@ -49,13 +50,13 @@ class ToolPanel(Panel):
         """The tool of now, and where its tip stands."""
         tool = self._model.tool
         self._mode = tool.ledger.mode
-        self._tip = tool.tip(snapshot)
+        self._tip = asked.tip(tool, snapshot)
         shown = (
             tool.number,
             tool.row,
             tool.asked,
             self._tip,
-            tool.from_master(),
+            asked.from_master(tool),
             self._mode,
             tool.book.master,
         )
@@ -162,7 +163,7 @@ class ToolPanel(Panel):
             return tr("none")
         if master == tool.number:
             return tr("THIS ONE")
-        apart = tool.from_master()
+        apart = asked.from_master(tool)
         if apart is None:
             return f"T{master}"
         x = signed(2 * apart[0] if mode.diameter else apart[0], mode.metric)

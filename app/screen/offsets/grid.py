@@ -9,6 +9,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.offsets import gridwords
 from app.desk.offsets.entry import marked, word
 from app.desk.offsets.figures import not_set
 from app.desk.offsets.grid import COLUMNS, PAGE, ToolGrid
@@ -119,7 +120,7 @@ class GridTable(Panel):
 
     def _cell(self, painter: QPainter, cell: QRectF, number: int, name: str) -> None:
         look, u = self.look, self.look.u
-        text = self._model.shown(number, name)
+        text = gridwords.cell(self._model, number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
             draw_tip(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.offsets import gridwords
 from app.desk.offsets.grid import ToolGrid
 from app.desk.words import tr
 from app.screen.offsets.asked import Asked
@@ -41,4 +42,6 @@ class ToolsPage(OffsetPage):
         model = self.model
         self.table.show_grid()
         foot = tr("F2 adds what is typed; F3 shows X and Z from the master; Esc leaves")
-        self.asked.show_asked(Asked("", model.question, model.text, model.old_to_new, foot))
+        self.asked.show_asked(
+            Asked("", gridwords.question(model), model.text, gridwords.old_to_new(model), foot)
+        )

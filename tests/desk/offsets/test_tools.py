@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.desk.offsets import gridwords
 from app.desk.offsets.grid import ToolGrid
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
@@ -114,7 +115,7 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
     room.enter(grid, "1")
     grid.typed("Down")
     assert room.desk.notice == "T7 IS NOT SET: X AND Z BELONG TOGETHER"
-    assert grid.shown(7, "z") == ""
+    assert gridwords.cell(grid, 7, "z") == ""
     assert room.store.tools() == {}
 
 
@@ -137,10 +138,14 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     assert {n: row.offset for n, row in room.store.tools().items()} == before
     grid.turn_relative()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
-    assert (grid.shown(1, "x"), grid.shown(1, "z")) == ("−1.50000", "−1.00000")
-    assert grid.shown(2, "x") == "+1.00000"
+    assert (gridwords.cell(grid, 1, "x"), gridwords.cell(grid, 1, "z")) == ("−1.50000", "−1.00000")
+    assert gridwords.cell(grid, 2, "x") == "+1.00000"
     room.enter(grid, "")
     assert room.desk.book.master == 0
+    grid.choose(1, 0)
+    room.enter(grid, "1")
+    assert "PRESS F3" in room.desk.notice  # from the master they are only shown
+    assert room.store.tools()[1].x == -12.7
 
 
 def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
@@ -150,7 +155,7 @@ def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
     grid.typed("Down")
     assert (grid.number, grid.text) == (1, "1")
     assert room.desk.notice.startswith("PRESS RETURN TO SET IT")
-    assert grid.old_to_new == "−0.50000  →  +1.00000"
+    assert gridwords.old_to_new(grid) == "−0.50000  →  +1.00000"
     assert grid.escape()
     grid.typed("Page down")
     assert grid.number == 17
