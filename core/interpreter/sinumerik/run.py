@@ -25,7 +25,7 @@ from core.interpreter.sinumerik.statement import Statement, statement
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.faults import refused
 from core.language.sinumerik.sections import HEADER
-from core.language.sinumerik.vocabulary import ARC
+from core.language.sinumerik.vocabulary import ARC, SPINDLE
 from core.language.sinumerik.words import Line
 from core.language.source import Source
 
@@ -149,18 +149,22 @@ class Interpreter:
         if made.offset_key is not None:
             programmed_offset(state, made)
             return
-        modes(state, made)
-        feed_words(state, made)
+        if made.g or made.keys:
+            modes(state, made)
+        if made.g or "F" in made.words:
+            feed_words(state, made)
         if "dwell" in made.g:
             yield dwell(state, made)
             return
-        yield from spindle_words(state, made)
+        if made.m or not SPINDLE.isdisjoint(made.words) or "kind of spindle speed" in made.g:
+            yield from spindle_words(state, made)
         if made.axes or ARC & made.words.keys():
             yield arc(state, made) if state.motion in {2, 3} else straight(state, made)
         elif "suppression of offsets" in made.g:
             text = "G53 acts in a block that moves an axis."
             raise made.refuse(made.g["suppression of offsets"], "word-unused", text, "Add the axes.")
-        yield from self._stops(made)
+        if made.m:
+            yield from self._stops(made)
 
     def _stops(self, made: Statement) -> Iterator[Block]:
         """M0, M1, and the end."""

@@ -67,8 +67,10 @@ def statement(line: Line) -> Statement:
     made = Statement(line)
     for word in line.words:
         _sort(made, word)
-    _check_m(made)
-    _check_alone(made)
+    if made.m or made.keys:
+        _check_m(made)
+    if made.keys or "dwell" in made.g:
+        _check_alone(made)
     _check_corner(made)
     return made
 
@@ -136,6 +138,8 @@ def _check_alone(made: Statement) -> None:
 
 
 def _check_corner(made: Statement) -> None:
+    if known.CORNERS.isdisjoint(made.words):
+        return
     corners = sorted(known.CORNERS & made.words.keys())
     if len(corners) > 1:
         text = f"{corners[0]} and {corners[1]} stand in one block."

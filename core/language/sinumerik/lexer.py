@@ -11,6 +11,8 @@ from core.language.sinumerik.values import NUMBER, PARAMETER, beyond, value_at
 from core.language.sinumerik.words import LONGEST_LINE, Form, Line, Word
 
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
+# Nearly all words are these; they need no look at each sign.
+_PLAIN = re.compile(rf"\s*([GMXZCIKFS])({NUMBER.pattern})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
@@ -22,7 +24,7 @@ _MOST_PASSES = 9999
 def lex_line(number: int, text: str) -> Line:
     """The words of line ``number``. Never raises: errors are in the line, each with its column."""
     code, comment = _without_comment(text)
-    upper = "".join(sign.upper() if sign.isascii() else sign for sign in code)
+    upper = code.upper() if code.isascii() else _upper(code)
     head = _HEAD.match(upper)
     assert head is not None  # every part of it may be missing
     level, kind, count, label = head.groups()
@@ -47,6 +49,11 @@ def lex_line(number: int, text: str) -> Line:
     )
 
 
+def _upper(text: str) -> str:
+    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
+
+
 def _without_comment(text: str) -> tuple[str, int]:
     at = text.find(";")
     return (text, 0) if at < 0 else (text[:at], at + 1)
@@ -65,7 +72,9 @@ class _Scanner:
         """All words from ``at`` on."""
         text = self._text
         while at < len(text):
-            if text[at].isspace():
+            if match := _PLAIN.match(text, at):
+                at = self._plain(match)
+            elif text[at].isspace():
                 at += 1
             elif match := _ASSIGNED.match(text, at):
                 at = self._assigned(match)
@@ -75,6 +84,15 @@ class _Scanner:
                 at = self._letter(at)
             else:
                 at = self._skip(at, f"{text[at]} is no word", "Take it out; a comment begins with ;")
+
+    def _plain(self, match: re.Match[str]) -> int:
+        """A letter and its number, with nothing behind that could belong to it."""
+        letter, number = match.groups()
+        word = Word(letter, float(number), match.start(1) + 1, letter + number)
+        if fault := beyond(word):
+            self.refuse(word.column, *fault)
+        self.words.append(word)
+        return match.end()
 
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""

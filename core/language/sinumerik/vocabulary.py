@@ -21,6 +21,7 @@ M_CODES = frozenset({0, 1, 2, 3, 4, 5, 17, 30})
 MOST_M = 5
 
 ARC = frozenset({"I", "K", "CR", "AR"})
+SPINDLE = frozenset({"S", "LIMS"})
 CORNERS = frozenset({"CHF", "CHR", "RND"})
 LETTERS = frozenset({"G", "M", "X", "Z", "C", "I", "K", "F", "S"})
 """Words that may stand without =."""
