@@ -18,6 +18,7 @@ import numpy.typing as npt
 from app.desk.drawing.chords import arc_pieces
 from app.desk.drawing.trail import SAME, Pencil, Stroke, Trail, bounds_of
 from app.desk.drawing.turned import TurnedSketch, way_of
+from app.desk.swivel.scene import Scene, SceneSketch
 from core.geometry.extent import arc_sweep
 from core.geometry.face import Face
 from core.interpreter.blocks import Kind
@@ -46,6 +47,7 @@ class Picture(Trail):
     face: Trail | None = None
     side: Trail | None = None
     metric: bool = False
+    scene: Scene | None = None  # of a mill
 
     def block_of_line(self, line: int) -> int:
         """The block that ends the first pass through a source line, or through the nearest one before that
@@ -85,10 +87,13 @@ class Sketch:
         self._pencil = Pencil()
         self._turned: TurnedSketch | None = None
         self._metric = False
+        self._scene = SceneSketch()
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add(self, block: Block, end: float) -> None:
         """Append one block that ends ``end`` seconds into the program."""
+        if block.swivel is not None:
+            self._scene.add(block, block.swivel)
         if block.moves:
             if block.modal.c_locked:
                 self._locked(block)
@@ -119,6 +124,7 @@ class Sketch:
             face=face,
             side=side,
             metric=self._metric,
+            scene=self._scene.scene(),
         )
 
     def _locked(self, block: Block) -> None:

@@ -9,6 +9,7 @@ from enum import StrEnum
 from app.desk import formats
 from app.desk.lamps import TURNING, Lamp, lamps_of, modes_of
 from app.desk.settings import Units
+from app.desk.swivel import position as of_mill
 from core.executor.snapshot import Alarm, Snapshot, State
 
 
@@ -164,7 +165,9 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = U
 
 def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
     """The figures of a readout in the order of ``snapshot.axes``: mm with X a radius, and degrees."""
-    actual = snapshot.actual
+    actual, swivel = snapshot.actual, snapshot.swivel
+    if swivel is not None:
+        return _OF_MILL[readout](snapshot, swivel)
     if readout is Readout.HOME:
         return _wrapped(actual, snapshot)
     if readout is Readout.TO_GO:
@@ -174,6 +177,13 @@ def coordinates(snapshot: Snapshot, readout: Readout) -> tuple[float, ...]:
     if snapshot.axes == LATHE:
         rest[0] -= snapshot.modal.offset_c
     return _wrapped((x - snapshot.offset[0], z - snapshot.offset[1], *rest), snapshot)
+
+
+_OF_MILL = {
+    Readout.POSITION: of_mill.plane_figures,
+    Readout.TO_GO: of_mill.figures_to_go,
+    Readout.HOME: of_mill.home_figures,
+}
 
 
 def _wrapped(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
@@ -187,7 +197,7 @@ def _position(snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool) 
     diameter = snapshot.modal.diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
-    mark = "Ø" if diameter else "R"
+    mark = "" if snapshot.axes != LATHE else "Ø" if diameter else "R"
     rows = [
         AxisView(name, mark if name == "X" else "", a, b, homed)
         for name, a, b, homed in zip(snapshot.axes, large, small, snapshot.homed, strict=True)
@@ -196,9 +206,16 @@ def _position(snapshot: Snapshot, readout: Readout, with_c: bool, metric: bool) 
         readout=readout,
         beside=beside,
         unit=_unit(metric, snapshot.modal.metric),
-        x_words="X IS A DIAMETER" if diameter else "X IS A RADIUS",
-        axes=tuple(rows if with_c else rows[:2]),
+        x_words=_words(snapshot, readout),
+        axes=tuple(rows if with_c or snapshot.axes != LATHE else rows[:2]),
     )
+
+
+def _words(snapshot: Snapshot, readout: Readout) -> str:
+    """What X is on a lathe; on a mill the system that the figures count in."""
+    if snapshot.axes != LATHE:
+        return of_mill.system_words(None if readout is Readout.HOME else snapshot.swivel)
+    return "X IS A DIAMETER" if snapshot.modal.diameter else "X IS A RADIUS"
 
 
 def _unit(metric: bool, control: bool) -> str:
@@ -208,8 +225,9 @@ def _unit(metric: bool, control: bool) -> str:
 
 
 def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> list[str]:
+    angle = formats.angle if snapshot.axes == LATHE else of_mill.angle
     return [
-        formats.angle(value) if name in ROTARY else formats.length(_doubled(name, value, diameter), metric)
+        angle(value) if name in ROTARY else formats.length(_doubled(name, value, diameter), metric)
         for name, value in zip(snapshot.axes, coordinates(snapshot, readout), strict=True)
     ]
 
@@ -244,7 +262,8 @@ def _feed(snapshot: Snapshot, metric: bool) -> FeedView:
 def _spindle(snapshot: Snapshot, metric: bool) -> SpindleView:
     modal = snapshot.modal
     radius = snapshot.actual[0] - snapshot.offset[0]
-    surface = 2 * math.pi * radius * snapshot.rpm_actual / 60
+    lathe = snapshot.axes == LATHE  # on a mill it would be the tool's, whose radius nobody knows
+    surface = 2 * math.pi * radius * snapshot.rpm_actual / 60 if lathe else math.nan
     command = snapshot.rpm_command
     direction = "M03 FWD" if command > 0 else "M04 REV" if command < 0 else "M05 OFF"
     return SpindleView(

@@ -12,6 +12,7 @@ from app.desk import pages
 from app.desk.drawing.spots import measuring_words
 from app.desk.prompts import MOVING
 from app.desk.session import Loaded
+from app.desk.swivel.telling import plane_words, running
 from app.desk.view import View
 from app.screen.bars import CommentLine
 from app.screen.fileprompt import FilePrompt
@@ -20,6 +21,7 @@ from app.screen.listing import Listing
 from app.screen.pages import Doings, Host, Page
 from app.screen.path.aspects import tip_of
 from app.screen.pathview import PathView
+from app.screen.swivel.view import SwivelView
 from core.executor.snapshot import Snapshot, State
 
 _NO_LINES: tuple[str, ...] = ()
@@ -51,6 +53,7 @@ class AutomaticPage(Page):
         self.listing = Listing(look, self)
         self.comment = CommentLine(look, self)
         self.path = PathView(look, self)
+        self.space = SwivelView(look, self)  # takes the path's place where the machine is a mill
         self.files = FilePrompt(look, desk.shelf, desk.choose, self._files_closed, self)
 
     def dress(self) -> None:
@@ -84,6 +87,7 @@ class AutomaticPage(Page):
             (self.listing, listing),
             (self.comment, comment),
             (self.path, path),
+            (self.space, path),
             (self.files, path),
         ):
             part.setGeometry(*rect)
@@ -105,11 +109,23 @@ class AutomaticPage(Page):
         self._loaded = loaded
         lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
         self.listing.show_source(lines, {d.line: d.message for d in loaded.errors if d.line})
-        self.path.show_picture(loaded.picture)
+        scene = loaded.picture.scene if loaded.picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None)
+        self.path.show_picture(loaded.picture if scene is None else None)
 
     def _show_path(self, snapshot: Snapshot) -> None:
+        scene = self.space.scene
+        if scene is not None:
+            self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
+            return
         self.path.show_tip(tip_of(snapshot))
         self.path.advance()
+
+    @property
+    def _looked_at(self) -> PathView | SwivelView:
+        """Which of the two the keys of looking around are for."""
+        return self.path if self.space.scene is None else self.space
 
     def doings(self) -> Doings:
         """What the page itself does, by key."""
@@ -117,23 +133,29 @@ class AutomaticPage(Page):
             "F2": self.ask_file,
             "F3": self._edit,
             "F4": self.desk.next_readout,
-            "F5": self.path.fit,
+            "F5": self._fit,
             "F6": partial(self._go, pages.SEARCHTO),
             "F8": partial(self._go, pages.TOOLS),
             "F9": partial(self._go, pages.SECCMP),
             "F10": partial(self._go, pages.SPECIAL),
-            "Zoom in": partial(self.path.zoom, 1),
-            "Zoom out": partial(self.path.zoom, -1),
+            "Zoom in": lambda: self._looked_at.zoom(1),
+            "Zoom out": lambda: self._looked_at.zoom(-1),
             "Measure": self.path.measure,
-            "View": self.path.next_view,
-            "Pan left": partial(self.path.pan, -1, 0),
-            "Pan right": partial(self.path.pan, 1, 0),
-            "Pan up": partial(self.path.pan, 0, -1),
-            "Pan down": partial(self.path.pan, 0, 1),
+            "View": self._next_view,
+            "Pan left": lambda: self._looked_at.pan(-1, 0),
+            "Pan right": lambda: self._looked_at.pan(1, 0),
+            "Pan up": lambda: self._looked_at.pan(0, -1),
+            "Pan down": lambda: self._looked_at.pan(0, 1),
             "Page up": lambda: self.listing.look_at(-self.listing.rows),
             "Page down": lambda: self.listing.look_at(self.listing.rows),
             "Follow": self.listing.follow,
         }
+
+    def _fit(self) -> None:
+        self._looked_at.fit()
+
+    def _next_view(self) -> None:
+        self._looked_at.next_view()
 
     def _go(self, name: str) -> None:
         self.host.go(name)

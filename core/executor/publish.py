@@ -9,6 +9,7 @@ from core.executor.conductor import Conductor
 from core.executor.snapshot import Snapshot
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
+from core.interpreter.swivel import Swivel
 from core.ports import AxisSample
 
 
@@ -18,6 +19,7 @@ class Publisher:
     def __init__(self) -> None:
         self._before: AxisSample | None = None
         self._velocity = 0.0
+        self._swivel: Swivel | None = None
 
     def snapshot(self, bench: Bench, conductor: Conductor) -> Snapshot:
         """The snapshot of this tick."""
@@ -25,6 +27,8 @@ class Publisher:
         block = cycle.current if cycle else None
         following = cycle.next_block if cycle else None
         job, modal = standing.job, conductor.modal
+        if block is not None:
+            self._swivel = block.swivel
         return Snapshot(
             t=bench.now,
             state=standing.state,
@@ -42,6 +46,7 @@ class Publisher:
             block_end=block.machine_end if block else bench.sample.demand,
             offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
             modal=modal,
+            swivel=self._swivel,
             velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
             feed=_feed(block, modal),
             rapid=block.rapid if block else modal.rapid,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from core.interpreter.modal import Modal
+from core.interpreter.swivel import Swivel
 
 
 class State(StrEnum):
@@ -65,6 +66,7 @@ class Snapshot:
     homed: tuple[bool, ...] = (False, False, False)
     block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # for distance to go
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
+    swivel: Swivel | None = None  # of a mill: the working plane of the last block that was begun
     modal: Modal = field(default_factory=Modal)
     velocity: float = 0.0  # along the path, mm/s, actual
     feed: float = 0.0  # programmed: mm/s or mm/rev by modal

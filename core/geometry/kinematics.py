@@ -145,6 +145,10 @@ class Kinematics:
         """The direction from the tip to the spindle, in the machine."""
         return applied(product(*(turned(a.direction, angles.get(a.name, 0.0)) for a in self._heads)), Z_AXIS)
 
+    def tip(self, angles: Mapping[str, float], slides: Vector, tool_length: float = 0.0) -> Vector:
+        """Where the tip is in the machine, mm, with the slides there and a tool of this length."""
+        return plus(slides, self._nose(angles, tool_length))
+
     @property
     def _heads(self) -> Sequence[Rotary]:
         return [axis for axis in self.rotaries if not axis.table]

@@ -5,6 +5,8 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
@@ -16,6 +18,7 @@ from app.desk.editing.entering import enter
 from app.desk.editing.history import History
 from app.desk.prompts import MOVING
 from app.desk.session import Loaded
+from app.desk.swivel.telling import at_line, plane_words
 from app.desk.view import View
 from app.screen.editor.ask import AskLine
 from app.screen.editor.doings import PROMPTS, Doing, Mode, doings
@@ -30,7 +33,11 @@ from app.screen.editor.looking import Looking
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
 from app.screen.pages import Doings, Host, Page
+from app.screen.swivel.view import SwivelView
 from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.desk.picture import Picture
 
 
 class EditorPage(Page):
@@ -47,6 +54,7 @@ class EditorPage(Page):
         self.head = HeadLine(look, self)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self)
+        self.space = SwivelView(look, self)  # takes the path's place where the program is for a mill
         self.findings = FindingList(look, self.go_to, self)
         self.history = History(editor.bench.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
@@ -132,11 +140,22 @@ class EditorPage(Page):
         findings = editor.checker.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
-        self.path.show_picture(findings.picture)
-        self.path.follow(line)
-        self.path.advance()
+        self._show_path(findings.picture, line)
         self.looking.refresh()
         self.versions.refresh()
+
+    def _show_path(self, picture: Picture | None, line: int) -> None:
+        """The path up to the line of the cursor; on a mill the plane of that line in space."""
+        scene = picture.scene if picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None and self._mode is not Mode.OFFER)
+        self.path.show_picture(picture if scene is None else None)
+        if scene is not None:
+            here = at_line(scene, line)
+            self.space.show_instant(here, plane_words(here.swivel))
+            return
+        self.path.follow(line)
+        self.path.advance()
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
@@ -282,6 +301,7 @@ class EditorPage(Page):
             (self.head, at.head),
             (self.field, at.text),
             (self.path, at.path),
+            (self.space, at.path),
             (self.findings, at.findings),
             (self.versions, at.body),
             (self.ask, at.ask),

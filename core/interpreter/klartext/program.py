@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from core.geometry.frames import Vector
 from core.interpreter.log import MOST_OF_A_KIND
+from core.interpreter.swivel import Corners
+from core.interpreter.units import MM_PER_INCH
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.klartext import faults, read_line
 from core.language.klartext.nodes import Begin, BlankForm, Call, End, KlartextLine, Label
@@ -26,7 +29,7 @@ class Program:
     inch: bool = False
     problems: list[Diagnostic] = field(default_factory=list)
     _texts: dict[int, str] = field(default_factory=dict)
-    blank: tuple[BlankForm, ...] = ()
+    corners: Corners | None = None  # of BLK FORM, mm
 
     @property
     def blocks(self) -> int:
@@ -60,8 +63,19 @@ def read_program(source: Source) -> Program:
         except ProgramError as problem:
             found.append(problem.diagnostic)
     program.problems = sorted(found, key=lambda each: (each.line, each.column))[: 2 * MOST_OF_A_KIND]
-    program.blank = tuple(line.node for line in lines if isinstance(line.node, BlankForm))
+    program.corners = _corners(program)
     return program
+
+
+def _corners(program: Program) -> Corners | None:
+    """Least and greatest corner, where both are given in numbers."""
+    scale = MM_PER_INCH if program.inch else 1.0
+    found: dict[int, Vector] = {}
+    for line in program.lines:
+        if isinstance(line.node, BlankForm):
+            at = {word.axis: word.value.number * scale for word in line.node.corner}
+            found[line.node.part] = (at["X"], at["Y"], at["Z"])
+    return (found[1], found[2]) if len(found) == 2 else None
 
 
 def _frame(program: Program) -> Sequence[Diagnostic]:

@@ -47,6 +47,7 @@ class Interpreter:
         self._program = program
         self._log = Log(program.problems)
         self._state = State(setup, kinematics, self._log, inch=program.inch)
+        self._state.blank = program.corners
         self._tools = ToolUse()
         self._flow = Flow(program)
         self._stopped = False  # an error has been met: no more blocks

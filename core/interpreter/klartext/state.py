@@ -14,7 +14,7 @@ from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
-from core.interpreter.swivel import Swivel
+from core.interpreter.swivel import Corners, Swivel
 from core.interpreter.units import MM_PER_INCH
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
@@ -57,6 +57,7 @@ class State:
         self.tool_feed: float | None = None  # F of the last TOOL CALL
         self.q: dict[int, float] = {}
         self.m128 = False
+        self.blank: Corners | None = None
         self.told: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
         self.frame, self.origin = IDENTITY, ORIGIN
@@ -188,11 +189,15 @@ class State:
             end=end,
             slides=slides,
             rotary=(axes.get("A"), axes.get("B"), axes.get("C")),
+            place=self.place,
+            kinematics=self.kinematics,
             frame=self.frame,
             datum=self.origin,
             tilted=self.plane is not None,
             targets=(q120, q121, q122),
             plane_line=self.plane.line if self.plane is not None else 0,
+            tool_length=self.tool_length,
+            blank=self.blank,
         )
 
     def _rapid(

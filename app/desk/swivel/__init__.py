@@ -1,0 +1,1 @@
+"""What the screen shows of a mill with rotary axes: positions in the working plane, and the 3-D view."""

@@ -1,0 +1,266 @@
+"""The machine at one instant as lines and faces in pixels: table, blank, path, working plane and tool.
+
+Everything on the table turns with it: what lies in the workpiece's system goes through the chain of axes at
+the angles of this instant. Faces come farthest first, so that painting them in order hides what is behind.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.desk.swivel.camera import Camera, FloatArray
+from app.desk.swivel.scene import Ink, Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from app.desk.swivel.telling import Instant
+    from core.geometry.kinematics import Kinematics, Place
+
+_ROUND = 48  # corners of what is round
+_SHARE = 0.34  # of the blank's diagonal: length of the plane's axes, and half a side of its square
+_TOOL = 12  # corners of the tool
+_MOST_POINTS = 20_000  # of the path; longer ones are thinned out to so many
+_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+_TOP = 1  # of those
+_SIDE_ONLY = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Face:
+    """A filled shape (n, 2): ``role`` is ``table blank blank-top plane tool``."""
+
+    role: str
+    points: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stroke:
+    """A line (n, 2): ``role`` is ``rapid cut done x y z axis edge``; ``name`` stands at its end."""
+
+    role: str
+    points: FloatArray
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One picture, ready to be painted: faces, then strokes."""
+
+    faces: tuple[Face, ...] = ()
+    strokes: tuple[Stroke, ...] = ()
+
+
+def camera_for(scene: Scene) -> Camera:
+    """The whole table with the blank on it, and the tool above, whichever way it swivels."""
+    table = _table(scene)
+    at = scene.kinematics.place({}).machine(_middle(scene))
+    reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
+    return Camera((at[0], at[1], at[2] + 0.25 * reach), 1.45 * reach)
+
+
+def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> Figure:
+    """What is seen in a picture of this size."""
+    picture = _Picture(scene, instant, camera, width, height)
+    return Figure(
+        faces=tuple(sorted_faces([*picture.table(), *picture.blank(), *picture.plane(), *picture.tool()])),
+        strokes=(*picture.path(), *picture.axes(), *picture.lines_of_rotation()),
+    )
+
+
+def sorted_faces(faces: Sequence[tuple[float, Face]]) -> list[Face]:
+    """Farthest first."""
+    return [face for _, face in sorted(faces, key=lambda pair: pair[0])]
+
+
+class _Picture:
+    def __init__(self, scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> None:
+        self._scene, self._instant, self._camera = scene, instant, camera
+        self._size = width, height
+        chain = scene.kinematics
+        self._angles = {axis.name: instant.axes.get(axis.name, 0.0) for axis in chain.rotaries}
+        self._part = chain.place(self._angles, chain.basic)
+
+    def table(self) -> list[tuple[float, Face]]:
+        """The disc that carries the workpiece."""
+        machine_parallel = self._scene.kinematics.place(self._angles)
+        zero = self._scene.kinematics.place({})
+        flat = _moved(machine_parallel, np.array([zero.point(_point(row)) for row in _table(self._scene)]))
+        return [self._face("table", flat)]
+
+    def blank(self) -> list[tuple[float, Face]]:
+        """Those faces of the blank that look at the eye."""
+        corners = _moved(self._part, _box(self._scene))
+        middle = corners.mean(axis=0)
+        eye = self._camera.axes[2]
+        found = []
+        for number, face in enumerate(_FACES):
+            shape = corners[list(face)]
+            if (shape.mean(axis=0) - middle) @ eye > _SIDE_ONLY:
+                found.append(self._face("blank-top" if number == _TOP else "blank", shape))
+        return found
+
+    def plane(self) -> list[tuple[float, Face]]:
+        """A square of the working plane round its datum."""
+        swivel = self._instant.swivel
+        if swivel is None or not swivel.tilted:
+            return []
+        r, o = np.array(swivel.frame), np.array(swivel.datum)
+        half = _SHARE * _diagonal(self._scene)
+        square = np.array([(half, half, 0), (-half, half, 0), (-half, -half, 0), (half, -half, 0)])
+        return [self._face("plane", _moved(self._part, o + square @ r.T))]
+
+    def tool(self) -> list[tuple[float, Face]]:
+        """A cutter on its tip, along the tool axis of this instant."""
+        chain, axes = self._scene.kinematics, self._instant.axes
+        length = self._instant.swivel.tool_length if self._instant.swivel is not None else 0.0
+        slides = axes["X"], axes["Y"], axes["Z"]
+        tip = np.array(chain.tip(self._angles, slides, length))
+        along = np.array(chain.tool_axis(self._angles))
+        size = _diagonal(self._scene)
+        aside = np.cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < 0.9 else (0.0, 1.0, 0.0))
+        aside /= np.linalg.norm(aside)
+        third = np.cross(along, aside)
+        turn = np.linspace(0.0, 2.0 * math.pi, _TOOL, endpoint=False)[:, None]
+        ring = np.cos(turn) * aside + np.sin(turn) * third
+        faces = []
+        for low, high, radius in ((0.0, 0.3, 0.03), (0.3, 0.55, 0.07)):
+            ends = (
+                tip + along * low * size + ring * radius * size,
+                tip + along * high * size + ring * radius * size,
+            )
+            faces.append(self._face("tool", _outline(self._camera, np.vstack(ends))))
+        return faces
+
+    def path(self) -> list[Stroke]:
+        """What the tip does on the workpiece: what is done apart from what is to come."""
+        scene = self._scene
+        if not len(scene.points):
+            return []
+        done = scene.done(self._instant.block)
+        keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MOST_POINTS))
+        seen = self._seen(_moved(self._part, scene.points[keep]))
+        ink, behind = scene.ink[keep], keep < done
+        return [*_ways(seen, ink, behind)]
+
+    def axes(self) -> list[Stroke]:
+        """X' Y' Z' of the working plane at its datum; those of the workpiece where none is tilted."""
+        swivel = self._instant.swivel
+        r = np.array(swivel.frame) if swivel is not None else np.eye(3)
+        o = np.array(swivel.datum) if swivel is not None else np.zeros(3)
+        mark = "'" if swivel is not None and swivel.tilted else ""
+        length = _SHARE * _diagonal(self._scene)
+        found = []
+        for number, name in enumerate("xyz"):
+            ends = np.array((o, o + length * r[:, number]))
+            found.append(Stroke(name, self._seen(_moved(self._part, ends))[:, :2], f"{name.upper()}{mark}"))
+        return found
+
+    def lines_of_rotation(self) -> list[Stroke]:
+        """The lines about which the tables turn, as they stand now."""
+        scene, found = self._scene, []
+        reach = 0.75 * _diagonal(scene)
+        rotaries = scene.kinematics.rotaries
+        for number, axis in enumerate(rotaries):
+            if not axis.table:
+                continue
+            outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :]}
+            place, zero = scene.kinematics.place(outer), scene.kinematics.place({})
+            middle = np.array(zero.machine(_middle(scene)))
+            along, point = np.array(axis.direction), np.array(axis.point)
+            foot = point + along * float((middle - point) @ along)
+            ends = np.array((foot - reach * along, foot + reach * along))
+            moved = _moved(place, np.array([zero.point(_point(end)) for end in ends]))
+            found.append(Stroke("axis", self._seen(moved)[:, :2], axis.name))
+        return found
+
+    def _seen(self, points: FloatArray) -> FloatArray:
+        return self._camera.seen(points, *self._size)
+
+    def _face(self, role: str, points: FloatArray) -> tuple[float, Face]:
+        seen = self._seen(points)
+        return float(seen[:, 2].mean()), Face(role, seen[:, :2])
+
+
+def _ways(seen: FloatArray, ink: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]) -> list[Stroke]:
+    """Runs of one ink, each from the point before it."""
+    role = np.where(ink == Ink.CUT, np.where(behind, 3, 2), np.where(ink == Ink.RAPID, 1, 0))
+    starts = np.flatnonzero(np.diff(role, prepend=-1))
+    names = {1: "rapid", 2: "cut", 3: "done"}
+    found = []
+    for start, end in zip(starts, [*starts[1:], len(role)], strict=True):
+        kind = int(role[start])
+        if kind:
+            found.append(Stroke(names[kind], seen[max(0, start - 1) : end, :2]))
+    return found
+
+
+def _outline(camera: Camera, points: FloatArray) -> FloatArray:
+    """The convex outline of points (n, 3) as the camera sees them (monotone chain of Andrew)."""
+    flat = points @ camera.axes[:2].T
+    order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
+    half: list[list[int]] = []
+    for run in (order, order[::-1]):
+        hull: list[int] = []
+        for each in run:
+            while len(hull) > 1 and _turns_back(flat, hull[-2], hull[-1], each):
+                hull.pop()
+            hull.append(each)
+        half.append(hull[:-1])
+    return np.asarray(points[half[0] + half[1]])
+
+
+def _turns_back(flat: FloatArray, a: int, b: int, c: int) -> bool:
+    u, v = flat[b] - flat[a], flat[c] - flat[a]
+    return float(u[0] * v[1] - u[1] * v[0]) <= 0.0
+
+
+def _moved(place: Place, points: FloatArray) -> FloatArray:
+    return np.asarray(points @ np.array(place.turn).T + np.array(place.shift))
+
+
+def _box(scene: Scene) -> FloatArray:
+    (x0, y0, z0), (x1, y1, z1) = scene.corners
+    return np.array([(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)])
+
+
+def _middle(scene: Scene) -> tuple[float, float, float]:
+    low, high = scene.corners
+    x, y, z = (0.5 * (a + b) for a, b in zip(low, high, strict=True))
+    return x, y, z
+
+
+def _diagonal(scene: Scene) -> float:
+    low, high = scene.corners
+    return max(1.0, math.dist(low, high))
+
+
+def _table(scene: Scene) -> FloatArray:
+    """The rim of the table (n, 3) in the machine with all axes at 0: round the first table's line, under the
+    blank and wide enough for it.
+    """
+    place = scene.kinematics.place({}, scene.kinematics.basic)
+    corners = _moved(place, _box(scene))
+    centre = _foot(scene.kinematics, corners.mean(axis=0))
+    radius = 1.12 * float(np.hypot(*(corners[:, :2] - centre[:2]).T).max())
+    turn = np.linspace(0.0, 2.0 * math.pi, _ROUND, endpoint=False)
+    low = np.full(_ROUND, corners[:, 2].min())
+    return np.column_stack((centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn), low))
+
+
+def _foot(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
+    """The point of a table's line along Z; the middle of the blank where no table turns so."""
+    for axis in kinematics.rotaries:
+        if axis.table and abs(axis.direction[2]) > 0.5:
+            return np.array(axis.point)
+    return middle
+
+
+def _point(row: FloatArray) -> tuple[float, float, float]:
+    x, y, z = row.tolist()
+    return x, y, z
