@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 from app.compose.canopen import canopen_peers
 from core.machine.model import Machine
-from drivers.simulated import RealClock
+from drivers.simulated import StepClock
 
 _ROUND = 0.001  # s
+_STEP = 0.005  # s; a peer that was away catches up in such steps, frame by frame
 
 
 def play_peers(machine: Machine, going: Callable[[], bool]) -> None:
     """Answer on the machine file's bus while ``going``. Raises DriverError when it cannot be opened."""
-    peers = canopen_peers(machine, RealClock())
+    clock, zero, epoch = StepClock(), time.monotonic(), time.time()
+    peers = canopen_peers(machine, clock)
+    peers.arrival = lambda stamp: stamp - epoch
     try:
         while going():
+            while (late := time.monotonic() - zero - clock.now()) > _STEP:
+                clock.advance(_STEP)
+                peers.pump()
+            clock.advance(max(late, 0.0))
             peers.pump(_ROUND)
     finally:
         peers.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import can
@@ -79,6 +80,8 @@ class Peers:
         self.network = PeerNetwork(opened)
         self.nodes: dict[str, PeerNode] = {}
         self.cut = False  # the cable is off
+        self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
+        self._early: can.Message | None = None
         self._build()
 
     def pump(self, wait: float = 0.0) -> None:
@@ -88,8 +91,12 @@ class Peers:
             self._reset_sto()
         bus = self.network.bus
         while bus is not None:
-            message = bus.recv(wait)
+            message = self._early or bus.recv(wait)
+            self._early = None
             if message is None:
+                break
+            if self.arrival is not None and self.arrival(message.timestamp) > now:
+                self._early = message  # a peer that was away takes each frame at its time, not all at once
                 break
             wait = 0.0
             if not self.cut and not message.is_error_frame:

@@ -40,7 +40,11 @@ class SteadyClock(StepClock):
 
     def __init__(self) -> None:
         super().__init__()
-        self._zero = time.monotonic()
+        self._zero, self._epoch = time.monotonic(), time.time()
+
+    def arrival(self, stamp: float) -> float:
+        """When a frame came, by this clock."""
+        return stamp - self._epoch
 
     def step(self) -> bool:
         """On by one step; False when it has caught up."""
@@ -99,6 +103,7 @@ def shop(tmp_path: Path) -> Iterator[Shop]:
     clock = SteadyClock()
     peers = canopen_peers(load_machine(path), clock)
     words = [sys.executable, "-m", "tests.drivers.feeder.control", str(path)]
+    peers.arrival = clock.arrival
     control = subprocess.Popen(words, stdout=subprocess.PIPE)
     made = Shop(peers, clock, control)
     try:
