@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -105,3 +106,32 @@ def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
 def test_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(CommandError, match="cannot be read"):
         read_offsets(tmp_path / "none.toml")
+
+
+def test_wear_of_an_offsets_file_is_in_what_the_interpreter_gets(tmp_path: Path) -> None:
+    path = tmp_path / "offsets.toml"
+    path.write_text(
+        '[tool.2]\nx = 1.5\nz = -2\nwear_x = -0.001\nwear_z = 0.002\nquadrant = 3\nremark = "new"\n'
+    )
+    tools, _secondary = read_offsets(path)
+    assert tools[2].x == pytest.approx(1.499 * 25.4)
+    assert tools[2].z == pytest.approx(-1.998 * 25.4)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("[tool.1]\nwear_x = 0.2\n", "tool.1.wear_x = 0.2 is out of range; expected -0.1…0.1 in"),
+        ("[tool.1]\nquadrant = 2.5\n", "tool.1.quadrant = 2.5 is out of range; expected 0…9"),
+        ("[tool.1]\nremark = 5\n", "tool.1.remark must be a text"),
+        ("[tool.1]\nmaster = 1\n", "tool.1.master must be true or false"),
+        ('[tool.1]\nx = "1"\n', "tool.1.x must be a number of inches"),
+        ("[tool.1]\nmaster = true\n[tool.2]\nmaster = true\n", "tool.1 and tool.2 are both master"),
+        ("[secondary.1]\nwear_x = 0.01\n", "wear_x is unknown"),
+    ],
+)
+def test_what_is_no_field_of_an_offsets_file_is_told(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / "offsets.toml"
+    path.write_text(text)
+    with pytest.raises(CommandError, match=re.escape(told)):
+        read_offsets(path)

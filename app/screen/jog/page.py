@@ -61,6 +61,7 @@ class JogPage(Page):
         self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
         self.tool = ToolPanel(self.look, self.model, self)
         self.asked = AskedPanel(self.look, self)
+        self._was_active = False  # the window, before anything was held
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -176,13 +177,15 @@ class JogPage(Page):
         self.asked.show_asked(Asked("", asked.question(tool), tool.text, asked.old_to_new(tool), foot))
 
     def _has_keyboard(self) -> bool:
-        """Whether keys still come here: no dialog, no menu, no other window in front."""
-        app = QApplication
-        return (
-            self.window().isActiveWindow()
-            and app.activeModalWidget() is None
-            and app.activePopupWidget() is None
-        )
+        """Whether keys still come here: no dialog, no menu, no other window in front.
+
+        A screen without a window manager never becomes active; there only the loss of it counts.
+        """
+        active = self.window().isActiveWindow()
+        if self.model.hold.held is None:
+            self._was_active = active
+        covered = QApplication.activeModalWidget() or QApplication.activePopupWidget()
+        return covered is None and (active or not self._was_active)
 
     def let_go_if_held(self) -> None:
         """Something lies in front that would take the release."""

@@ -33,13 +33,16 @@ NONE = Qt.KeyboardModifier.NoModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-def shipped(folder: Path, *, absolute: bool) -> str:
+def shipped(folder: Path, *, absolute: bool, with_c: bool = True) -> str:
     """The shipped machine file; not ``absolute``: its slides only count, and Z is homed before X."""
     text = files("resources").joinpath("machines", "gt75.toml").read_text(encoding="utf-8")
     if not absolute:
         parts = text.split("absolute = true", 2)
         homes = [f"absolute = false\nhome = {{ order = {order}, speed = 60 }}" for order in (2, 1)]
         text = parts[0] + homes[0] + parts[1] + homes[1] + parts[2]
+    if not with_c:
+        before, c_axis = text.split("[axis.C]", 1)
+        text = f"{before}[axis.C]{c_axis.replace('enabled = true', 'enabled = false', 1)}"
     path = folder / "lathe.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
@@ -133,11 +136,13 @@ class JogBench:
         return self.frame.prompt.text
 
 
-def bench_on(folder: Path, *, absolute: bool = True) -> JogBench:
+def bench_on(folder: Path, *, absolute: bool = True, with_c: bool = True) -> JogBench:
     """Desk, lathe and window; the drives are on and the Jog page is open."""
     clock = StepClock()
     store = Store.open(folder / "home")
-    desk, executor = desk_and_executor(shipped(folder, absolute=absolute), lambda: offsets_of(store), clock)
+    desk, executor = desk_and_executor(
+        shipped(folder, absolute=absolute, with_c=with_c), lambda: offsets_of(store), clock
+    )
     desk.book = OffsetBook(store)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))

@@ -11,8 +11,8 @@ from pytestqt.qtbot import QtBot
 from tests.screen.jog.bench import JogBench, bench_on, opened
 
 
-def _open(qtbot: QtBot, folder: Path, *, absolute: bool) -> Iterator[JogBench]:
-    bench = bench_on(folder, absolute=absolute)
+def _open(qtbot: QtBot, folder: Path, *, absolute: bool = True, with_c: bool = True) -> Iterator[JogBench]:
+    bench = bench_on(folder, absolute=absolute, with_c=with_c)
     qtbot.waitExposed(bench.window)
     opened(bench)
     yield bench
@@ -23,9 +23,14 @@ def _open(qtbot: QtBot, folder: Path, *, absolute: bool) -> Iterator[JogBench]:
 
 @pytest.fixture
 def jog(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
-    yield from _open(qtbot, tmp_path, absolute=True)
+    yield from _open(qtbot, tmp_path)
 
 
 @pytest.fixture
 def lost(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
     yield from _open(qtbot, tmp_path, absolute=False)
+
+
+@pytest.fixture
+def no_c(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
+    yield from _open(qtbot, tmp_path, with_c=False)

@@ -300,3 +300,13 @@ def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size
         assert not any(box.intersects(other) for other in boxes[number + 1 :])
     for box in boxes[-6:]:
         assert min(box.width(), box.height()) >= 70
+
+
+def test_a_machine_without_c_has_no_targets_and_no_keys_for_it(no_c: JogBench) -> None:
+    no_c.window.grab()
+    assert len(no_c.page.pad.controls) == 5 + 5 + 3 + 4
+    no_c.down(Key.Key_PageUp)
+    no_c.run(0.3)
+    no_c.up(Key.Key_PageUp)
+    assert no_c.shot.demand == (0.0, 0.0, 0.0)
+    assert no_c.shot.state is State.IDLE
