@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from pathlib import Path
 
 from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE
-from core.machine.load import MachineFileError, load_machine
+from core.machine.load import MachineFileError, named_machine
 from core.machine.model import Machine
 from core.ports import DriverError
 
@@ -19,7 +18,7 @@ _GOOD = ("ok", "on", "off", "E-stop")
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
     try:
-        machine = load_machine(Path(file) if file else None)
+        machine = named_machine(file)
     except MachineFileError as error:
         errors = [finding._asdict() for finding in error.errors]
         _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})

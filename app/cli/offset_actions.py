@@ -8,10 +8,12 @@ import re
 import sys
 from collections.abc import Callable
 
+from app.cli import zero_actions
 from app.cli.errors import EXIT_OK, CommandError
 from app.cli.offset_file import out_of_range, shown
 from app.cli.opened_store import opened_store
 from app.cli.toml_file import unknown
+from app.cli.zero_file import TABLE
 from app.desk.arithmetic import EntryError, value_of
 from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import MM_PER_INCH, OFFSETS, Change, Kind, Row, ToolRow, Value, inches
@@ -30,13 +32,17 @@ def _show(args: argparse.Namespace) -> int:
             Kind.TOOL: {**store.tools()},
             Kind.SECONDARY: {**store.secondary()},
         }
+        zero = store.zero_offsets()
     if args.json:
-        told = {
+        told: dict[str, object] = {
             kind.value: {n: _in_inches(kind, row) for n, row in table.items()} for kind, table in rows.items()
         }
+        if zero:
+            told[TABLE] = zero_actions.as_json(zero)
         sys.stdout.write(json.dumps(told) + "\n")
         return EXIT_OK
     lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
+    lines += [zero_actions.line(code, row) for code, row in zero.items()]
     sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
     return EXIT_OK
 
@@ -65,6 +71,9 @@ def _more(row: ToolRow) -> str:
 
 
 def _set(args: argparse.Namespace) -> int:
+    code = zero_actions.code_of(args.offset)
+    if code is not None:
+        return zero_actions.set_zero(code, args.values, args.why)
     kind, number = _named(args.offset)
     values = _values(kind, args.values)
     with opened_store() as store:
@@ -76,7 +85,7 @@ def _set(args: argparse.Namespace) -> int:
 def _named(text: str) -> tuple[Kind, int]:
     match = _OFFSET.fullmatch(text)
     if not match or int(match[2]) not in OFFSETS:
-        raise CommandError(f"{text} is no offset; name T1…T32 or D1…D32")
+        raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
     return _KIND[match[1].upper()], int(match[2])
 
 

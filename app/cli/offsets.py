@@ -18,13 +18,14 @@ def add_parser(subparsers: SubParsers) -> None:
     change = actions.add_parser(
         "set", help="set T3 x=1.25 wear_x=-.0005 quadrant=3, or D4 x=-.0005 (a radius, as stored)"
     )
-    change.add_argument("offset", metavar="T3|D4")
+    change.add_argument("offset", metavar="T3|D4|G54")
     change.add_argument(
         "values",
         metavar="KEY=VALUE",
         nargs="+",
         help="inches, sums such as x=.5-.002 are fine; "
-        "T: x z nose_radius wear_x wear_z quadrant remark master, D: x z r",
+        "T: x z nose_radius wear_x wear_z quadrant remark master, D: x z r; "
+        "G54 to G59 in mm and degrees: x z c",
     )
     clear = actions.add_parser("clear", help="clear D: all secondary offsets")
     clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)

@@ -11,6 +11,7 @@ from pathlib import Path
 from app.cli.errors import EXIT_ERRORS, EXIT_OK
 from app.cli.offset_file import read_rows
 from app.cli.opened_store import opened_store, told
+from app.cli.zero_file import read_zero
 from app.desk.home import home
 from core.store import backup, checking, database, export
 
@@ -41,9 +42,10 @@ def _import(args: argparse.Namespace) -> int:
     folder = Path(args.path)
     offsets_file = folder / export.OFFSETS
     tools, secondary = read_rows(offsets_file) if offsets_file.exists() else ({}, {})
+    zero = read_zero(offsets_file) if offsets_file.exists() else {}
     with opened_store() as store:
         programs = export.program_files(folder)
-        store.import_all(programs, tools, secondary, f"import of {folder.name}").result()
+        store.import_all(programs, tools, secondary, f"import of {folder.name}", zero).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
     sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
     return EXIT_OK

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-import resources
 from app.cli.errors import CommandError
 from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
@@ -19,12 +17,10 @@ def read_machine(path: str | None) -> Machine:
 
     Raises CommandError naming every mistake.
     """
-    from core.machine.load import MachineFileError, load_machine, shipped_machine
+    from core.machine.load import MachineFileError, named_machine
 
     try:
-        if path and path in resources.machine_names() and not Path(path).exists():
-            return shipped_machine(path)
-        return load_machine(Path(path) if path else None)
+        return named_machine(path)
     except MachineFileError as error:
         raise CommandError(str(error)) from error
 

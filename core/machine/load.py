@@ -24,7 +24,7 @@ from core.machine.model import (
 )
 from core.machine.reader import Reading
 
-__all__ = ["MachineFileError", "load_machine", "parse_machine", "shipped_machine"]
+__all__ = ["MachineFileError", "load_machine", "named_machine", "parse_machine", "shipped_machine"]
 
 SHIPPED = "gt75.toml"
 _NONE = (-math.inf, math.inf)
@@ -50,6 +50,13 @@ def load_machine(path: Path | None = None) -> Machine:
             [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
         ) from error
     return parse_machine(text, str(path))
+
+
+def named_machine(name: str | None) -> Machine:
+    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
+    if name and name in resources.machine_names() and not Path(name).exists():
+        return shipped_machine(name)
+    return load_machine(Path(name) if name else None)
 
 
 def shipped_machine(name: str) -> Machine:

@@ -48,6 +48,9 @@ def _write_all(store: Store, folder: Path) -> int:
 
 def _offset_lines(store: Store) -> Iterator[str]:
     yield "# Offsets in inches, X a radius."
+    for code, zero in store.zero_offsets().items():
+        yield f"[zero.{code}]  # mm and degrees"
+        yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
     for kind, rows in ((Kind.TOOL, store.tools()), (Kind.SECONDARY, store.secondary())):
         for number, row in rows.items():
             yield f"[{kind.value}.{number}]"

@@ -175,6 +175,7 @@ class Store(StoreReader):
         tools: Mapping[int, ToolRow],
         secondary: Mapping[int, SecondaryRow],
         why: str,
+        zero_rows: Mapping[int, ZeroRow] | None = None,
     ) -> Future[None]:
         """Programs and offsets of an export in one transaction: all of them or none."""
 
@@ -186,5 +187,7 @@ class Store(StoreReader):
                 offsets.change(connection, Kind.TOOL, number, reason, tool._asdict())
             for number, row in secondary.items():
                 offsets.change(connection, Kind.SECONDARY, number, reason, row._asdict())
+            for code, offset in (zero_rows or {}).items():
+                zero.change(connection, code, reason, offset._asdict())
 
         return self.write(operation)

@@ -62,3 +62,52 @@ def test_every_mistake_at_once(tmp_path: Path) -> None:
         assert part in str(told.value)
     with pytest.raises(CommandError, match="must hold tables"):
         read_zero(written(tmp_path, "zero = 3\n"))
+
+
+def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("offsets", "set", "G54", "x=2", "z=-30.5", "c=-15")
+    assert (told.status, told.out) == (0, "G54 X +2.000  Z -30.500 mm  C -15.000°\n")
+    shown = json.loads(turndesk("offsets", "show", "--json").out)
+    assert shown["zero"] == {"54": {"x": 2.0, "z": -30.5, "c": -15.0}}
+    assert "G54 X +2.000" in turndesk("offsets", "show").out
+    (tmp_path / "part.mpf").write_text(PROGRAM)
+    told = turndesk("expand", str(tmp_path / "part.mpf"), "--json", "--machine", "sinumerik-modulo")
+    assert json.loads(told.out.splitlines()[0])["mz"] == -29.5
+
+
+@pytest.mark.parametrize(
+    ("argv", "what"),
+    [
+        (("G53", "x=1"), "G54…G59"),
+        (("G54", "y=1"), "y is unknown"),
+        (("G54", "x"), "sets nothing"),
+        (("G54", "x=1", "x=2"), "given twice"),
+        (("G54", "x=one"), "x:"),
+        (("G54", "c=400"), "out of range"),
+        (("H4", "x=1"), "no offset"),
+    ],
+)
+def test_what_cannot_be_set(turndesk: Turndesk, argv: tuple[str, ...], what: str) -> None:
+    told = turndesk("offsets", "set", *argv)
+    assert told.status == 2
+    assert what in told.err
+    assert told.err.count("\n") == 1
+
+
+def test_an_export_holds_them_and_an_import_brings_them_back(turndesk: Turndesk, tmp_path: Path) -> None:
+    turndesk("offsets", "set", "G55", "z=-120", "c=7.5")
+    assert turndesk("store", "export", str(tmp_path / "out")).status == 0
+    turndesk("offsets", "set", "G55", "z=0", "c=0")
+    assert turndesk("store", "import", str(tmp_path / "out")).status == 0
+    assert json.loads(turndesk("offsets", "show", "--json").out)["zero"]["55"] == {
+        "x": 0.0,
+        "z": -120.0,
+        "c": 7.5,
+    }
+
+
+def test_shipped_machines_by_their_names(turndesk: Turndesk) -> None:
+    for name in ("sinumerik-modulo", "sinumerik-linear"):
+        told = turndesk("machine", "check", name)
+        assert told.status == 0
+        assert f"{name}.toml is good" in told.out
