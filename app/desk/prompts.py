@@ -16,6 +16,7 @@ GIVE_UP = "PRESS R ONCE MORE TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
 HOW_TO_HOLD = "PRESS H FOR FEED HOLD"
 MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
 INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
+UNDER_WAY = MOVING | INTERRUPTED
 
 
 def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:

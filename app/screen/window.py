@@ -9,7 +9,8 @@ from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.desk import UNDER_WAY, Desk
+from app.desk.desk import Desk
+from app.desk.prompts import UNDER_WAY
 from app.screen.frame import Frame
 from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
 from app.screen.language import speak_in

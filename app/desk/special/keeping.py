@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from app.desk.desk import UNDER_WAY, Desk
+from app.desk.desk import Desk
 from app.desk.editing.worker import Worker
 from app.desk.files.media import Stick, sticks
 from app.desk.keep import Keep
+from app.desk.prompts import UNDER_WAY
 from app.desk.special.sheet import Key, Row, Section, Sheet
 from app.desk.view import Tone
 from app.desk.words import tr

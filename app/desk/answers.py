@@ -1,0 +1,61 @@
+"""What the desk answers on the prompt line: to the last key, to a refused start, to a disk that fails."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from core.executor.snapshot import Event, Snapshot, State
+
+HEARD = 100  # events that wait for the next frame; older ones are in the log
+
+
+@dataclass(slots=True)
+class Answers:
+    """One answer at a time; it stays until the next key or the next state of the machine."""
+
+    snapshot: Callable[[], Snapshot]
+    unkept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
+    notice: str = ""
+    _in: State | None = None
+    _refused: str = ""
+    _unkept: str = ""
+    _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
+
+    def say(self, text: str) -> None:
+        """Put an answer on the prompt line."""
+        self.notice = text
+        self._in = self.snapshot().state
+
+    def outlived(self, snapshot: Snapshot) -> bool:
+        """Whether the answer belongs to a state that is over."""
+        return bool(self.notice) and snapshot.state is not self._in
+
+    def hear(self, event: Event) -> None:
+        """What the executor has to say; it may be called from its thread."""
+        self._heard.append(event)
+
+    def starting(self) -> None:
+        """A start is tried: the same refusal again is worth saying again."""
+        self._refused = ""
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: nothing is refused in silence, a start or whatever else the executor would not do."""
+        while self._heard:
+            event = self._heard.popleft()
+            if event.kind == "refused" and event.text != snapshot.start_refused:
+                self.say(f"REFUSED: {event.text}")
+        if snapshot.start_refused != self._refused:
+            self._refused = snapshot.start_refused
+            if self._refused:
+                self.say(f"NO START: {self._refused}")
+        self._tell_unkept()
+
+    def _tell_unkept(self) -> None:
+        """A disk that fails in the middle of a run is told once, not found out the day after."""
+        trouble = self.unkept()
+        if trouble != self._unkept:
+            self._unkept = trouble
+            if trouble:
+                self.say(f"NOT KEPT: {trouble}")
