@@ -27,14 +27,15 @@ def piece_limits(
     corner = np.full(len(pieces) + 1, np.inf)
     if not len(pieces):
         return cap, cap, corner
-    turns = corner_turns(pieces)
-    single = corner_caps(pieces, turns, limits)
+    turns, along = corner_turns(pieces), accelerations(pieces, speeds, limits)
+    steps = step_caps(turns, np.maximum(along[:-1], along[1:]), limits)
+    single = np.minimum(steps, curve_caps(pieces, turns, limits))
     asked = _asked(pieces, speeds, turns, single, limits, more=more)
     corner[1:-1] = single
     # A step of the velocity at one joint stays within amax·interval: the queue of the drives takes no more.
-    corner[1:-1][asked.joint] = np.minimum(asked.squared, step_caps(turns[asked.joint], limits))
+    corner[1:-1][asked.joint] = np.minimum(asked.squared, steps[asked.joint])
     spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
-    return cap, np.minimum(accelerations(pieces, speeds, limits), spare), corner
+    return cap, np.minimum(along, spare), corner
 
 
 def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
@@ -77,29 +78,32 @@ def corner_turns(pieces: Pieces) -> FloatArray:
     return turns
 
 
-def corner_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Square of the speed (n-1,) at each joint, standing for itself, mm²/s²; endless where nothing turns.
+def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Square of the speed (n-1,) at which no axis is asked for more than it has over one interval, mm²/s².
 
-    One interval: v·|Δu| ≤ amax·interval. Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean
-    length, which for chords of a circle is its centripetal limit whatever the length of the chords. A second
-    corner within the interval: v²·|Δu|/ℓ ≤ amax, ℓ the shorter neighbour. Two such corners take
-    (2 - ℓ/vT)·ℓ/vT of amax together, which is never more than all of it.
+    A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake into it and speed up behind:
+    (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints half an interval
+    off the corner show an eighth more at most. Endless where nothing turns.
     """
-    amax = limits.accelerations
-    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
-    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
-    share = amax * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
-    curved = np.full(turns.shape, np.inf)
-    np.divide(share, turns, out=curved, where=turns > 0.0)
-    caps: FloatArray = np.minimum(step_caps(turns, limits), curved.min(axis=1))
+    sharp = np.full(turns.shape, np.inf)
+    np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
+    caps: FloatArray = np.maximum(sharp.min(axis=1) - 0.5 * limits.interval * along, 0.0) ** 2
     return caps
 
 
-def step_caps(turns: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Square of the speed (k,) at which each axis steps by amax·interval at a joint that turns so."""
-    sharp = np.full(turns.shape, np.inf)
-    np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
-    caps: FloatArray = sharp.min(axis=1) ** 2
+def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Square of the speed (n-1,) of joints near others, each standing for itself, mm²/s².
+
+    Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean length, which for chords of a circle is its
+    centripetal limit whatever the length of the chords. A second corner within the interval: v²·|Δu|/ℓ ≤
+    amax, ℓ the shorter neighbour; two such take (2 - ℓ/vT)·ℓ/vT of amax together, never more than all of it.
+    """
+    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    share = limits.accelerations * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
+    curved = np.full(turns.shape, np.inf)
+    np.divide(share, turns, out=curved, where=turns > 0.0)
+    caps: FloatArray = curved.min(axis=1)
     return caps
 
 

@@ -18,18 +18,49 @@ def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> floa
     return float(profile.at(profile.time_at(path.s[1:2]))[1][0])
 
 
-def test_a_right_angle_steps_each_axis_by_one_interval() -> None:
-    assert corner_speed([(0, 0), (0, 50), (50, 50)]) == pytest.approx(A * T)
+def felt(points: list[tuple[float, float]], feed: float = 100.0) -> float:
+    """Largest second difference of setpoints an interval apart, as a share of the acceleration."""
+    profile = plan(build_path(polyline(points, feed), LIMITS))
+    worst = 0.0
+    for begin in np.linspace(0.0, T, 8, endpoint=False):
+        p = profile.position(np.arange(begin - 2 * T, profile.duration + 2 * T, T))
+        worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max()))
+    return worst / T**2 / A
 
 
-def test_a_reversal_takes_half_of_that() -> None:
-    assert corner_speed([(0, 0), (0, 50), (0, 0)]) == pytest.approx(A * T / 2)
+def test_a_right_angle_shares_an_interval_with_the_ramps() -> None:
+    """Half an interval's change for the ramp out of it or into it, half for the turn.
+
+    Setpoints half an interval off the corner show most: with x = vt + at²/2 behind it, a + v²/2aT².
+    """
+    corner = [(0.0, 0.0), (0.0, 50.0), (50.0, 50.0)]
+    assert corner_speed(corner) == pytest.approx(A * T / 2)
+    assert felt(corner) == pytest.approx(1.125, rel=0.01)
 
 
-def test_a_slight_bend_is_slowed_in_proportion() -> None:
-    bend = math.radians(4.0)
+def test_a_reversal_is_a_stop() -> None:
+    there_and_back = [(0.0, 0.0), (0.0, 50.0), (0.0, 0.0)]
+    assert corner_speed(there_and_back) == 0.0
+    assert felt(there_and_back) == pytest.approx(1.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [4.0, 20.0, 60.0])
+def test_a_bend_asks_for_little_more_than_the_acceleration(degrees: float) -> None:
+    bend = math.radians(degrees)
     points = [(0.0, 0.0), (0.0, 50.0), (50 * math.sin(bend), 50 + 50 * math.cos(bend))]
-    assert corner_speed(points) == pytest.approx(A * T / math.sin(bend))
+    along = A / max(math.sin(bend), math.cos(bend))  # of the slanted line
+    turn = max(math.sin(bend), 1.0 - math.cos(bend))
+    assert corner_speed(points) == pytest.approx(A * T / turn - 0.5 * along * T)
+    assert felt(points) < 1.13
+
+
+@pytest.mark.parametrize("apart", [0.002, 0.008, 0.02, 0.1])
+def test_two_corners_within_an_interval_share_it(apart: float) -> None:
+    """Two bends of 15 degrees the same way; each alone would be passed at 10 mm/s, .01 mm an interval."""
+    one, two = math.radians(15.0), math.radians(30.0)
+    middle = (apart * math.sin(one), 20.0 + apart * math.cos(one))
+    end = (middle[0] + 20.0 * math.sin(two), middle[1] + 20.0 * math.cos(two))
+    assert felt([(0.0, 0.0), (0.0, 20.0), middle, end]) < 1.25
 
 
 def test_going_straight_on_costs_nothing() -> None:
@@ -87,12 +118,12 @@ def test_a_coarse_grid_slows_the_chords() -> None:
 
 
 def test_a_corner_between_short_chords_is_still_a_corner() -> None:
-    """A right angle in chords of 0.02 mm: the axes step by amax in one interval, as between long lines."""
+    """A right angle in chords of 0.02 mm is passed as between long lines."""
     there = [(0.0, 0.02 * i) for i in range(200)]
     across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
     path = build_path(polyline([*there, *across], 100.0), LIMITS)
     profile = plan(path)
-    assert float(profile.at(profile.time_at(path.s[199:200]))[1][0]) == pytest.approx(A * T)
+    assert float(profile.at(profile.time_at(path.s[199:200]))[1][0]) == pytest.approx(A * T / 2)
 
 
 def test_a_block_without_length_makes_no_corner() -> None:

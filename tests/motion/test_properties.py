@@ -71,6 +71,16 @@ def test_a_corner_steps_no_axis_by_more_than_one_interval(blocks: list[Block]) -
 
 @few
 @given(programs())
+def test_setpoints_ask_little_more_than_the_acceleration(blocks: list[Block]) -> None:
+    """Sampled at the interval; what is over comes from several corners of tiny pieces within one."""
+    profile = plan(build_path(blocks, LIMITS))
+    for begin in (0.0, 0.3 * T, 0.6 * T):
+        p = profile.position(np.arange(begin - 2 * T, profile.duration + 2 * T, T))
+        assert np.abs(np.diff(p, 2, axis=0)).max(initial=0.0) / T**2 <= 1.7 * A
+
+
+@few
+@given(programs())
 def test_it_meets_every_corner_exactly_and_ends_at_rest(blocks: list[Block]) -> None:
     profile = plan(build_path(blocks, LIMITS))
     numbers, start, end = profile.block_times()
