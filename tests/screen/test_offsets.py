@@ -285,3 +285,20 @@ def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F6)
     assert hands.prompt().startswith("LOAD A PROGRAM FIRST")
+
+
+def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F8)
+    table = tools_of(hands).table
+    hands.sees(lambda: bool(table._places))
+
+    def touch(place: int) -> None:
+        box, _press = table._places[place]
+        QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
+        hands.window.grab()
+
+    touch(1)  # a page down
+    assert (tools_of(hands).model.number, table.top) == (11, 2)
+    touch(2 + 8 * 9 + 4)  # the last row that is shown, wear X
+    hands.sees(lambda: tools_of(hands).asked.asked.question == "T11  WEAR X Ø?")
+    assert all(min(box.width(), box.height()) >= 24 for box, _press in table._places)

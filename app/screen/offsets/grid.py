@@ -1,12 +1,12 @@
-"""F8's table: sixteen of the 32 tools, each field a cell that a finger or the cursor chooses."""
+"""F8's table: ten of the 32 tools, each field a cell that a finger or the cursor chooses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QRectF
-from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.offsets import gridwords
@@ -19,7 +19,7 @@ from app.screen.offsets.tip import draw_tip
 from app.screen.panel import Panel
 from core.store.rows import OFFSETS
 
-NUMBER = 5.4  # units: width of the column of numbers
+NUMBER, SCROLL = 5.4, 5.0  # units: width of the column of numbers, of the arrows that leaf
 # Widths of the columns in parts of what is left.
 SHARES = {
     "x": 15.0,
@@ -72,6 +72,13 @@ class GridTable(Panel):
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         high = room.height() / (PAGE + 1)
+        self._leaf(
+            painter,
+            QRectF(
+                room.right() - (SCROLL - 0.6) * u, room.y() + high, (SCROLL - 0.6) * u, room.height() - high
+            ),
+        )
+        room.setRight(room.right() - SCROLL * u)
         columns = self._columns(room)
         painter.setPen(look.colour("soft"))
         for name, (left, wide) in columns.items():
@@ -82,6 +89,24 @@ class GridTable(Panel):
         for place in range(PAGE):
             row = QRectF(room.x(), room.y() + (place + 1) * high, room.width(), high)
             self._row(painter, row, self.top + place, columns)
+
+    def _leaf(self, painter: QPainter, strip: QRectF) -> None:
+        """Two large arrows: a page up and a page down."""
+        look, u = self.look, self.look.u
+        half = (strip.height() - 0.6 * u) / 2
+        for number, (key, sign) in enumerate((("Page up", -1), ("Page down", 1))):
+            box = QRectF(strip.x(), strip.y() + number * (half + 0.6 * u), strip.width(), half)
+            painter.fillRect(box, look.colour("key"))
+            at, size = box.center(), 1.2 * u
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(look.colour("accent"))
+            tip = QPointF(at.x(), at.y() + sign * size)
+            foot = at.y() - sign * size
+            painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
+            self.place(box, partial(self._press, key))
+
+    def _press(self, key: str) -> None:
+        self._model.typed(key)
 
     def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
         """Left edge and width of each column, pixels."""
@@ -103,7 +128,7 @@ class GridTable(Panel):
         if number in {change.number for change in model.ledger.last}:
             painter.fillRect(QRectF(row.x(), row.y(), 0.5 * u, row.height()), look.colour("lit"))
         painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(2.0, bold=True))
+        painter.setFont(look.font(2.2, bold=True))
         put(painter, QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height()), RIGHT, f"T{number}")
         unset = number not in model.book.tools
         for at, (name, (left, wide)) in enumerate(columns.items()):
@@ -111,11 +136,12 @@ class GridTable(Panel):
             self._cell(painter, cell, number, name)
             if here and at == model.column:
                 painter.setPen(look.pen("accent", 0.24))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
                 painter.drawRect(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u))
             self.place(cell, partial(self.choose, number, at))
         if unset and number != model.cells.new.number:
             painter.setPen(look.colour("soft"))
-            painter.setFont(look.font(1.7))
+            painter.setFont(look.font(1.9))
             put(painter, QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height()), LEFT, not_set())
 
     def _cell(self, painter: QPainter, cell: QRectF, number: int, name: str) -> None:
@@ -132,5 +158,5 @@ class GridTable(Panel):
             room.setRight(room.right() - 3.0 * u)
         worn = name.startswith("wear") and text.strip("+0.") == ""
         painter.setPen(look.colour("soft" if worn else "text"))
-        painter.setFont(look.fit(text, 1.8, room.width(), bold=not worn and name != "remark"))
+        painter.setFont(look.fit(text, 2.0, room.width(), bold=not worn and name != "remark"))
         put(painter, room, LEFT if name == "remark" else RIGHT, text)
