@@ -1,0 +1,58 @@
+"""PVT records against hand-made bytes and paths whose deviation can be worked out."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivers.canopen.pvt import deviation, hermite, packed, span, unpacked
+
+Point = tuple[tuple[float, ...], tuple[float, ...]]
+
+
+def test_a_record_byte_by_byte() -> None:
+    # position 1000 = 0x000003E8, velocity -2 = 0xFFFFFE, 20 ms = 0x14
+    assert packed(20, -2.0, 1000.0) == bytes([0xE8, 0x03, 0, 0, 0xFE, 0xFF, 0xFF, 0x14])
+    assert unpacked(bytes([0xE8, 0x03, 0, 0, 0xFE, 0xFF, 0xFF, 0x14])) == (20, -2, 1000)
+    # position -1, velocity 100000 = 0x0186A0, the end
+    assert packed(0, 1e5, -1.0) == bytes([0xFF, 0xFF, 0xFF, 0xFF, 0xA0, 0x86, 0x01, 0])
+
+
+@pytest.mark.parametrize(("ms", "velocity"), [(256, 0.0), (-1, 0.0), (20, 2.0**23), (20, -(2.0**23))])
+def test_what_does_not_fit_a_record_is_refused(ms: int, velocity: float) -> None:
+    with pytest.raises(ValueError, match="does not fit"):
+        packed(ms, velocity, 0.0)
+
+
+def test_a_cubic_is_exact_on_a_parabola() -> None:
+    # p = 3t², from t = 1 to 3: 3, 6 and 27, 18; at t = 2: 12
+    assert hermite(3.0, 6.0, 27.0, 18.0, 2.0, 0.5) == pytest.approx(12.0)
+    assert hermite(3.0, 6.0, 27.0, 18.0, 2.0, 0.0) == 3.0
+    assert hermite(3.0, 6.0, 27.0, 18.0, 2.0, 1.0) == 27.0
+
+
+def kink(at: float, a: float = 3000.0) -> Point:
+    """Rest until t = 0, then accelerated."""
+    t = max(at, 0.0)
+    return (0.5 * a * t * t,), (a * t,)
+
+
+def test_where_the_acceleration_jumps_a_record_is_cut() -> None:
+    # From -10 to 10 ms with the jump in the middle p1 = aT²/8 and v1 = aT/2, so the cubic is
+    # s²(3 - 2s)·p1 - s²(1 - s)·v1·T = s²(2s - 1)/8·aT², worst of the eighths at s = 3/8: -9/2048·aT²
+    assert deviation(kink, -0.01, 0.02, (1.0,)) == pytest.approx(9 / 2048 * 3000.0 * 0.02**2)
+    cut = span(kink, -0.01, 20, (0.00127,))
+    assert cut.ms < 20
+    assert cut.off <= 0.5
+    assert span(kink, 0.0, 20, (0.00127,)).ms == 20
+
+
+def test_the_shortest_record_is_taken_whatever_it_costs_and_tells() -> None:
+    cut = span(lambda t: ((abs(t),), (1.0 if t > 0 else -1.0,)), -0.001, 20, (1e-6,))
+    assert cut.ms == 2
+    assert cut.off > 1.0
+
+
+def test_a_straight_line_takes_the_longest_records() -> None:
+    line = span(lambda t: ((5.0 * t, -3.0 * t), (5.0, -3.0)), 1.0, 20, (0.001, 0.001))
+    assert line.ms == 20
+    assert line.off == pytest.approx(0.0, abs=1e-9)

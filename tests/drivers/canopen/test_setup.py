@@ -1,0 +1,184 @@
+"""Before anything moves: what is written and read back, and every way in which a node is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from app.compose.canopen import canopen_machine, canopen_peers
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.canopen import objects as od
+from drivers.canopen.peer.axis import AxisDrive
+from drivers.canopen.peer.machine import Peers
+from drivers.simulated import StepClock
+from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.machines import ramp
+
+
+def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> None:
+    for name in ("X", "Z"):
+        values = bench.peers.plant.drives[name].values
+        assert values[od.ABORT_OPTION, 0] == 3
+        assert values[od.QUICK_OPTION, 0] == 2
+        assert values[od.FAULT_OPTION, 0] == 2
+        assert values[od.WINDOW, 0] == round(2.032 / 0.00127)  # .08 in
+        assert values[od.WINDOW_TIME, 0] == 20
+        assert values[od.LIMITS, 2] == round((101.6 if name == "X" else 152.4) / 0.00127)
+        assert values[od.HEARTBEAT, 0] == 100
+        assert values[od.WATCHED, 1] == 127 << 16 | 300
+
+
+def test_a_value_of_the_machine_file_wins() -> None:
+    bench = CanBench(can_machine(('"6007:0" = 3', '"6007:0" = 2')))
+    assert bench.peers.plant.drives["X"].values[od.ABORT_OPTION, 0] == 2
+    bench.close()
+
+
+def test_outputs_have_their_safe_state_in_the_module(bench: CanBench) -> None:
+    board = bench.peers.nodes["io"].device
+    values = board.values  # type: ignore[attr-defined]
+    # the collet, bit 1 of the first byte, keeps its state; the others fall
+    assert values[od.ERROR_MODE, 1] == 0xFD
+    assert values[od.ERROR_VALUE, 1] == 0
+    assert values[od.ANALOG_EVENTS, 0] == 1
+
+
+def refused(spoil: Callable[[Peers], None], machine: Machine | None = None) -> str:
+    """Why a machine with a spoilt node is not connected to."""
+    model, clock = machine or can_machine(), StepClock()
+    peers = canopen_peers(model, clock)
+    spoil(peers)
+    try:
+        with pytest.raises(DriverError) as caught:
+            canopen_machine(model, clock, peers.pump)
+    finally:
+        peers.close()
+    return str(caught.value)
+
+
+def drive(peers: Peers, name: str = "Z") -> AxisDrive:
+    return peers.plant.drives[name]
+
+
+def test_a_node_that_is_not_there() -> None:
+    def spoil(peers: Peers) -> None:
+        peers.nodes["Z"].silent = True
+
+    why = refused(spoil)
+    assert why.startswith("Z: node 2, object 1000:0: no answer")
+    assert "check cable, power and node number" in why
+
+
+def test_a_terminal_block_where_a_drive_should_be() -> None:
+    def spoil(peers: Peers) -> None:
+        peers.nodes["Z"].device.read = lambda _index, _sub: 0x000F0191  # type: ignore[method-assign]
+
+    assert "node 2 is a device of profile 401, expected 402" in refused(spoil)
+
+
+def test_a_drive_without_the_mode() -> None:
+    def spoil(peers: Peers) -> None:
+        read = drive(peers).read
+        peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
+            lambda index, sub: 0x21 if index == od.SUPPORTED else read(index, sub)
+        )
+
+    assert "Z: the drive has no mode interpolated position" in refused(spoil)
+
+
+def test_a_drive_that_keeps_another_value() -> None:
+    def spoil(peers: Peers) -> None:
+        read = drive(peers).read
+        peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
+            lambda index, sub: 0xFFFFFFFF if index == od.WINDOW else read(index, sub)
+        )
+
+    assert "object 6065:0 stays at 4294967295 instead of 1600" in refused(spoil)
+
+
+def test_an_object_that_the_drive_does_not_have() -> None:
+    machine = can_machine(('"6007:0" = 3', '"5FFF:0" = 3'))
+    assert "object 5FFF:0: refused by the node" in refused(lambda _: None, machine)
+
+
+def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:
+    bench.peers.plant.drives["Z"].power.refuses = True
+    with pytest.raises(DriverError, match="Z is switch on disabled"):
+        bench.machine.axes.enable(True)
+    bench.run(0.1)
+    assert not bench.peers.plant.drives["X"].power.powered  # none without the others
+
+
+def test_a_mode_that_is_not_taken_keeps_the_drives_off(bench: CanBench) -> None:
+    bench.peers.nodes["X"].device.read = _mode_stays(bench)  # type: ignore[method-assign]
+    with pytest.raises(DriverError, match="X is"):
+        bench.machine.axes.enable(True)
+    assert not bench.machine.axes.sample().enabled
+
+
+def _mode_stays(bench: CanBench) -> Callable[[int, int], int | None]:
+    read = bench.peers.plant.drives["X"].read
+    return lambda index, sub: 1 if index == od.MODE_SHOWN else read(index, sub)
+
+
+def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> None:
+    axes, plant = bench.machine.axes, bench.peers.plant
+
+    def state(name: str) -> str:
+        return plant.drives[name].power.state.value
+
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 0.5))
+    bench.run(0.3)
+    bench.peers.machine.jam("X")
+    bench.until(lambda: axes.sample().fault != "", 0.5)
+    assert axes.sample().fault == "X: monitoring (EMCY 8611)"
+    bench.run(0.5)
+    assert state("X") == "fault"
+    bench.peers.machine.jam("X", on=False)
+    axes.clear_fault()
+    assert state("X") == "switch on disabled"
+    bench.run(0.5)
+    assert not plant.drives["X"].power.powered
+    axes.enable(True)
+    assert axes.sample().enabled
+
+
+def test_a_fault_that_stays_is_told_again(bench: CanBench) -> None:
+    axes, power = bench.machine.axes, bench.peers.plant.drives["Z"].power
+    bench.peers.machine.drive_fault("Z")
+    bench.run(0.1)
+    assert "Z: voltage" in axes.sample().fault or "Z: temperature" in axes.sample().fault
+    control = power.control
+    power.control = lambda word: control(word & ~0x80)  # type: ignore[method-assign]
+    with pytest.raises(DriverError, match="Z: the drive keeps its fault"):
+        axes.clear_fault()
+
+
+def test_answers_that_are_two_rounds_late_are_no_fault(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 0.5))
+    for k in range(200):
+        bench.clock.advance(0.005)
+        bench.machine.tick()
+        if k % 4 == 3:
+            bench.peers.pump()
+    bench.run(0.3)
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[0] == pytest.approx(60.0 * 0.52, abs=0.003)
+
+
+def test_a_feeder_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 1.0))
+    bench.run(0.4)
+    for _ in range(30):  # nobody feeds for 150 ms
+        bench.clock.advance(0.005)
+        bench.peers.pump()
+    bench.run(0.5)
+    assert "EMCY FF0C" in axes.sample().fault
+    assert not any(drive.power.powered for drive in bench.peers.plant.drives.values())
