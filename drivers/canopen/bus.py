@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import can
 import canopen
@@ -26,7 +26,7 @@ class Bus(canopen.Network):
     """One CAN bus. ``idle`` is what a wait does in between where time does not pass by itself (tests)."""
 
     def __init__(self, config: BusConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
-        super().__init__(_opened(config))
+        super().__init__(opened(config))
         self.config = config
         self.clock = clock
         self.trouble = ""  # why the bus cannot be trusted; stays until it is opened anew
@@ -153,10 +153,17 @@ class Node(canopen.RemoteNode):
         return client
 
 
-def _opened(config: BusConfig) -> can.BusABC:
+def opened(config: BusConfig) -> can.BusABC:
+    """The interface; raises DriverError. On udp_multicast a channel may end in ``:port``.
+
+    Two groups on one port hear each other within one computer.
+    """
+    on_udp = config.interface in _ECHOING
+    channel, _, port = config.channel.partition(":") if on_udp else (config.channel, "", "")
+    more: dict[str, Any] = {"port": int(port)} if port.isdecimal() else {}
     try:
         return can.Bus(
-            interface=config.interface, channel=config.channel, bitrate=config.bitrate, ignore_config=True
+            interface=config.interface, channel=channel, bitrate=config.bitrate, ignore_config=True, **more
         )
     except (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError) as error:
         _refuse(config, error)

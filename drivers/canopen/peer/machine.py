@@ -9,6 +9,7 @@ import can
 
 from core.ports import Clock
 from drivers.canopen import objects as od
+from drivers.canopen.bus import opened
 from drivers.canopen.config import CanopenConfig
 from drivers.canopen.peer.axis import AxisDrive
 from drivers.canopen.peer.node import Device, PeerNetwork, PeerNode
@@ -73,11 +74,7 @@ class Peers:
         self.clock = clock
         self.plant = PeerPlant(sim, clock)
         self.machine = SimMachine(self.plant)
-        bus = config.bus
-        opened = can.Bus(
-            interface=bus.interface, channel=bus.channel, bitrate=bus.bitrate, ignore_config=True
-        )
-        self.network = PeerNetwork(opened)
+        self.network = PeerNetwork(opened(config.bus))
         self.nodes: dict[str, PeerNode] = {}
         self.cut = False  # the cable is off
         self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
