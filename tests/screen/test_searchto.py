@@ -180,12 +180,13 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     operator.type("38")
     page = found(operator)
     assert page.starts.starts[-1] == "COOLANT"
+    assert page.starts.choices == ("F4: INSIDE A BORE, Z LAST", "F5: WITH COOLANT")  # the boring bar
     operator.key(Key.Key_F5)
     page = page_of(operator)
     assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
     operator.key(Key.Key_F4)
     page = page_of(operator)
-    assert page.starts.choices == ("F4: INSIDE A BORE, Z LAST", "F5: WITHOUT COOLANT")
+    assert page.starts.choices == ("F4: OUTSIDE, X LAST", "F5: WITHOUT COOLANT")
     confirmed(operator)
     operator.key(Key.Key_F4)  # another way is not the one that was proved
     assert model_of(operator).stage is Stage.SHOWN
@@ -266,3 +267,16 @@ def test_escape_goes_back_step_by_step(operator: Operator) -> None:
     assert model_of(operator).stage is Stage.CHOOSE
     operator.key(Key.Key_Escape)
     assert operator.frame.page is operator.frame.automatic
+
+
+def test_another_tool_at_the_part_has_to_be_jogged_clear_first(operator: Operator) -> None:
+    operator.stage.start()
+    operator.until(lambda: operator.shot.line == 18, 120.0)
+    operator.pause(0.2)
+    estop_and_recover(operator)
+    operator.key(Key.Key_F6)
+    operator.type("41")
+    page = found(operator)
+    assert page.starts.trouble.startswith("T1 STANDS AT THE PART AND THE LINE WORKS WITH T2")
+    operator.key(Key.Key_F10)
+    assert model_of(operator).stage is Stage.SHOWN

@@ -14,6 +14,8 @@ from core.interpreter.begin import Begin, Checkpoint, Leg, Step
 from core.interpreter.restart.approach import Choices, Now, begin_at, starting
 from core.interpreter.restart.rebuild import Found
 
+_CLEAR = 0.5  # mm short of where the program was clear of the part
+
 
 @dataclass(frozen=True, slots=True)
 class Beside:
@@ -51,7 +53,7 @@ def plan_of(found: Found, snapshot: Snapshot, choices: Choices) -> Plan:
         rows=_rows(begin.checkpoint, snapshot),
         starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
         legs=_drawn(begin, snapshot),
-        trouble=_collet(found.checkpoint, snapshot),
+        trouble=_collet(found.checkpoint, snapshot) or _tool(found, snapshot),
     )
 
 
@@ -101,6 +103,15 @@ def _drawn(begin: Begin, snapshot: Snapshot) -> tuple[Drawn, ...]:
             label = f"{len(drawn)} {step.text}"
             drawn.append(Drawn(z - modal.tool_z, x - modal.tool_x, step.rapid, label))
     return tuple(drawn)
+
+
+def _tool(found: Found, snapshot: Snapshot) -> str:
+    """Another tool than the one of the line may stand in the work, and nobody knows the way out of it."""
+    now, wanted = snapshot.modal.tool, found.checkpoint.modal.tool
+    if now == wanted or snapshot.demand[1] >= found.clear.z - _CLEAR:
+        return ""
+    words = tr("T{now} STANDS AT THE PART AND THE LINE WORKS WITH T{wanted}: JOG Z CLEAR OF THE PART FIRST")
+    return words.format(now=now, wanted=wanted)
 
 
 def _collet(point: Checkpoint, snapshot: Snapshot) -> str:

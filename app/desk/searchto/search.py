@@ -231,6 +231,7 @@ class SearchDesk:
             return
         answer = future.result()
         if isinstance(answer, Found):
+            self.choices = replace(self.choices, inside=answer.inside)
             self._show(answer)
         elif isinstance(answer, NotGood):
             self.stage, self.answer = Stage.REFUSED, answer

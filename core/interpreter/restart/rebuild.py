@@ -16,6 +16,7 @@ from core.interpreter.begin import Begin, Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.program import Program, read_program
 from core.interpreter.restart.good import Lines
+from core.interpreter.restart.side import works_inside
 from core.interpreter.setup import Setup
 from core.interpreter.statement import Statement
 from core.interpreter.walk import Walk
@@ -45,6 +46,7 @@ class Found:
     line: int
     checkpoint: Checkpoint
     clear: Clear
+    inside: bool = False  # the tool works in a bore, so that the way in is along Z
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +77,14 @@ class Rebuild:
         """What line ``line`` inherits, or why the program cannot go on from it."""
         why = self.lines.why_not(line) or self._goes_to(line)
         if not why:
-            return Found(line, self._walk.checkpoint, Clear(self._z, dict(self._x)))
+            return self._found(line)
         return NotGood(line, why, self._good(line, -1), self._good(line, 1))
+
+    def _found(self, line: int) -> Found:
+        point = self._walk.checkpoint
+        ahead = Walk(self._program, replace(self._setup, begin=Begin(point, line)))
+        inside = works_inside(point.machine[0] - point.modal.tool_x, ahead.blocks(to_first_error=True))
+        return Found(line, point, Clear(self._z, dict(self._x)), inside)
 
     def _good(self, line: int, way: int) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
