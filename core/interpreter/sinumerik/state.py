@@ -79,8 +79,9 @@ class State:
 
     @property
     def css(self) -> float | None:
-        """Surface speed in force, mm/s."""
-        return self.modal.surface_speed if self.modal.css else None
+        """Surface speed by which the spindle turns, mm/s; None while it stands or has another rule."""
+        modal = self.modal
+        return modal.surface_speed if modal.css and modal.spindle and modal.surface_speed else None
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""

@@ -1,0 +1,105 @@
+"""What a lathe's C is: modulo or not, its own drive or the spindle; kept by proof and run."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import resources
+from app.compose.machine import control_limits
+from core.executor.alarms import TroubleError
+from core.executor.limits import check_block
+from core.machine.errors import MachineFileError
+from core.machine.load import load_machine, parse_machine
+from core.machine.model import Machine
+from core.proving.prove import prove
+from tests.sinumerik.lathe import LINEAR, MODULO, good, run, setup, source
+
+GT75 = load_machine(None)
+HOME = (0.0, 0.0, 0.0)
+
+
+def changed(old: str, new: str) -> Machine:
+    """The modulo lathe with another line in its file."""
+    text = resources.machine_file("sinumerik-modulo.toml")
+    assert text.count(old) == 1
+    return parse_machine(text.replace(old, new), "changed.toml")
+
+
+def codes(text: str, machine: Machine) -> list[str]:
+    report = prove(source(text), setup(machine, HOME), machine)
+    return [each.code for each in report.errors]
+
+
+def test_the_shipped_lathes_have_the_limits_of_the_specification() -> None:
+    for machine in (MODULO, LINEAR):
+        x, z, c = machine.axes
+        assert [x.vmax * 60, z.vmax * 60, c.vmax * 60] == pytest.approx([8000, 10000, 7200])
+        assert control_limits(machine).speeds == (x.vmax, z.vmax, c.vmax)
+        assert machine.c_own_drive
+        assert not machine.spindle_is_c
+    assert (MODULO.c_modulo, MODULO.axes[2].travel) == (True, None)
+    assert (LINEAR.c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
+
+
+def test_the_shipped_gang_lathe_has_the_spindle_for_its_c() -> None:
+    assert GT75.c_modulo
+    assert GT75.spindle_is_c
+
+
+@pytest.mark.parametrize(
+    ("line", "new"),
+    [
+        ("modulo = true ", 'modulo = "yes" '),
+        ("own_drive = true ", "own_drive = 1 "),
+        ("controlled = true ", "controlled = 0 "),
+        ("own_drive = true ", "own_drives = true "),
+    ],
+)
+def test_keys_are_read_strictly(line: str, new: str) -> None:
+    with pytest.raises(MachineFileError):
+        changed(line, new)
+
+
+def test_c_is_not_moved_by_a_spindle_that_turns() -> None:
+    text = "S500 M3\nG0 X20 C90\nM5\nC=IC(5)\nG1 Z-3 F100"
+    assert codes(text, GT75) == ["c-is-spindle"]
+    assert codes(text, MODULO) == []
+    assert codes("S500 M3\nG0 X20\nG1 Z-3 F100", GT75) == []
+
+
+def test_the_executor_looks_once_more() -> None:
+    (moved,) = good("S500 M3\nG0 C90", setup(GT75, HOME))
+    with pytest.raises(TroubleError) as told:
+        check_block(moved, GT75)
+    assert told.value.code == "c-is-spindle"
+    check_block(moved, MODULO)
+
+
+def test_the_same_program_takes_the_limits_of_each_lathe() -> None:
+    (block,) = good("G0 C90", setup(GT75, HOME))
+    assert block.feed == pytest.approx(200 * 6)  # 200 rpm of C
+    (block,) = good("G0 C90", setup(MODULO, HOME))
+    assert block.feed == pytest.approx(120)
+
+
+def test_slides_leave_their_travel_by_no_offset() -> None:
+    assert codes("G0 Z790", MODULO) == []
+    assert codes("TRANS Z20\nG0 Z790", MODULO) == ["soft-limit"]
+
+
+def test_a_mill_cannot_run_it() -> None:
+    around = replace(setup(), start=(0.0,) * 5)
+    passed = run("G0 X1", around)
+    assert [each.code for each in passed.errors] == ["machine-kind"]
+    assert passed.blocks == []
+
+
+def test_a_machine_file_makes_c_linear_or_takes_it_away() -> None:
+    linear = changed("modulo = true ", "modulo = false ")
+    assert linear.axes[2].travel == (-360.0, 360.0)
+    assert codes("G0 C=DC(5)", linear) == ["16800"]
+    without = changed("enabled = true", "enabled = false")
+    assert codes("G0 C5", without) == ["unknown-axis"]
+    assert codes("G0 X5", without) == []
