@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.screen.look import Look
 from app.screen.panel import Panel
-from app.screen.path.aspects import Tip
+from app.screen.path.aspects import Aspect, Tip
 from app.screen.path.pointer import Pointer
 from app.screen.path.ruling import Picked, Ruling
 
@@ -102,6 +102,7 @@ class PathView(Panel):
         """The way back into the program, over its path; the first leg is where the tool stands."""
         if tuple(legs or ()) != self.legs:
             self.legs = tuple(legs or ())
+            self._include()
             self.update()
 
     def show_tip(self, tip: Tip) -> None:
@@ -136,9 +137,16 @@ class PathView(Panel):
 
     def _lay_out(self) -> None:
         if self._set is not None:
+            self._include()
             self._set.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
             self._stand()
         self.update()
+
+    def _include(self) -> None:
+        """The way back is seen whole."""
+        for pane in self.panes:
+            if pane.aspect is Aspect.PATH:
+                pane.include([(leg.z, leg.x) for leg in self.legs])
 
     def _stand(self) -> None:
         for pane in self.panes:

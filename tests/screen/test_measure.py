@@ -293,6 +293,22 @@ def test_a_comparison_ends_with_the_next_picture(view: PathView) -> None:
     assert not view.comparing
 
 
+def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -> None:
+    before = view.view
+    view.show_approach([Leg(60.0, 40.0), Leg(60.0, 8.0, label="1 X"), Leg(-5.0, 8.0, label="2 Z")])
+    _z0, z1, _x0, x1 = view.panes[0].sight()
+    assert z1 > 60
+    assert x1 > 40
+    view.show_approach(None)
+    assert view.view == before
+    view.zoom(2)
+    near = view.view
+    view.show_approach([Leg(60.0, 40.0), Leg(60.0, 8.0)])
+    assert view.view == near
+    view.fit()
+    assert view.panes[0].sight()[1] > 60
+
+
 def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
     legs = [Leg(10.0, 12.0), Leg(10.0, 8.0, label="1 X"), Leg(-5.0, 8.0, rapid=False, label="2 Z")]
     view.fit()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
@@ -34,6 +36,7 @@ class Pane:
         self.trail, self.before = trail, before
         self.apart = farthest(before, trail) if before is not None else None
         self.room = QRectF()
+        self._also: tuple[Place, ...] = ()
         self.by_hand = False  # somebody has zoomed or panned
         self.frame: Frame | None = None
         self._layers: Layers | None = None
@@ -61,13 +64,20 @@ class Pane:
         """Everything."""
         self.by_hand = False
         fit = boxed if self.aspect is Aspect.SIDE else fitted
-        bounds, before = self.trail.bounds, self.before
-        if before is not None:
-            low, high = map(min, bounds, before.bounds), map(max, bounds, before.bounds)
-            (z0, _, x0, _), (_, z1, _, x1) = tuple(low), tuple(high)
-            bounds = (z0, z1, x0, x1)
+        bounds = self.trail.bounds
+        if self.before is not None:
+            bounds = _around(bounds, self.before.bounds)
+        for z, x in self._also:
+            bounds = _around(bounds, (z, z, x, x))
         margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
         self._look_at(fit(bounds, int(self.room.width()), int(self.room.height()), margin))
+
+    def include(self, places: Sequence[Place]) -> None:
+        """Points of the trail's plane that are to be seen with the whole part."""
+        if tuple(places) != self._also:
+            self._also = tuple(places)
+            if not self.by_hand and self.frame is not None:
+                self.fit()
 
     def zoom(self, steps: int, at: QPointF | None = None) -> None:
         """Nearer (positive) or farther, about a point of the widget, the farthest change or the middle."""
@@ -234,3 +244,9 @@ class Pane:
         side = 1.0 if self._place[1] >= 0 else -1.0
         body = [at, at + QPointF(1.5 * u, 1.3 * side * u), at + QPointF(0.2 * u, 3.2 * side * u)]
         painter.drawPolygon(QPolygonF([*body, at + QPointF(-1.1 * u, 1.6 * side * u)]))
+
+
+def _around(one: Bounds, other: Bounds) -> Bounds:
+    """The box round two boxes."""
+    low, high = tuple(map(min, one, other)), tuple(map(max, one, other))
+    return low[0], high[1], low[2], high[3]
