@@ -46,7 +46,7 @@ class PathView(Panel):
         super().__init__(look, parent)
         self.legs: tuple[Leg, ...] = ()
         self._set: Panes | None = None
-        self._tip = Tip()
+        self._tip: Tip | None = None  # not drawn before somebody tells it
         self._pointer, self.ruling = Pointer(self), Ruling(self, picked)
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
@@ -130,7 +130,8 @@ class PathView(Panel):
             self._set = Panes(self.look, self.keeps)
         if picture is self._set.picture and before is self._set.before:
             return
-        self._tip = self._tip._replace(block=0)
+        if self._tip is not None:
+            self._tip = self._tip._replace(block=0)
         self._set.show(picture, before)
         self.ruling.renew(self._set.now)
         self._lay_out()
@@ -149,12 +150,13 @@ class PathView(Panel):
                 pane.include([(leg.z, leg.x) for leg in self.legs])
 
     def _stand(self) -> None:
-        for pane in self.panes:
-            pane.stand(self._tip.block, self._place_in(pane))
+        if self._tip is not None:
+            for pane in self.panes:
+                pane.stand(self._tip.block, self._place_in(pane, self._tip))
 
-    def _place_in(self, pane: Pane) -> Place:
+    def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
         """Where the tip is seen in a pane."""
-        return pane.place_of(self._tip)
+        return pane.place_of(tip)
 
     # --- looking around ------------------------------------------------------------------------------
 

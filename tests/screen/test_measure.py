@@ -276,6 +276,12 @@ def test_zooming_a_comparison_goes_to_the_farthest_change(view: PathView) -> Non
     settle(view)
 
 
+def test_no_tool_is_drawn_where_nobody_tells_it(view: PathView) -> None:
+    assert not drawn_in(DARK.tip, settle(view), view, [(0.0, 0.0)])
+    view.show_tip(Tip(0, 0.0, 0.0))
+    assert drawn_in(DARK.tip, settle(view), view, [(0.0, 0.0)])
+
+
 def test_both_pictures_fit_into_a_comparison(view: PathView) -> None:
     view.show_compared(picture([(40.0, 2.0), (40.0, -60.0)]), picture(SHAFT))
     z0, z1, x0, x1 = view.panes[0].sight()

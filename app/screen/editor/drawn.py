@@ -34,7 +34,7 @@ class EditedPath(PathView):
     @property
     def tip(self) -> Tip:
         """Where the line of the cursor ends."""
-        return self._tip
+        return self._tip or Tip()
 
     def follow(self, line: int) -> None:
         """The tip to the end of a source line, or of the nearest one before it that moves."""
@@ -60,5 +60,5 @@ class EditedPath(PathView):
         if line:
             self._go_to(line)
 
-    def _place_in(self, pane: Pane) -> Place:
-        return pane.end_of(self._tip.block)
+    def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
+        return pane.end_of(tip.block)

@@ -40,7 +40,8 @@ class Pane:
         self.by_hand = False  # somebody has zoomed or panned
         self.frame: Frame | None = None
         self._layers: Layers | None = None
-        self._block, self._place = 0, (0.0, 0.0)
+        self._block = 0
+        self._place: Place | None = None  # of the tip; nobody has told it yet
         self.marked: list[tuple[int, int]] = []  # ranges of points
 
     # --- what is seen --------------------------------------------------------------------------------
@@ -163,18 +164,18 @@ class Pane:
 
     # --- what moves ----------------------------------------------------------------------------------
 
-    def stand(self, block: int, place: Place) -> None:
+    def stand(self, block: int, place: Place | None) -> None:
         """The tip, in the trail's own z and x."""
         if self._layers is not None and block != self._block:
             self._layers.want(block - 1)
         self._block, self._place = block, place
 
-    def end_of(self, block: int) -> Place:
+    def end_of(self, block: int) -> Place | None:
         """Where a block ends, or the last one before it that draws anything here."""
         at = max(0, self.trail.points_done(block) - 1)
         return (float(self.trail.z[at]), float(self.trail.x[at])) if len(self.trail.z) else self._place
 
-    def place_of(self, tip: Tip) -> Place:
+    def place_of(self, tip: Tip) -> Place | None:
         """Where the machine's tip is seen here; a face keeps what it showed while C turns as the spindle."""
         if self.aspect is Aspect.PATH:
             return tip.z, tip.x
@@ -227,13 +228,17 @@ class Pane:
 
     def _under_way(self, painter: QPainter, frame: Frame) -> None:
         """The part of the present block that lies behind the tip."""
-        found = travelled(self.trail, frame, self._block, *self._place) if self._block else None
+        if not self._block or self._place is None:
+            return
+        found = travelled(self.trail, frame, self._block, *self._place)
         if found is not None:
             painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawPolyline(polygon(found.columns, found.rows))
 
     def _tool_tip(self, painter: QPainter) -> None:
+        if self._place is None:
+            return
         look, u = self.look, self.look.u
         at = self.spot(*self._place)
         painter.setPen(look.pen("panel", 0.2))
