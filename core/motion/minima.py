@@ -6,6 +6,7 @@ import numpy as np
 
 from core.motion.limits import FloatArray
 
+_FEW = 24  # limits, up to which a plain loop costs less than arrays
 _ROW = 256  # sums restart every row, so that rounding stays below 1e-9 of a row's sum
 
 
@@ -16,6 +17,8 @@ def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), W the running sum of gain.
     """
     count = len(limit)
+    if count <= _FEW:
+        return _one_by_one(limit.tolist(), gain.tolist())
     rows = -(-count // _ROW)
     top = float(limit[np.isfinite(limit)].max(initial=0.0))
     # A gain as large as the largest limit decouples its neighbours; more would only cost digits.
@@ -32,6 +35,13 @@ def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
 def reachable_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i]: what braking allows."""
     return reachable_forward(limit[::-1], gain[::-1])[::-1]
+
+
+def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
+    reached = limits[:1]
+    for limit, gain in zip(limits[1:], gains, strict=True):
+        reached.append(max(min(limit, reached[-1] + gain), 0.0))
+    return np.array(reached)
 
 
 def _carry(lows: list[float], totals: list[float]) -> FloatArray:

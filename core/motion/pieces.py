@@ -41,7 +41,7 @@ class Pieces:
         return len(self.length)
 
     def __getitem__(self, part: slice | IntArray | BoolArray) -> Pieces:
-        return Pieces(*(getattr(self, f.name)[part] for f in fields(self)))
+        return Pieces(*[getattr(self, name)[part] for name in _FIELDS])
 
     def tangent(self, at: FloatArray) -> FloatArray:
         """Direction (n, axes) at the distances ``at`` (n,) from the start of each piece."""
@@ -63,11 +63,14 @@ class Pieces:
         return point
 
 
+_FIELDS = tuple(f.name for f in fields(Pieces))
+
+
 def joined(parts: Sequence[Pieces]) -> Pieces:
     """Pieces of several arrays, one after the other."""
     if len(parts) == 1:
         return parts[0]
-    return Pieces(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Pieces)))
+    return Pieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
 
 
 def make_pieces(words: Words, rate: FloatArray) -> Pieces:
