@@ -17,6 +17,8 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
     begin = state.setup.begin
     alone = begin is not None and begin.single
     first = 0 if alone else _first_line(program, log, block_delete=state.setup.block_delete)
+    if begin is not None and alone and begin.checkpoint.modal.absolute is None:
+        _refuse_move(program, log)
     large = refuse_too_large(program, state.setup.inputs)
     if large is not None:
         log.add(large)
@@ -24,6 +26,16 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
         text = "The program names neither G70 nor G71; it runs in millimetres, as the job before it."
         log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
+
+
+def _refuse_move(program: Program, log: Log) -> None:
+    """MDI after power-up or M30: neither G90 nor G91 is in force, so X and Z have no meaning yet."""
+    step = program.steps[0]
+    named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
+    moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
+    if moves and not named:
+        text = "Neither G90 (absolute) nor G91 (incremental) is in force."
+        log.add(refusal(1, 1, "first-line", text, "Say one of them first."))
 
 
 def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:

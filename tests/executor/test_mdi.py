@@ -203,3 +203,15 @@ def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes(
     rig.until(State.IDLE)
     assert rig.shot.actual[0] == pytest.approx(0.3 * INCH, abs=0.006)  # a radius again
     assert rig.shot.parts == 1
+
+
+@pytest.mark.parametrize("line", ["X.1F50", "G00Z1", "G92X0Z0"])
+def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
+    rig = Rig()
+    rig.ready()
+    assert errors(rig, line)[0] == "Neither G90 (absolute) nor G91 (incremental) is in force."
+    assert errors(rig, "M08") == []
+    assert errors(rig, "T1") == []
+    mdi(rig, "G91" + line if not line.startswith("G92") else "G90" + line)
+    mdi(rig, "M30")
+    assert errors(rig, line)
