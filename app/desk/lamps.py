@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from core.executor.snapshot import Snapshot
 
 TURNING = 1.0  # rpm above which a spindle is said to turn
+AT_ZERO = 0.01  # degrees from 0 at which a table still stands there
+LATHE = ("X", "Z", "C")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +34,26 @@ def modes_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 def lamps_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
     """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …)."""
+    if snapshot.axes != LATHE:
+        return (
+            _spindle_lamp(snapshot),
+            Lamp("COOLANT", "coolant" in snapshot.outputs),
+            *_table_lamps(snapshot),
+        )
     return (
         _spindle_lamp(snapshot),
         Lamp("COOLANT", "coolant" in snapshot.outputs),
         _collet_lamp(snapshot),
         Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs)),
     )
+
+
+def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
+    """Of a mill: whether moves count in a tilted plane, and whether the table stands anywhere but at 0."""
+    tilted = snapshot.swivel is not None and snapshot.swivel.tilted
+    rotary = zip(snapshot.axes, snapshot.actual, strict=True)
+    turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
+    return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE TURNED", lit=turned)
 
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:

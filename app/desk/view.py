@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from app.desk import formats
-from app.desk.lamps import TURNING, Lamp, lamps_of, modes_of
+from app.desk.lamps import LATHE, TURNING, Lamp, lamps_of, modes_of
 from app.desk.settings import Units
 from app.desk.swivel import position as of_mill
 from core.executor.snapshot import Alarm, Snapshot, State
@@ -39,7 +39,6 @@ class Tone(StrEnum):
 
 
 ROTARY = frozenset("ABC")  # axes that are read in degrees
-LATHE = ("X", "Z", "C")
 
 TONES = {
     State.ESTOP: Tone.ALARM,

@@ -11,6 +11,8 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 
 FIGURES = 9  # −12.34567
+LATHE_ROWS = 3
+ROOMY = 6.3  # units of height that figures of the full size need
 
 
 class PositionPanel(Panel):
@@ -56,22 +58,28 @@ class PositionPanel(Panel):
 
     def _row(self, painter: QPainter, row: QRectF, axis: AxisView) -> None:
         look, u = self.look, self.look.u
+        share = self._share(row)
         painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(5.6, bold=True))
+        painter.setFont(look.font(5.6 * share, bold=True))
         put(painter, QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), LEFT, axis.name)
         if axis.mark:
             self._mark(painter, QRectF(7.2 * u, row.center().y() - 2.8 * u, 5.2 * u, 5.6 * u), axis.mark)
         painter.setPen(look.colour("text" if axis.homed else "soft"))
-        painter.setFont(look.font(7.0, bold=True))
+        painter.setFont(look.font(7.0 * share, bold=True))
         put(painter, QRectF(12.6 * u, row.y(), 39.0 * u, row.height()), RIGHT, axis.value)
         painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(2.7))
+        painter.setFont(look.font(2.7 * max(share, 0.8)))
         put(painter, QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height()), RIGHT, axis.beside)
         if not axis.homed:
             painter.setPen(look.colour("alarm"))
             painter.setFont(look.font(1.5, bold=True))
             at = QRectF(52.4 * u, row.y() + 0.6 * u, self.width() - 54.0 * u, 2.0 * u)
             put(painter, at, RIGHT, "NOT HOMED")
+
+    def _share(self, row: QRectF) -> float:
+        """Of the full size: five axes of a mill leave less room than three of a lathe."""
+        few = self._view is None or len(self._view.axes) <= LATHE_ROWS
+        return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
 
     def _mark(self, painter: QPainter, box: QRectF, mark: str) -> None:
         look, u = self.look, self.look.u

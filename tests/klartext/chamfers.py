@@ -19,8 +19,8 @@ def _program(planes: list[str]) -> str:
         "BEGIN PGM FOURSIDES MM",
         "BLK FORM 0.1 Z X+0 Y+0 Z-40",
         "BLK FORM 0.2 X+100 Y+100 Z+0",
-        "TOOL CALL 1 Z S3000 F500",
-        "L Z+100 R0 FMAX M3",
+        "TOOL CALL 1 Z S4000 F600",
+        "L X+50 Y+50 Z+120 R0 FMAX M3",
     ]
     for datum, plane in zip(_DATUMS, planes, strict=True):
         blocks += [f"TRANS DATUM AXIS {datum}", f"{plane} ; tilt", "CALL LBL 1"]
@@ -29,11 +29,11 @@ def _program(planes: list[str]) -> str:
         "TRANS DATUM RESET",
         "M30",
         "LBL 1",
-        "L X-12 Y-7.071 R0 FMAX",
-        "L Z+2 FMAX",
-        "L Z+0 F200",
-        "L X+112 F500",
-        "L Z+50 FMAX",
+        "L X-15 Y-7.071 R0 FMAX",
+        "L Z+3 FMAX",
+        "L Z+0 F250",
+        "L X+115 F600",
+        "L Z+60 FMAX",
         "PLANE RESET STAY",
         "LBL 0",
         "END PGM FOURSIDES MM",

@@ -44,9 +44,9 @@ def test_prove(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     assert told.status == 0
     (report,) = told.lines
     assert (report["dialect"], report["units"], report["diagnostics"]) == ("klartext", "mm", [])
-    assert report["cutting_length"] == pytest.approx(4 * (124.0 + 2.0))
+    assert report["cutting_length"] == pytest.approx(4 * (130.0 + 3.0))
     assert report["limits"]["a"] == [0.0, 45.0]
-    assert report["limits"]["x"] == pytest.approx([0.0, 382.0])  # chamfer 3: 270 + 112
+    assert report["limits"]["x"] == pytest.approx([215.0, 385.0])  # chamfers 1 and 3: 230 - 15, 270 + 115
     assert report["final"]["c"] == 0.0
 
 
@@ -72,9 +72,9 @@ def test_expand(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     ]
     assert (second["q120"], second["q121"], second["q122"]) == (45.0, 0.0, 90.0)
     assert (second["a"], second["b"], second["c"]) == (45.0, None, 90.0)
-    cut = next(block for block in told.lines if block["kind"] == "feed" and block["feed"] == 500.0)
-    assert (cut["x"], cut["y"], cut["z"]) == pytest.approx((112.0, -7.071, 0.0))
-    assert (cut["mx"], cut["my"], cut["mz"]) == pytest.approx((342.0, 278.2843, -352.2183), abs=6e-5)
+    cut = next(block for block in told.lines if block["kind"] == "feed" and block["feed"] == 600.0)
+    assert (cut["x"], cut["y"], cut["z"]) == pytest.approx((115.0, -7.071, 0.0))
+    assert (cut["mx"], cut["my"], cut["mz"]) == pytest.approx((345.0, 278.2843, -352.2183), abs=6e-5)
     assert (cut["feed_mode"], cut["units"]) == ("mm/min", "mm")
     assert 0.0 < cut["t0"] < cut["t1"]
     assert "frame" not in cut
@@ -82,8 +82,8 @@ def test_expand(turndesk: Turndesk, written: Path, offsets: Path) -> None:
 
 def test_expand_for_a_person(turndesk: Turndesk, written: Path, offsets: Path) -> None:
     told = turndesk("expand", written, *MILL, "--offsets", offsets)
-    row = next(line for line in told.out.splitlines() if "L X+112 F500" in line)
-    for shown in ("112.0000", "-7.0710", "45.000", "500.0/m"):
+    row = next(line for line in told.out.splitlines() if "L X+115 F600" in line)
+    for shown in ("115.0000", "-7.0710", "45.000", "600.0/m"):
         assert shown in row
 
 

@@ -39,11 +39,11 @@ def speeds(axes: Array) -> Array:
 
 
 def test_the_feed_in_the_plane_is_the_programmed_one() -> None:
-    """L X+112 F500 of chamfer 2 runs along Y of the workpiece and X of the machine."""
+    """L X+115 F600 of chamfer 2 runs along Y of the workpiece and X of the machine."""
     axes, lines = traced(AXIAL)
     cut = np.hypot.reduce(speeds(axes)[(lines[1:] == 25) & (lines[:-1] == 25), :3], axis=1)
-    assert np.median(cut) == pytest.approx(500.0 / 60.0, rel=1e-6)
-    assert cut.max() <= 500.0 / 60.0 * (1.0 + 1e-6)
+    assert np.median(cut) == pytest.approx(600.0 / 60.0, rel=1e-6)
+    assert cut.max() <= 600.0 / 60.0 * (1.0 + 1e-6)
 
 
 def test_a_slanted_cut_runs_at_its_feed_whatever_axes_it_takes() -> None:

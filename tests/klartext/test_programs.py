@@ -59,14 +59,14 @@ def test_the_cuts_start_and_end_where_the_tables_say() -> None:
     assert len(feeds) == 8
     for chamfer, (down, along) in enumerate(zip(feeds[::2], feeds[1::2], strict=True), start=1):
         (a, c, _), _, origin = STANDS[chamfer][0]
-        for block, q in ((down, (-12.0, -7.071, 0.0)), (along, (112.0, -7.071, 0.0))):
+        for block, q in ((down, (-15.0, -7.071, 0.0)), (along, (115.0, -7.071, 0.0))):
             assert block.swivel is not None
             assert block.swivel.slides == pytest.approx(np.add(origin, q), abs=6e-5)
             assert rotary(block) == pytest.approx((a, c))
             assert block.swivel.end == pytest.approx(q, abs=1e-9)
     first = feeds[0].swivel
     assert first is not None
-    assert first.slides == pytest.approx((218.0, 278.2843, -352.2183), abs=6e-5)
+    assert first.slides == pytest.approx((215.0, 278.2843, -352.2183), abs=6e-5)
 
 
 def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
@@ -80,13 +80,13 @@ def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
         (a, c, _), _, origin = STANDS[chamfer][1]
         assert swivel is not None
         assert rotary(feeds[2 * chamfer - 1]) == pytest.approx((a, c))
-        turned = (-112.0, 7.071, 0.0)  # half a turn about the tool is left over
+        turned = (-115.0, 7.071, 0.0)  # half a turn about the tool is left over
         assert swivel.slides == pytest.approx(np.add(origin, turned), abs=6e-5)
 
 
 def test_the_cuts_lie_on_the_chamfers() -> None:
-    """Chamfer 1 runs at y 5, z -5 from x -12 to 112; the others are that line about the block's centre."""
-    ends = [np.array((-12.0, 5.0, -5.0)), np.array((112.0, 5.0, -5.0))]
+    """Chamfer 1 runs at y 5, z -5 from x -15 to 115; the others are that line about the block's centre."""
+    ends = [np.array((-15.0, 5.0, -5.0)), np.array((115.0, 5.0, -5.0))]
     quarter = np.array(((0, -1, 0), (1, 0, 0), (0, 0, 1)))
     centre = np.array((50.0, 50.0, 0.0))
     for start, end in cuts(run_file(AXIAL))[1::2]:

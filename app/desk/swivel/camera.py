@@ -23,7 +23,7 @@ class Aspect:
 
 
 ASPECTS = (
-    Aspect("3-D", 32.0, 28.0),
+    Aspect("3-D", 46.0, 36.0),
     Aspect("FRONT", 0.0, 0.0),
     Aspect("RIGHT", 90.0, 0.0),
     Aspect("TOP", 0.0, 90.0),

@@ -33,7 +33,7 @@ _SIDE_ONLY = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Face:
-    """A filled shape (n, 2): ``role`` is ``table blank blank-top plane tool``."""
+    """A filled shape (n, 2): ``role`` is ``table table-under blank blank-top plane tool``."""
 
     role: str
     points: FloatArray
@@ -61,7 +61,7 @@ def camera_for(scene: Scene) -> Camera:
     table = _table(scene)
     at = scene.kinematics.place({}).machine(_middle(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
-    return Camera((at[0], at[1], at[2] + 0.25 * reach), 1.45 * reach)
+    return Camera((at[0], at[1], at[2] + 0.1 * reach), 1.1 * reach)
 
 
 def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> Figure:
@@ -91,7 +91,8 @@ class _Picture:
         machine_parallel = self._scene.kinematics.place(self._angles)
         zero = self._scene.kinematics.place({})
         flat = _moved(machine_parallel, np.array([zero.point(_point(row)) for row in _table(self._scene)]))
-        return [self._face("table", flat)]
+        up = np.cross(flat[1] - flat[0], flat[2] - flat[1])
+        return [self._face("table" if up @ self._camera.axes[2] > 0.0 else "table-under", flat)]
 
     def blank(self) -> list[tuple[float, Face]]:
         """Those faces of the blank that look at the eye."""

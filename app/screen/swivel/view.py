@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 # Of each face: fill, how much of it (0 to 255), edge.
 _FILLS = {
     "table": ("key", 255, "frame"),
+    "table-under": ("key", 110, "frame"),  # what stands on it is seen through it
     "blank": ("ghost", 215, "soft"),
     "blank-top": ("here", 225, "soft"),
     "plane": ("accent", 70, "accent"),
