@@ -1,0 +1,89 @@
+"""Whatever is touched in whatever order: tips keep their distance, there is one master, undo leads back."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.store import database, offsets, toolset
+from core.store.offsets import Reason
+from core.store.rows import Kind, ToolRow
+from core.store.toolset import Touch
+
+WHY = Reason("try", "test")
+START = {
+    1: ToolRow(-12.7, -76.2, wear_x=0.05),
+    2: ToolRow(6.35, -63.5, wear_z=-0.1),
+    3: ToolRow(-25.4, -81.28),
+    4: ToolRow(0.0, 0.0),
+}
+place = st.floats(-200.0, 200.0).map(lambda mm: round(mm, 4))
+touches = st.tuples(st.integers(1, 4), st.none() | place, st.none() | place, st.booleans())
+STEPS = st.lists(
+    st.one_of(
+        st.tuples(st.just("touch"), touches),
+        st.tuples(st.just("master"), st.integers(0, 4)),
+        st.tuples(st.just("wear"), st.tuples(st.integers(1, 4), st.floats(-2.0, 2.0))),
+    ),
+    max_size=12,
+)
+
+
+def distances(rows: dict[int, ToolRow]) -> dict[tuple[int, int], tuple[float, float]]:
+    """How far every tip stands from every other."""
+    return {
+        (a, b): (rows[a].offset[0] - rows[b].offset[0], rows[a].offset[1] - rows[b].offset[1])
+        for a in rows
+        for b in rows
+        if a != b
+    }
+
+
+def step(connection: sqlite3.Connection, what: str, values: object) -> None:
+    """One change, and what must hold of it."""
+    before = offsets.tools(connection)
+    if what == "master":
+        assert isinstance(values, int)
+        toolset.choose_master(connection, values, WHY)
+        after = offsets.tools(connection)
+        assert {n: row.offset for n, row in after.items()} == {n: row.offset for n, row in before.items()}
+        assert [n for n, row in after.items() if row.master] == ([values] if values else [])
+    elif what == "wear":
+        assert isinstance(values, tuple)
+        offsets.change(connection, Kind.TOOL, values[0], WHY, {"wear_x": values[1]})
+    else:
+        assert isinstance(values, tuple)
+        number, x, z, alone = values
+        toolset.touch_off(connection, number, Touch(x, z, alone), WHY)
+        touched(before, offsets.tools(connection), number, Touch(x, z, alone))
+
+
+def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, touch: Touch) -> None:
+    """The tip stands where it was touched; who follows, and who stays."""
+    for place_, value in zip((touch.x, touch.z), after[number].offset, strict=True):
+        assert place_ is None or value == pytest.approx(place_)
+    if before[number].master and not touch.alone:
+        for pair, apart in distances(before).items():
+            assert distances(after)[pair] == pytest.approx(apart, abs=1e-9)
+    else:
+        others = {n: row for n, row in before.items() if n != number}
+        assert {n: row for n, row in after.items() if n != number} == others
+
+
+@given(STEPS)
+@settings(max_examples=60, deadline=None)
+def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> None:
+    with closing(database.empty()) as connection:
+        for number, row in START.items():
+            offsets.change(connection, Kind.TOOL, number, WHY, row._asdict())
+        for what, values in steps:
+            step(connection, what, values)
+            assert sum(row.master for row in offsets.tools(connection).values()) <= 1
+        made = connection.execute("SELECT max(step) FROM offset_changes").fetchone()[0] - len(START)
+        for _ in range(made):
+            offsets.undo(connection, WHY)
+        assert offsets.tools(connection) == START
