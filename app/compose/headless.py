@@ -69,7 +69,8 @@ def headless(
     A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
     and for inputs that it does not have or that are wires and not to be set.
     """
-    clock = RealClock() if realtime or not played(machine) else StepClock()
+    paced = realtime or machine.hardware.sim.realtime or not played(machine)
+    clock = RealClock() if paced else StepClock()
     try:
         connected = connect(machine, clock)
     except DriverError as error:

@@ -7,6 +7,7 @@ from typing import cast
 from core.machine.model import Axis, Machine
 from core.ports import Clock
 from drivers.simulated import (
+    PlannedFault,
     SimAxis,
     SimCollet,
     SimConfig,
@@ -37,6 +38,10 @@ def sim_config(machine: Machine) -> SimConfig:
         },
         inputs=tuple(machine.inputs),
         commit=machine.timing.commit,
+        faults=tuple(
+            PlannedFault(f.at, f.what, f.axis, f.value, f.seconds, f.text)
+            for f in machine.hardware.sim.faults
+        ),
         seed=cast("int", machine.sim.get("seed", 1)),
     )
 

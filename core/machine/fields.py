@@ -120,7 +120,7 @@ M_CODE = (
 )
 SIM = (
     Field("seed", _WHOLE, low=0, high=2**31, default=1),
-    Field("realtime", _FLAG, default=True),
+    Field("realtime", _FLAG, default=False),
 )
 
 # Plain tables: path and keys. axis, io and m_codes hold tables, some under names of the owner's choice.

@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 from core.ports import Clock, MachinePorts
 from drivers.simulated.clocks import RealClock, StepClock
-from drivers.simulated.config import SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
+from drivers.simulated.config import PlannedFault, SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
 from drivers.simulated.machine import SimMachine
 from drivers.simulated.plant import Plant
 from drivers.simulated.ports import SimAxes, SimGear, SimIO, SimStation
 from drivers.simulated.ports import SimSpindle as _SpindlePort
+from drivers.simulated.schedule import Schedule
 
 __all__ = [
+    "PlannedFault",
     "RealClock",
     "SimAxis",
     "SimCollet",
@@ -45,7 +47,10 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         station=SimStation(plant),
         gear=SimGear(plant),
     )
-    return Simulation(ports, SimMachine(plant))
+    machine = SimMachine(plant)
+    if config.faults:
+        plant.due = Schedule(machine, config.faults).due
+    return Simulation(ports, machine)
 
 
 def build_ports(config: SimConfig, clock: Clock) -> MachinePorts:

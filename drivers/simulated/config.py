@@ -59,6 +59,18 @@ class SimCollet:
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedFault:
+    """``what`` happens ``at`` so many seconds, for ``seconds``, or for good where that is 0."""
+
+    at: float
+    what: str
+    axis: str = ""
+    value: float = 0.0
+    seconds: float = 0.0
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class SimConfig:
     """The whole simulated machine."""
 
@@ -70,5 +82,6 @@ class SimConfig:
     commit: float = 0.03
     step: float = 0.001  # of the servo model
     seed: int = 1
+    faults: tuple[PlannedFault, ...] = ()
     palms: float = 0.5  # seconds within which both palms must go down
     start_pulse: float = 0.1  # how long the two-hand relay holds its output at least

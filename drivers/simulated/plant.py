@@ -6,6 +6,7 @@ The model steps on a grid of fixed times, so what happens does not depend on who
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 
 from core.ports import Cam, Clock, DriverError, Segments, Stop
 from drivers.geared_queue import GearedQueue
@@ -53,6 +54,7 @@ class Plant:
         self.fault = ""
         self._off_at = _NEVER
         self._homing: tuple[Servo, float] | None = None
+        self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
         self._k = int(clock.now() / config.step)
         self.spindle.t = clock.now()
 
@@ -65,6 +67,7 @@ class Plant:
         """Bring everything up to the clock; returns the clock's time."""
         now = self.clock.now()
         with self.lock:
+            self._break(now)
             last = int(now / self.config.step + 1e-6)
             if last > self._k:
                 self._slides(last)
@@ -72,6 +75,13 @@ class Plant:
             if now > self.spindle.t:
                 self.spindle.advance(now)
         return now
+
+    def _break(self, now: float) -> None:
+        """Faults that are due; breaking something looks at the plant too, and must not come back here."""
+        due, self.due = self.due, None
+        if due is not None:
+            due(now)
+            self.due = due
 
     def splice(self, segments: Segments) -> None:
         """Queue setpoints; raises DriverError when the drives cannot take them."""

@@ -67,10 +67,10 @@ def test_other_lines() -> None:
 
 def test_faults_of_the_simulation() -> None:
     faults = 'faults = [{ at = 12.0, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]'
-    machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = false\n{faults}\n", SHIPPED), "t")
+    machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = true\n{faults}\n", SHIPPED), "t")
     assert machine.hardware.sim.faults == (SimFault(12.0, "jam", "Z"), SimFault(1.0, "estop"))
-    assert not machine.hardware.sim.realtime
-    assert load_machine(None).hardware.sim.realtime
+    assert machine.hardware.sim.realtime
+    assert not load_machine(None).hardware.sim.realtime
 
 
 def test_addresses_of_terminals() -> None:

@@ -125,7 +125,7 @@ class SimModel:
     """The simulated machine's own settings."""
 
     seed: int = 1
-    realtime: bool = True
+    realtime: bool = False  # a run without a screen keeps the machine's pace too
     faults: tuple[SimFault, ...] = ()
 
 

@@ -18,6 +18,7 @@ from drivers.canopen.peer.terminals import TerminalBoard
 from drivers.simulated.config import SimConfig
 from drivers.simulated.machine import SimMachine
 from drivers.simulated.plant import Plant
+from drivers.simulated.schedule import Schedule
 
 _SETTLED = 1e-9
 
@@ -35,6 +36,7 @@ class PeerPlant(Plant):
         """Bring everything up to the clock in steps of the model; returns the clock's time."""
         now = self.clock.now()
         with self.lock:
+            self._break(now)
             step = self.config.step
             while self._at + step <= now + _SETTLED:
                 self._at += step
@@ -74,6 +76,8 @@ class Peers:
         self.clock = clock
         self.plant = PeerPlant(sim, clock)
         self.machine = SimMachine(self.plant)
+        if sim.faults:
+            self.plant.due = Schedule(self.machine, sim.faults).due
         self.network = PeerNetwork(opened(config.bus))
         self.nodes: dict[str, PeerNode] = {}
         self.cut = False  # the cable is off
