@@ -71,6 +71,8 @@ def test_calls() -> None:
     line = lex_line(1, "N5 NUT_1 P3 ; three times")
     assert (line.call, line.passes, line.errors) == ("NUT_1", 3, ())
     assert lex_line(1, "L100").call == "L100"
+    assert lex_line(1, "POS1").call == "POS1"
+    assert lex_line(1, "CYCLE95").errors[0].code == "not-in-subset"
     assert lex_line(1, "NUT_1 X5").errors
     assert lex_line(1, "X5 NUT_1").errors
     assert lex_line(1, "NUT_1(5)").errors

@@ -135,7 +135,7 @@ class _Scanner:
             self.words.append(Word(name, None, at + 1, name))
             return end
         base = name.rstrip("0123456789")
-        if name in known.NAMES_OUTSIDE or base in known.NAMES_OUTSIDE:
+        if name in known.NAMES_OUTSIDE or base == "CYCLE":
             return self._outside(at, end, name, "this control does not execute it")
         if name in known.ASSIGNED or base in known.ASSIGNED - {"X", "Z", "C", "I", "K", "F", "S"}:
             return self._skip(at, f"{base} lacks its =", f"Write {base}=…")

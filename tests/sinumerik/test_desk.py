@@ -1,0 +1,137 @@
+"""At the desk: a program with its subprogram file, G54 of the store, a hold while C turns alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from app.compose.journal import Journal
+from app.compose.offsets import stored_offsets
+from app.compose.screen import desk_and_executor, step_clock
+from app.desk.desk import Desk
+from app.desk.session import Phase
+from app.desk.view import Readout, view_of
+from core.executor.executor import Executor
+from core.executor.snapshot import Snapshot, State
+from drivers.simulated import StepClock
+
+MAIN = """\
+N10 G54 G0 X40 Z2 C0
+N20 S900 M3
+N30 G1 Z-10 C=ACP(270) F600
+N40 C=IC(720) F3000
+FACET
+N60 M30
+"""
+SUB = "N1 G0 C=DC(0)\nN2 M17\n"
+TICK = 0.01
+
+
+class Bench:
+    """A desk on the modulo lathe, its time moved by hand."""
+
+    def __init__(self, home: Path) -> None:
+        (home / "programs").mkdir(parents=True)
+        (home / "programs" / "part.mpf").write_text(MAIN)
+        (home / "programs" / "facet.spf").write_text(SUB)
+        self.clock: StepClock = step_clock()
+        self.journal = Journal(home)
+        made = desk_and_executor("sinumerik-modulo", stored_offsets, self.clock, self.journal)
+        self.desk: Desk = made[0]
+        self._executor: Executor = made[1]
+        self.desk.hands.clock = self.clock.now
+
+    def until(self, so: Callable[[Snapshot], bool]) -> Snapshot:
+        for _ in range(20_000):
+            if so(self.desk.snapshot()):
+                return self.desk.snapshot()
+            self._executor.tick()
+            self.desk.look()
+            self.clock.sleep_until(self.clock.now() + TICK)
+        raise AssertionError(f"not so: {self.desk.snapshot()}")
+
+    def wait(self, seconds: float) -> None:
+        end = self.desk.snapshot().t + seconds
+        self.until(lambda s: s.t > end)
+
+    def started(self) -> None:
+        assert self.desk.choose("part")
+        loaded = self.desk.session.settled(60.0)
+        assert (loaded.phase, loaded.diagnostics) == (Phase.READY, ())
+        self.until(lambda s: s.state is State.DISABLED)
+        self.desk.enable()
+        self.until(lambda s: s.state is State.IDLE and not s.proof_wanted)
+        self.desk.start_button()
+        self.until(lambda s: s.state is State.RUN)
+
+    def c(self) -> str:
+        return view_of(self.desk.snapshot(), Readout.POSITION, with_c=True).position.axes[2].value
+
+    def close(self) -> None:
+        self.desk.close()
+        self.journal.close()
+
+
+@pytest.fixture
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    bench = Bench(tmp_path / "home")
+    yield bench
+    bench.close()
+
+
+def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> None:
+    bench.started()
+    over = bench.until(lambda s: s.line == 4 and s.actual[2] > 500)
+    assert 0.0 <= float(bench.c()) < 360.0
+    view = view_of(over, Readout.POSITION, with_c=True)
+    assert (view.feed.value, view.feed.unit) == ("3000.0", "°/min")
+    end = bench.until(lambda s: s.state is State.IDLE)
+    assert (end.parts, end.alarms) == (1, ())
+    assert bench.c() == "0.00"
+    assert end.actual[2] == pytest.approx(1080.0, abs=0.01)
+
+
+def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
+    bench.started()
+    bench.until(lambda s: s.line == 4 and s.actual[2] > 400)
+    bench.desk.feed_hold()
+    held = bench.until(lambda s: s.state is State.HOLD)
+    assert 400 < held.actual[2] < 990
+    still = bench.until(lambda s: s.t > held.t + 1.0)
+    assert still.actual[2] == pytest.approx(held.actual[2], abs=0.05)
+    bench.desk.start_button()
+    end = bench.until(lambda s: s.state is State.IDLE)
+    assert (end.parts, end.alarms) == (1, ())
+
+
+def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None:
+    bench.desk.switch("single_block")
+    bench.started()
+    for line in (1, 2, 3, 4):
+        bench.until(lambda s, line=line: s.state is State.BLOCK_END and s.line == line)
+        bench.wait(2.0)  # into a cut only with the spindle at speed
+        bench.desk.start_button()
+    bench.until(lambda s: s.line == 5)
+
+
+def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
+    bench.desk.zero.change(54, {"c": 30.0, "z": -5.0}, "turned")
+    while not bench.desk.zero.rows:
+        bench.desk.look()
+    bench.started()
+    end = bench.until(lambda s: s.state is State.IDLE and s.parts == 1)
+    assert end.actual[1] == pytest.approx(-15.0, abs=0.01)
+    assert end.actual[2] % 360 == pytest.approx(30.0, abs=0.01)
+    assert bench.c() == "0.00"
+    assert view_of(end, Readout.POSITION, with_c=True).tool == "G54"
+
+
+def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_path: Path) -> None:
+    (tmp_path / "home" / "programs" / "facet.spf").unlink()
+    bench.desk.choose("part")
+    loaded = bench.desk.session.settled(60.0)
+    assert loaded.phase is Phase.REFUSED
+    assert [each.code for each in loaded.errors] == ["subprogram-missing"]
