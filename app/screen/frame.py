@@ -49,7 +49,7 @@ class Frame(QWidget):
         self.dock = StationDock(look, desk, self) if desk.station else None
         self.prompt = PromptLine(look, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
-        host = Host(look, desk, press, self.go, self._close_log, self.there)
+        host = Host(look, desk, press, self.go, self._close_log)
         self._host = host
         self.automatic = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {pages.AUTOMATIC: self.automatic}
@@ -61,12 +61,8 @@ class Frame(QWidget):
 
     # --- pages ---------------------------------------------------------------------------------------
 
-    def there(self, name: str) -> bool:
-        """Whether there is a page of this name."""
-        return name in self._pages or name in MAKERS
-
     def go(self, name: str) -> bool:
-        """Open a page; a page that is not there yet, or does not open or let go now, says so."""
+        """Open a page; one that does not open now, or that does not let go, says so."""
         if name == self.page.NAME:
             return True
         page = self._pages.get(name) or MAKERS[name](self._host, self)

@@ -20,7 +20,7 @@ COLUMNS = 2
 
 
 class MenuPage(Page):
-    """Opens pages; those that are not there yet say so."""
+    """Opens pages."""
 
     NAME = pages.MENU
     LABELS = tuple(
@@ -29,7 +29,7 @@ class MenuPage(Page):
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
-        self.list = _Tiles(self.look, host.press, host.there, self)
+        self.list = _Tiles(self.look, host.press, self)
 
     def doings(self) -> Doings:
         """The function keys of the entries."""
@@ -57,11 +57,9 @@ class _Tiles(Panel):
 
     title = pages.MENU
 
-    def __init__(
-        self, look: Look, press: Callable[[str], None], there: Callable[[str], bool], parent: QWidget
-    ) -> None:
+    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(look, parent)
-        self._press, self._there = press, there
+        self._press = press
 
     def draw(self, painter: QPainter) -> None:
         u, room = self.look.u, self.inside()
@@ -75,19 +73,17 @@ class _Tiles(Panel):
 
     def _tile(self, painter: QPainter, box: QRectF, entry: Entry) -> None:
         look, u = self.look, self.look.u
-        there = self._there(entry.name)
-        painter.setPen(look.pen("accent" if there else "frame", 0.2))
-        painter.setBrush(look.colour("key" if there else "panel"))
+        painter.setPen(look.pen("accent", 0.2))
+        painter.setBrush(look.colour("key"))
         painter.drawRect(box)
-        painter.setPen(look.colour("accent" if there else "soft"))
+        painter.setPen(look.colour("accent"))
         painter.setFont(look.font(3.4, bold=True))
         put(painter, QRectF(box.x() + u, box.y(), 8 * u, box.height()), CENTRE, entry.key)
         text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
         half = text.height() / 2
-        painter.setPen(look.colour("text" if there else "soft"))
+        painter.setPen(look.colour("text"))
         painter.setFont(look.fit(entry.name, 3.0, text.width(), bold=True))
         put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, entry.name)
         painter.setPen(look.colour("soft"))
-        words = entry.use if there else "comes with a later version"
-        painter.setFont(look.fit(words, 1.9, text.width()))
-        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, words)
+        painter.setFont(look.fit(entry.use, 1.9, text.width()))
+        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, entry.use)

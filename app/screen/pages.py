@@ -58,7 +58,6 @@ class Host:
     press: Callable[[str], None]
     go: Callable[[str], bool]
     clear_away: Callable[[], None]  # close the log that lies over the page
-    there: Callable[[str], bool]  # whether there is a page of that name
 
 
 class Page(QWidget):
