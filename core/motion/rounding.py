@@ -108,6 +108,8 @@ def _eased(joints: FloatArray, s: FloatArray, clear: IntArray, allowed: FloatArr
     eased = 2.0 * once - _mean(_mean(once, s, around), s, around)
     for _ in range(2):
         over = np.clip(eased, joints - allowed, joints + allowed) - eased
+        if not over.any():
+            return eased
         for sign in (1.0, -1.0):
             most = _largest(np.maximum(sign * over, 0.0), _BACK)
             eased = eased + sign * _window_mean(most, back)
@@ -135,8 +137,12 @@ def _window_mean(values: FloatArray, around: IntArray) -> FloatArray:
 
 
 def _largest(values: FloatArray, around: int) -> FloatArray:
-    """Largest (k, m) of the values ``around`` each."""
-    padded = np.pad(values, ((around, around), (0, 0)))
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * around + 1, axis=0)
-    largest: FloatArray = windows.max(axis=2)
+    """Largest (k, m) of the values, none below 0, ``around`` each: of two, four, … neighbours at a time."""
+    width, reach = 2 * around + 1, 1
+    largest = np.zeros((len(values) + 2 * around, values.shape[1]))
+    largest[around : around + len(values)] = values
+    while reach < width:
+        step = min(reach, width - reach)
+        largest = np.maximum(largest[:-step], largest[step:])
+        reach += step
     return largest
