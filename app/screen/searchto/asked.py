@@ -31,8 +31,9 @@ class AskedPanel(Panel):
         look, u = self.look, self.look.u
         room = self.area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
         painter.setPen(look.colour("text"))
-        painter.setFont(look.font(1.9, bold=True))
-        put(painter, QRectF(room.x(), room.y(), 14 * u, room.height()), LEFT, tr("LINE OR TEXT?"))
+        question = tr("LINE OR TEXT?")
+        painter.setFont(look.fit(question, 1.9, 14 * u, bold=True))
+        put(painter, QRectF(room.x(), room.y(), 14 * u, room.height()), LEFT, question)
         box = room.adjusted(14.5 * u, 0, 0, 0)
         painter.setPen(look.pen("accent", 0.2))
         painter.setBrush(look.colour("ground"))

@@ -90,6 +90,10 @@ def test_c_is_locked_and_turned_to_its_angle_by_the_short_way() -> None:
     [
         ("X1Z.1\nG01G94F10X.5\nZ-.5\nX.6\nG94F300Z.1\n", 4, False),  # turning
         ("X.2Z.1\nG01G94F10Z-.5\nX.18\nG94F300Z.1\n", 4, True),  # boring
+        ("X.3Z.1\nG01G94F10X.28Z0\nZ-.5\nG02X.26Z-.52R.02\nG94F300Z.1\n", 4, True),  # an arc to the centre
+        ("X.6Z0\nG01G94F10X-.02\nG94F300Z.1\n", 3, True),  # a face: in along Z at the outside
+        ("X.3Z.1\nG01G94F10Z-.5\nG94F300Z.1\n", 4, True),  # straight out again, at the radius of the bore
+        ("X.6Z-.4\nG01G94F10X.3\nZ-.35\nG94F300X.6\nZ.1\n", 4, False),  # a groove widened towards Z+
         ("X0Z.1\nG01G94F10Z-.5\nG94F300Z.1\n", 3, True),  # drilling on the centre
         ("X1Z-.5\nG01G94F10X.4\nG04F.2\nX1\nG94F300Z.1\n", 3, False),  # a groove
         ("X1Z-.5\nX.9\n", 3, False),  # nothing tells: the way of turning
