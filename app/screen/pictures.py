@@ -1,7 +1,7 @@
 """Pictures of the pages, made without a display: ``python -m app.screen.pictures OUT``.
 
-A sample program runs on the simulated lathe, on a clock that this script moves, so that every call makes the
-same pictures.
+A sample program stands ready and then runs on the simulated lathe, on a clock that this script moves. What is
+pictured stands in ``app.screen.scenes``.
 """
 
 from __future__ import annotations
@@ -9,25 +9,19 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from app.compose.journal import Journal
     from app.desk.desk import Desk
-    from app.screen.window import MainWindow
     from core.store.store import Store
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
+THEMES = ("dark", "light")
 PROGRAM = "bushing"
-PAGES = {
-    "automatic": "",
-    "menu": "F1",
-    "seccmp": "F9 1 Enter - . 0 0 2 + . 0 0 0 5",
-    "history": "F9 F5",
-    "tools": "F8",
-}
 AT_LINE = 26  # where the run is caught: finishing the outside
 CORRECTIONS = (
     (1, -0.0005, 0.0, "X -.001"),
@@ -42,33 +36,35 @@ LOADING = 60.0  # seconds after which loading has failed
 class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
-    def __init__(self) -> None:
+    def __init__(self, journal: Journal | None = None) -> None:
         from app.cli.offset_file import read_offsets
         from app.compose.screen import desk_and_executor, samples, step_clock
         from app.desk.offsets.book import OffsetBook
+        from core.store.store import Store
 
         self.clock = step_clock()
         self.desk, self._executor = desk_and_executor(
-            None, lambda: read_offsets(samples() / "offsets.toml"), self.clock
+            None, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
         )
-        self.store = self._kept()
+        self._folder = TemporaryDirectory()
+        book = journal.book() if journal is not None else OffsetBook(Store.open(Path(self._folder.name)))
+        if book.store is None:
+            raise OSError(book.locked)
+        self.store = book.store
+        self._fill(self.store)
         self.desk.book = OffsetBook(self.store)
         self.desk.hands.clock = self.clock.now
         self.desk.time_of_day = lambda: "09:41:07"
 
-    def _kept(self) -> Store:
-        """A store with the offsets of the samples and some corrections; its folder goes with this stage."""
+    def _fill(self, store: Store) -> None:
+        """The offsets of the samples and some corrections."""
         from app.cli.offset_file import read_offsets
         from app.compose.screen import samples
-        from core.store.store import Store
 
-        self._folder = TemporaryDirectory()
-        store = Store.open(Path(self._folder.name))
         for number, tool in read_offsets(samples() / "offsets.toml")[0].items():
             store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
         for number, x, z, why in CORRECTIONS:
             store.set_secondary(number, why, x=x * 25.4, z=z * 25.4).result()
-        return store
 
     def close(self) -> None:
         """End the threads, forget the folder."""
@@ -85,8 +81,8 @@ class Stage:
             self._executor.tick()
             self.clock.sleep_until(self.clock.now() + TICK)
 
-    def start(self) -> None:
-        """Load, drives on, both palms."""
+    def make_ready(self) -> None:
+        """Load, drives on."""
         from core.executor.snapshot import State
 
         desk = self.desk
@@ -97,6 +93,17 @@ class Stage:
         self.tick(lambda: desk.snapshot().state is State.DISABLED)
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
+
+    def start(self) -> None:
+        """Load, drives on, both palms."""
+        self.make_ready()
+        self.press_start()
+
+    def press_start(self) -> None:
+        """Both palms, until something happens."""
+        from core.executor.snapshot import State
+
+        desk = self.desk
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
@@ -107,70 +114,40 @@ def main(argv: list[str] | None = None) -> int:
     """Write the pictures; the exit status."""
     parser = argparse.ArgumentParser(prog="python -m app.screen.pictures", description=__doc__)
     parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
-    out: Path = parser.parse_args(argv).out
+    parser.add_argument("--guide", action="store_true", help="the small dark ones of the guide only")
+    args = parser.parse_args(argv)
     os.environ["QT_QPA_PLATFORM"] = "offscreen"
-    out.mkdir(parents=True, exist_ok=True)
-    stage = Stage()
-    stage.start()
+    args.out.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory() as folder:
+        os.environ["TURNDESK_HOME"] = folder
+        for path in _pictures(args.out, SIZES[:1] if args.guide else SIZES, THEMES[: 1 if args.guide else 2]):
+            sys.stdout.write(f"{path}\n")
+    return 0
+
+
+def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
+    """First what a standing machine shows, then what a running one does."""
+    from PySide6.QtWidgets import QApplication
+
+    from app.compose.journal import Journal
+    from app.screen.scenes import taken
+
+    _app = QApplication.instance() or QApplication(sys.argv[:1])
+    journal = Journal.at_home()
+    stage = Stage(journal)
+    stage.make_ready()
+    yield from taken(stage.desk, out, False, sizes, themes)
+    stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
-    for path in taken(stage.desk, out):
-        sys.stdout.write(f"{path}\n")
+    yield from taken(stage.desk, out, True, sizes, themes)
     stage.close()
-    return 0
+    journal.close()
 
 
 def _z(desk: Desk) -> float:
     snapshot = desk.snapshot()
     return snapshot.actual[1] - snapshot.offset[1]
-
-
-def taken(desk: Desk, out: Path) -> list[Path]:
-    """The page as it is now, at every size, dark and light."""
-    from PySide6.QtWidgets import QApplication
-
-    from app.screen.look import Look, dress, load_fonts
-    from app.screen.theme import PALETTES
-    from app.screen.window import MainWindow
-
-    app = QApplication.instance() or QApplication(sys.argv[:1])
-    load_fonts()
-    paths = []
-    for name, palette in PALETTES.items():
-        dress(palette)
-        for width, height in SIZES:
-            for page, keys in PAGES.items():
-                window = MainWindow(Look(palette))
-                window.resize(width, height)
-                window.open_desk(desk)
-                path = out / f"{page}-{name}-{width}x{height}.png"
-                _press(window, keys)
-                _grab(window, path, app.processEvents)
-                paths.append(path)
-    return paths
-
-
-def _press(window: MainWindow, keys: str) -> None:
-    """The keys that lead to a page, with a space between them; the last may be figures for its entry."""
-    for key in keys.split():
-        window.refresh()
-        if key.startswith("F"):
-            window.press(key)
-        elif window.frame is not None:
-            window.frame.page.typed(key)
-
-
-def _grab(window: MainWindow, path: Path, process: Callable[[], None]) -> None:
-    from PySide6.QtGui import QImage
-
-    window.show()
-    for _ in range(20):  # the path view draws in slices
-        process()
-        window.refresh()
-    image = window.grab().toImage().convertToFormat(QImage.Format.Format_RGB32)
-    if not image.save(str(path), "PNG", 1):  # type: ignore[call-overload]
-        raise OSError(f"{path} cannot be written")
-    window.put_away()
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ APART = frozenset(
     {"pictures.py", "book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
 )
 # Read by somebody, and not to be told from names by their looks.
-ALSO = ("M03 FWD", "M04 REV", "M05 OFF", "done", "rapid", "none", "in/min", "in/rev")
+ALSO = ("M03 FWD", "M04 REV", "M05 OFF", "done", "rapid", "none", "in/min", "in/rev", "%1 · SIMULATED")
 LOUD = ("app", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _MISTAKES = frozenset(
@@ -71,8 +71,8 @@ def _marked(tree: ast.Module) -> Iterator[str]:
 
 
 def _is_read(text: str, loud: bool) -> bool:
-    if text in _SHORT:
-        return loud
+    if text in _SHORT or "\n" in text:
+        return loud and text in _SHORT
     bare = HOLE.sub("", text)
     if _NO_TEXT.match(text) or not re.search(r"[^\W\d_]{2}", bare):
         return False

@@ -5,6 +5,11 @@
     <name>turndesk</name>
     <message>
       <location filename="" />
+      <source>%1 · SIMULATED</source>
+      <translation>%1 · SIMULADO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>M03 FWD</source>
       <translation>M03 ADEL</translation>
     </message>
@@ -36,7 +41,7 @@
     <message>
       <location filename="app/compose/backends.py" />
       <source>%1: there is no driver for spindle.driver vfd yet</source>
-      <translation type="unfinished" />
+      <translation>%1: todavía no hay controlador para spindle.driver vfd</translation>
     </message>
     <message>
       <location filename="app/compose/canopen.py" />
@@ -110,13 +115,23 @@
     </message>
     <message>
       <location filename="app/compose/screen.py" />
-      <source>%1 · SIMULATED</source>
-      <translation>%1 · SIMULADO</translation>
+      <source>SIMULATED</source>
+      <translation>SIMULADO</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
-      <source>%1: the screen drives simulated machines only, not %2</source>
-      <translation>%1: la pantalla sólo mueve máquinas simuladas, no %2</translation>
+      <location filename="app/desk/answers.py" />
+      <source>NO START: %1</source>
+      <translation>NO ARRANCA: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/answers.py" />
+      <source>NOT KEPT: %1</source>
+      <translation>NO SE GUARDÓ: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/answers.py" />
+      <source>REFUSED: %1</source>
+      <translation>RECHAZADO: %1</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -197,51 +212,6 @@
       <location filename="app/desk/desk.py" />
       <source>CONTROL SILENT</source>
       <translation>CONTROL SIN RESPUESTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>NO START: %1</source>
-      <translation>NO ARRANCA: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>NOT KEPT: %1</source>
-      <translation>NO SE GUARDÓ: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS BOTH PALM BUTTONS</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS CYCLE START</source>
-      <translation>OPRIMA INICIO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>PRESS CYCLE START (F12)</source>
-      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>REFUSED: %1</source>
-      <translation>RECHAZADO: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>RELEASE THE BUTTON</source>
-      <translation>SUELTE EL BOTÓN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>RELEASE THE BUTTON (SHIFT+E)</source>
-      <translation>SUELTE EL BOTÓN (SHIFT+E)</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -1055,6 +1025,11 @@
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
+      <source>TOOL OFFSET</source>
+      <translation>COMP DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
       <source>UNITS</source>
       <translation>UNIDADES</translation>
     </message>
@@ -1082,6 +1057,41 @@
       <location filename="app/desk/inforce.py" />
       <source>rapid rate</source>
       <translation>velocidad de rápido</translation>
+    </message>
+    <message>
+      <location filename="app/desk/inforce.py" />
+      <source>tool offset</source>
+      <translation>compensación de herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>TOOL NUMBER?</source>
+      <translation>¿NÚMERO DE HERRAMIENTA?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
+      <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
+      <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>{tool} MEASURED DIAMETER?</source>
+      <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/asked.py" />
+      <source>{tool} Z POSITION OF THE FACE?</source>
+      <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1245,11 +1255,6 @@
     </message>
     <message>
       <location filename="app/desk/jogging/tool.py" />
-      <source>, alone</source>
-      <translation>, sola</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
       <source>REFUSED: {why}</source>
       <translation>RECHAZADO: {why}</translation>
     </message>
@@ -1265,38 +1270,13 @@
     </message>
     <message>
       <location filename="app/desk/jogging/tool.py" />
-      <source>TOOL NUMBER?</source>
-      <translation>¿NÚMERO DE HERRAMIENTA?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
-      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
       <source>T{number:g} does not exist; tools are T1…32</source>
       <translation>T{number:g} no existe; las herramientas son T1…32</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/tool.py" />
-      <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
-      <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
       <source>T{number} IS AS IT WAS</source>
       <translation>T{number} QUEDA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
-      <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
-      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/tool.py" />
@@ -1309,49 +1289,39 @@
       <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
+      <location filename="app/desk/jogging/touch.py" />
+      <source>, alone</source>
+      <translation>, sola</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
+      <location filename="app/desk/jogging/touch.py" />
+      <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
+      <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/desk/jogging/touch.py" />
       <source>touched Z</source>
       <translation>tocada en Z</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/desk/jogging/touch.py" />
       <source>touched off, new tool</source>
       <translation>tocada, herramienta nueva</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/desk/jogging/touch.py" />
       <source>touched Ø</source>
       <translation>tocada en Ø</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/desk/jogging/touch.py" />
       <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
       <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/desk/jogging/touch.py" />
       <source>{axis} would be out of range</source>
       <translation>{axis} quedaría fuera de alcance</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>{tool} MEASURED DIAMETER?</source>
-      <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/tool.py" />
-      <source>{tool} Z POSITION OF THE FACE?</source>
-      <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
     </message>
     <message>
       <location filename="app/desk/keep.py" />
@@ -1407,6 +1377,16 @@
       <location filename="app/desk/lamps.py" />
       <source>SPINDLE REV</source>
       <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>TABLE TURNED</source>
+      <translation>MESA GIRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>TILTED PLANE</source>
+      <translation>PLANO INCLINADO</translation>
     </message>
     <message>
       <location filename="app/desk/mdi/mdi.py" />
@@ -1510,8 +1490,18 @@
     </message>
     <message>
       <location filename="app/desk/offsets/cells.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/cells.py" />
       <source>entered by hand</source>
       <translation>escrito a mano</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/cells.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/desk.py" />
@@ -1659,6 +1649,11 @@
       <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
     </message>
     <message>
+      <location filename="app/desk/offsets/grid.py" />
+      <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
+      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
       <location filename="app/desk/offsets/ledger.py" />
       <source>SAVED</source>
       <translation>GUARDADO</translation>
@@ -1741,17 +1736,17 @@
     <message>
       <location filename="app/desk/offsets/shown.py" />
       <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
-      <translation type="unfinished" />
+      <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/shown.py" />
       <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
-      <translation type="unfinished" />
+      <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/telling.py" />
       <source>no</source>
-      <translation type="unfinished" />
+      <translation>no</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/telling.py" />
@@ -1761,7 +1756,7 @@
     <message>
       <location filename="app/desk/offsets/telling.py" />
       <source>yes</source>
-      <translation type="unfinished" />
+      <translation>sí</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
@@ -1791,7 +1786,7 @@
     <message>
       <location filename="app/desk/pages.py" />
       <source>G54…G59: where SINUMERIK programs have their zero</source>
-      <translation type="unfinished" />
+      <translation>G54…G59: dónde tienen su cero los programas SINUMERIK</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
@@ -1801,7 +1796,7 @@
     <message>
       <location filename="app/desk/pages.py" />
       <source>LIST</source>
-      <translation type="unfinished" />
+      <translation>LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
@@ -1861,12 +1856,12 @@
     <message>
       <location filename="app/desk/pages.py" />
       <source>ZERO</source>
-      <translation type="unfinished" />
+      <translation>CEROS</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
       <source>ZERO OFFSETS</source>
-      <translation type="unfinished" />
+      <translation>CEROS DE PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
@@ -1897,6 +1892,36 @@
       <location filename="app/desk/pages.py" />
       <source>write and prove programs</source>
       <translation>escribir y comprobar programas</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>PRESS BOTH PALM BUTTONS</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
+      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>PRESS CYCLE START</source>
+      <translation>OPRIMA INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>PRESS CYCLE START (F12)</source>
+      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>RELEASE THE BUTTON</source>
+      <translation>SUELTE EL BOTÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/parts.py" />
+      <source>RELEASE THE BUTTON (SHIFT+E)</source>
+      <translation>SUELTE EL BOTÓN (SHIFT+E)</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2065,43 +2090,48 @@
     </message>
     <message>
       <location filename="app/desk/searchto/plan.py" />
+      <source>T{now} STANDS AT THE PART AND THE LINE WORKS WITH T{wanted}: JOG Z CLEAR OF THE PART FIRST</source>
+      <translation>T{now} ESTÁ EN LA PIEZA Y LA LÍNEA TRABAJA CON T{wanted}: PRIMERO ALEJE Z DE LA PIEZA A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
       <source>{name} ON</source>
       <translation>{name} ENCENDIDO</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS</source>
-      <translation type="unfinished" />
+      <translation>COMPARE; VEA EL CAMINO Y LO QUE ARRANCARÁ; F10 CONFIRMA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>GOING THROUGH THE PROGRAM; ESC GIVES UP</source>
-      <translation type="unfinished" />
+      <translation>RECORRIENDO EL PROGRAMA; ESC ABANDONA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE</source>
-      <translation type="unfinished" />
+      <translation>LA LÍNEA {line} CORRÍA CUANDO SE INTERRUMPIÓ EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE</source>
-      <translation type="unfinished" />
+      <translation>DESDE ESTA LÍNEA NO ARRANCA: F8 O F9 VA A LA BUENA MÁS CERCANA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>PROVING THE RESTART; ESC GIVES UP</source>
-      <translation type="unfinished" />
+      <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>TO START THE RESTART {start}; ESC TAKES IT BACK</source>
-      <translation type="unfinished" />
+      <translation>PARA INICIAR EL REARRANQUE {start}; ESC LO RETIRA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
       <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
-      <translation type="unfinished" />
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
@@ -2320,6 +2350,11 @@
     </message>
     <message>
       <location filename="app/desk/special/events.py" />
+      <source>FILTER</source>
+      <translation>FILTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/events.py" />
       <source>KIND</source>
       <translation>CLASE</translation>
     </message>
@@ -2370,8 +2405,8 @@
     </message>
     <message>
       <location filename="app/desk/special/events.py" />
-      <source>what happened when; search and filter</source>
-      <translation>qué pasó y cuándo; buscar y filtrar</translation>
+      <source>what happened when; search</source>
+      <translation>qué pasó y cuándo; buscar</translation>
     </message>
     <message>
       <location filename="app/desk/special/keeping.py" />
@@ -2740,7 +2775,7 @@
     </message>
     <message>
       <location filename="app/desk/special/signals.py" />
-      <source>live state, switching outputs by hand, machine lamps</source>
+      <source>live state, outputs by hand, lamps</source>
       <translation>estado en vivo, salidas a mano, lámparas</translation>
     </message>
     <message>
@@ -2825,8 +2860,33 @@
     </message>
     <message>
       <location filename="app/desk/special/speed.py" />
-      <source>a limit until the control is started again</source>
-      <translation>un tope hasta que se reinicie el control</translation>
+      <source>a limit until restart</source>
+      <translation>un tope hasta reiniciar</translation>
+    </message>
+    <message>
+      <location filename="app/desk/swivel/camera.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/swivel/camera.py" />
+      <source>RIGHT</source>
+      <translation>DERECHA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/swivel/position.py" />
+      <source>MACHINE</source>
+      <translation>MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/swivel/position.py" />
+      <source>TILTED PLANE OF LINE {line}</source>
+      <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/swivel/position.py" />
+      <source>WORKPIECE</source>
+      <translation>PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/view.py" />
@@ -2986,7 +3046,7 @@
     <message>
       <location filename="app/screen/editor/doings.py" />
       <source>FIT</source>
-      <translation>AJUSTAR</translation>
+      <translation>TODO</translation>
     </message>
     <message>
       <location filename="app/screen/editor/doings.py" />
@@ -3300,11 +3360,6 @@
     </message>
     <message>
       <location filename="app/screen/jog/page.py" />
-      <source>F10 takes the last change back</source>
-      <translation>F10 retira el último cambio</translation>
-    </message>
-    <message>
-      <location filename="app/screen/jog/page.py" />
       <source>READOUT</source>
       <translation>LECTURA</translation>
     </message>
@@ -3312,6 +3367,11 @@
       <location filename="app/screen/jog/page.py" />
       <source>Return enters it, Esc leaves it as it was</source>
       <translation>Return lo pone, Esc lo deja como estaba</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
+      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
+      <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
     </message>
     <message>
       <location filename="app/screen/jog/toolpanel.py" />
@@ -3550,8 +3610,8 @@
     </message>
     <message>
       <location filename="app/screen/path/whole.py" />
-      <source>SIDE  ·  UNROLLED</source>
-      <translation>LADO  ·  DESARROLLADO</translation>
+      <source>SIDE  ·  UNROLLED AT Ø {diameter}</source>
+      <translation>LADO  ·  DESARROLLADO EN Ø {diameter}</translation>
     </message>
     <message>
       <location filename="app/screen/path/whole.py" />
@@ -3559,109 +3619,119 @@
       <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
     </message>
     <message>
+      <location filename="app/screen/scenes.py" />
+      <source>%1 cannot be written</source>
+      <translation>no se puede escribir %1</translation>
+    </message>
+    <message>
       <location filename="app/screen/searchto/asked.py" />
       <source>LINE OR TEXT?</source>
-      <translation type="unfinished" />
+      <translation>¿LÍNEA O TEXTO?</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/beside.py" />
       <source>AT THE LINE</source>
-      <translation type="unfinished" />
+      <translation>EN LA LÍNEA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/beside.py" />
       <source>NOW</source>
-      <translation type="unfinished" />
+      <translation>AHORA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>AFTER</source>
-      <translation type="unfinished" />
+      <translation>DESPUÉS</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>CONFIRM</source>
-      <translation type="unfinished" />
+      <translation>CONFIRMA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
-      <translation type="unfinished" />
+      <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>F4: INSIDE A BORE, Z LAST</source>
-      <translation type="unfinished" />
+      <translation>F4: DENTRO DE UN BARRENO, Z AL FINAL</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>F4: OUTSIDE, X LAST</source>
-      <translation type="unfinished" />
+      <translation>F4: POR FUERA, X AL FINAL</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>F5: WITH COOLANT</source>
-      <translation type="unfinished" />
+      <translation>F5: CON REFRIGERANTE</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>F5: WITHOUT COOLANT</source>
-      <translation type="unfinished" />
+      <translation>F5: SIN REFRIGERANTE</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>GOING THROUGH THE PROGRAM TO LINE {line}</source>
-      <translation type="unfinished" />
+      <translation>RECORRIENDO EL PROGRAMA HASTA LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>GOOD AFTER</source>
-      <translation type="unfinished" />
+      <translation>BUENA DESPUÉS</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>GOOD BEFORE</source>
-      <translation type="unfinished" />
+      <translation>BUENA ANTES</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>LINE {line} IS NOT GOOD</source>
-      <translation type="unfinished" />
+      <translation>LA LÍNEA {line} NO ES BUENA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>PREVIOUS</source>
-      <translation type="unfinished" />
+      <translation>PREVIA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>STATE AT LINE {line}</source>
-      <translation type="unfinished" />
+      <translation>ESTADO EN LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>{which}: LINE {line}</source>
-      <translation type="unfinished" />
+      <translation>{which}: LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
       <source>{which}: NONE</source>
-      <translation type="unfinished" />
+      <translation>{which}: NINGUNA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/starts.py" />
       <source>CONFIRMED: CYCLE START BEGINS IT</source>
-      <translation type="unfinished" />
+      <translation>CONFIRMADO: INICIO DE CICLO LO ARRANCA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/starts.py" />
       <source>NOTHING BUT THE SLIDES</source>
-      <translation type="unfinished" />
+      <translation>NADA MÁS LOS CARROS</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/starts.py" />
       <source>WILL START</source>
-      <translation type="unfinished" />
+      <translation>ARRANCARÁ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/swivel/view.py" />
+      <source>TABLE AND PLANE</source>
+      <translation>MESA Y PLANO</translation>
     </message>
     <message>
       <location filename="app/screen/window.py" />
@@ -4139,6 +4209,16 @@
       <translation>esta máquina no tiene eje %1 que referenciar</translation>
     </message>
     <message>
+      <location filename="core/executor/job.py" />
+      <source>the control counts in %1 now</source>
+      <translation>el control cuenta ahora en %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>the rapid rate is another one now</source>
+      <translation>la velocidad de rápido es otra ahora</translation>
+    </message>
+    <message>
       <location filename="core/executor/jog.py" />
       <source>%1 is at the end of its travel in %2</source>
       <translation>%1 está al fin de su carrera en %2</translation>
@@ -4290,13 +4370,18 @@
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
+      <source>%1, and the program says nothing of it: load it again</source>
+      <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
       <source>no line is ready: type one and press Enter</source>
       <translation>no hay línea lista: escriba una y oprima Enter</translation>
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
       <source>no restart is ready: search a line and confirm it</source>
-      <translation type="unfinished" />
+      <translation>no hay rearranque listo: busque una línea y confírmela</translation>
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
@@ -4332,6 +4417,11 @@
       <location filename="core/executor/rounds.py" />
       <source>from line %1</source>
       <translation>desde la línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>no repeat: %1, and the program says nothing of it</source>
+      <translation>sin repetición: %1, y el programa no dice nada de eso</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />
@@ -4516,4013 +4606,4022 @@
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>%1 is missing: under G90 and G73, I and K are the centre's coordinates.</source>
-      <translation type="unfinished" />
+      <translation>Falta %1: con G90 y G73, I y K son las coordenadas del centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>A full circle takes I and K.</source>
-      <translation type="unfinished" />
+      <translation>Un círculo completo lleva I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Add %1.</source>
-      <translation type="unfinished" />
+      <translation>Agregue %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Add R, or I and K.</source>
-      <translation type="unfinished" />
+      <translation>Agregue R, o I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Arcs cannot be incremental in diameter mode.</source>
-      <translation type="unfinished" />
+      <translation>Los arcos no pueden ser incrementales en modo diámetro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Correct I and K.</source>
-      <translation type="unfinished" />
+      <translation>Corrija I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Correct R or the end point.</source>
-      <translation type="unfinished" />
+      <translation>Corrija R o el punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Give larger arcs I and K.</source>
-      <translation type="unfinished" />
+      <translation>A los arcos mayores déles I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>I and K are distances from the start here.</source>
-      <translation type="unfinished" />
+      <translation>Aquí I y K son distancias desde el inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>I and K are the centre's coordinates here.</source>
-      <translation type="unfinished" />
+      <translation>Aquí I y K son las coordenadas del centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Keep one way.</source>
-      <translation type="unfinished" />
+      <translation>Deje una sola forma.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
-      <translation type="unfinished" />
+      <translation>R es %1, y los extremos están tan separados que necesita al menos %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>R must be a number over 0.</source>
-      <translation type="unfinished" />
+      <translation>R debe ser un número mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>The arc by R ends where it starts.</source>
-      <translation type="unfinished" />
+      <translation>El arco por R termina donde empieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>The arc has R and %1.</source>
-      <translation type="unfinished" />
+      <translation>El arco tiene R y %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>The arc has neither R nor I and K.</source>
-      <translation type="unfinished" />
+      <translation>El arco no tiene ni R ni I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>The arc's radius is %1 at its start and %2 at its end.</source>
-      <translation type="unfinished" />
+      <translation>El radio del arco es %1 al inicio y %2 al final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>The centre of the arc is its start point.</source>
-      <translation type="unfinished" />
+      <translation>El centro del arco es su punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arcs.py" />
       <source>Use G90 or G73 for the arc.</source>
-      <translation type="unfinished" />
+      <translation>Use G90 o G73 para el arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arrival.py" />
       <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
-      <translation type="unfinished" />
+      <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
     </message>
     <message>
       <location filename="core/interpreter/arrival.py" />
       <source>Write G04F%1 after it, or longer.</source>
-      <translation type="unfinished" />
+      <translation>Escriba después G04F%1, o más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>%1 leaves nothing of the box to cut.</source>
-      <translation type="unfinished" />
+      <translation>%1 no deja nada de la caja por cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>%1 needs %2 of the corner opposite to the start point.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>Correct %1 or the start point.</source>
-      <translation type="unfinished" />
+      <translation>Corrija %1 o el punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>The box has no size along %1: its corner lies at the start point.</source>
-      <translation type="unfinished" />
+      <translation>La caja no tiene medida en %1: su esquina está en el punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>U is less than the way from the start to X.</source>
-      <translation type="unfinished" />
+      <translation>U es menor que el camino del inicio a X.</translation>
     </message>
     <message>
       <location filename="core/interpreter/box_cycle.py" />
       <source>the greatest depth of cut</source>
-      <translation type="unfinished" />
+      <translation>la mayor profundidad de corte</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
-      <translation type="unfinished" />
+      <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>A T stands between G35 and G36.</source>
-      <translation type="unfinished" />
+      <translation>Hay una T entre G35 y G36.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>G%1 is not followed by a G92 with X and Z.</source>
-      <translation type="unfinished" />
+      <translation>A G%1 no le sigue un G92 con X y Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>G%1 stands alone on its line.</source>
-      <translation type="unfinished" />
+      <translation>G%1 va sola en su línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>G35 is in force already.</source>
-      <translation type="unfinished" />
+      <translation>G35 ya está vigente.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>G36 stands elsewhere than its G35, which was at radius %1, Z %2.</source>
-      <translation type="unfinished" />
+      <translation>G36 está en otro lugar que su G35, que estaba en radio %1, Z %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Move back there before G36.</source>
-      <translation type="unfinished" />
+      <translation>Regrese ahí antes de G36.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>No G35 is in force that G36 could end.</source>
-      <translation type="unfinished" />
+      <translation>No hay G35 vigente que G36 pueda terminar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Put the rest on a line of its own.</source>
-      <translation type="unfinished" />
+      <translation>Ponga lo demás en su propia línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Take the line out.</source>
-      <translation type="unfinished" />
+      <translation>Quite la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>The G92 behind G%1 says another place than radius %2, Z %3.</source>
-      <translation type="unfinished" />
+      <translation>El G92 tras G%1 dice otro lugar que radio %2, Z %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Write G35 or G35F2.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G35 o G35F2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Write G36 before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G36 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/coarse.py" />
       <source>Write G92 with the present X and Z on the next line.</source>
-      <translation type="unfinished" />
+      <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
       <location filename="core/interpreter/codes.py" />
       <source>coarse feed</source>
-      <translation type="unfinished" />
+      <translation>avance burdo</translation>
     </message>
     <message>
       <location filename="core/interpreter/codes.py" />
       <source>nose compensation</source>
-      <translation type="unfinished" />
+      <translation>compensación de punta</translation>
     </message>
     <message>
       <location filename="core/interpreter/codes.py" />
       <source>speed limits</source>
-      <translation type="unfinished" />
+      <translation>topes de velocidad</translation>
     </message>
     <message>
       <location filename="core/interpreter/codes.py" />
       <source>spindle mode</source>
-      <translation type="unfinished" />
+      <translation>modo de husillo</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>%1 cannot follow this move.</source>
-      <translation type="unfinished" />
+      <translation>%1 no puede seguir este movimiento.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>%1 with a nose radius of %2 cannot follow this move: %3.</source>
-      <translation type="unfinished" />
+      <translation>%1 con radio de punta %2 no puede seguir este movimiento: %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>Move off the part on a straight line.</source>
-      <translation type="unfinished" />
+      <translation>Salga de la pieza en línea recta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>Move off the part.</source>
-      <translation type="unfinished" />
+      <translation>Salga de la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>No move follows the contour between the approach and the departure of %1.</source>
-      <translation type="unfinished" />
+      <translation>Ningún movimiento sigue el contorno entre la entrada y la salida de %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>Take a smaller nose, or change the contour.</source>
-      <translation type="unfinished" />
+      <translation>Use una punta menor, o cambie el contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>The departure, the last move before G40, has no length.</source>
-      <translation type="unfinished" />
+      <translation>La salida, el último movimiento antes de G40, no tiene largo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>The departure, the move before G40, is no straight line.</source>
-      <translation type="unfinished" />
+      <translation>La salida, el movimiento antes de G40, no es una recta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>Write G40 before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G40 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/compensate.py" />
       <source>Write the contour between them.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el contorno entre ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>%1 cannot make a corner: %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 no puede hacer una esquina: %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>A corner needs two straight moves in a row.</source>
-      <translation type="unfinished" />
+      <translation>Una esquina necesita dos rectas seguidas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>Make it smaller.</source>
-      <translation type="unfinished" />
+      <translation>Hágala menor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>Take C or R out.</source>
-      <translation type="unfinished" />
+      <translation>Quite C o R.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>The two moves run in one direction: there is no corner to cut.</source>
-      <translation type="unfinished" />
+      <translation>Los dos movimientos van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>it takes %1 of %2, which has %3 left</source>
-      <translation type="unfinished" />
+      <translation>ocupa %1 de %2, al que le quedan %3</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>the contour ends here</source>
-      <translation type="unfinished" />
+      <translation>el contorno termina aquí</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>the next move</source>
-      <translation type="unfinished" />
+      <translation>el movimiento siguiente</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>the next move is an arc</source>
-      <translation type="unfinished" />
+      <translation>el movimiento siguiente es un arco</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_corners.py" />
       <source>this move</source>
-      <translation type="unfinished" />
+      <translation>este movimiento</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>%1 finds no unbroken way along the contour at the distance U.</source>
-      <translation type="unfinished" />
+      <translation>%1 no halla un camino continuo junto al contorno a la distancia U.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>%1 passes beside a contour of %2 lines and arcs are too many to work out.</source>
-      <translation type="unfinished" />
+      <translation>%1 pasadas junto a un contorno de %2 líneas y arcos son demasiadas para calcular.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Both ends of the contour have the %1 of the start point: there is no area to cut.</source>
-      <translation type="unfinished" />
+      <translation>Los dos extremos del contorno tienen la %1 del punto de inicio: no hay área que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Look whether the tool can do so.</source>
-      <translation type="unfinished" />
+      <translation>Vea si la herramienta puede hacerlo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Look whether the tool fits.</source>
-      <translation type="unfinished" />
+      <translation>Vea si la herramienta cabe.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Lower U, or open the narrow place.</source>
-      <translation type="unfinished" />
+      <translation>Baje U, o abra el paso estrecho.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Move the start point away from the contour.</source>
-      <translation type="unfinished" />
+      <translation>Aleje del contorno el punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Move the start point beyond both ends.</source>
-      <translation type="unfinished" />
+      <translation>Ponga el punto de inicio más allá de ambos extremos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
-      <translation type="unfinished" />
+      <translation>En el camino del punto de inicio al contorno y de regreso la herramienta se acerca a menos de U.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>P does not say which subroutine describes the contour.</source>
-      <translation type="unfinished" />
+      <translation>P no dice qué subrutina describe el contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Raise I, or describe the contour in fewer moves.</source>
-      <translation type="unfinished" />
+      <translation>Suba I, o describa el contorno en menos movimientos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Run it with fewer, longer moves.</source>
-      <translation type="unfinished" />
+      <translation>Córralo con menos movimientos, más largos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Start farther from the contour in X.</source>
-      <translation type="unfinished" />
+      <translation>Empiece más lejos del contorno en X.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>The contour has %1 lines and arcs; %2 are the most.</source>
-      <translation type="unfinished" />
+      <translation>El contorno tiene %1 líneas y arcos; lo más son %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>The contour leaves nothing to cut between it and the start point.</source>
-      <translation type="unfinished" />
+      <translation>El contorno no deja nada que cortar entre él y el punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>The contour rises and falls again: the tool plunges into the material behind the rise.</source>
-      <translation type="unfinished" />
+      <translation>El contorno sube y vuelve a bajar: la herramienta se hunde en el material detrás de la subida.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>The contour runs back along Z: behind that edge the pass along it cuts all that is there.</source>
-      <translation type="unfinished" />
+      <translation>El contorno regresa en Z: detrás de ese filo la pasada corta todo lo que hay.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>The start point lies between the ends of the contour in %1, not outside of both.</source>
-      <translation type="unfinished" />
+      <translation>El punto de inicio está entre los extremos del contorno en %1, no fuera de ambos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_cycle.py" />
       <source>Write its number after P.</source>
-      <translation type="unfinished" />
+      <translation>Escriba su número tras P.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>%1 and its like do not count in the contour of G%2.</source>
-      <translation type="unfinished" />
+      <translation>%1 y similares no cuentan en el contorno de G%2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>%1 cannot stand in a contour</source>
-      <translation type="unfinished" />
+      <translation>%1 no puede estar en un contorno</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>%1: a corner's size must be a number over 0.</source>
-      <translation type="unfinished" />
+      <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>A contour holds moves, arcs and corners written out.</source>
-      <translation type="unfinished" />
+      <translation>Un contorno contiene movimientos, arcos y esquinas escritos completos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Correct the line.</source>
-      <translation type="unfinished" />
+      <translation>Corrija la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Finish with a contour of its own.</source>
-      <translation type="unfinished" />
+      <translation>Termine con un contorno propio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>G%1 cannot stand in a contour</source>
-      <translation type="unfinished" />
+      <translation>G%1 no puede estar en un contorno</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Keep one of them.</source>
-      <translation type="unfinished" />
+      <translation>Deje uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Nose compensation cannot be switched in a contour</source>
-      <translation type="unfinished" />
+      <translation>La compensación de punta no se puede cambiar en un contorno</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Take it out.</source>
-      <translation type="unfinished" />
+      <translation>Quítelo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>The contour cannot be read here</source>
-      <translation type="unfinished" />
+      <translation>El contorno no se puede leer aquí</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>The contour changes modes or coordinates; after the cycle those before it hold again.</source>
-      <translation type="unfinished" />
+      <translation>El contorno cambia modos o coordenadas; tras el ciclo vuelven a valer los de antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>The contour of G%1 has no line or arc.</source>
-      <translation type="unfinished" />
+      <translation>El contorno de G%1 no tiene línea ni arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>The first line of a contour is its first point, which takes no arc and no corner</source>
-      <translation type="unfinished" />
+      <translation>La primera línea de un contorno es su primer punto, que no lleva arco ni esquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>The line has both C and R.</source>
-      <translation type="unfinished" />
+      <translation>La línea tiene C y R a la vez.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Write X and Z of the point alone.</source>
-      <translation type="unfinished" />
+      <translation>Escriba sólo la X y la Z del punto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Write its points.</source>
-      <translation type="unfinished" />
+      <translation>Escriba sus puntos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/contour_reading.py" />
       <source>Write the size in full.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el tamaño completo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>%1 (line %2)</source>
-      <translation type="unfinished" />
+      <translation>%1 (línea %2)</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
-      <translation type="unfinished" />
+      <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>%1 on line %2 is no straight move</source>
-      <translation type="unfinished" />
+      <translation>%1 en la línea %2 no es una recta</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
-      <translation type="unfinished" />
+      <translation>Las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>Put it on the line with X or Z.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo en la línea con X o Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>an arc</source>
-      <translation type="unfinished" />
+      <translation>un arco</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>another motion</source>
-      <translation type="unfinished" />
+      <translation>otro movimiento</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>it takes %1 of the move on line %2, which has %3 left</source>
-      <translation type="unfinished" />
+      <translation>ocupa %1 del movimiento de la línea %2, al que le quedan %3</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>no move follows</source>
-      <translation type="unfinished" />
+      <translation>no sigue ningún movimiento</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>no move follows before %1</source>
-      <translation type="unfinished" />
+      <translation>no sigue ningún movimiento antes de %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>no straight line</source>
-      <translation type="unfinished" />
+      <translation>ninguna recta</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>nose compensation ends before the next move</source>
-      <translation type="unfinished" />
+      <translation>la compensación de punta termina antes del movimiento siguiente</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>the move on line %1 has no length</source>
-      <translation type="unfinished" />
+      <translation>el movimiento de la línea %1 no tiene largo</translation>
     </message>
     <message>
       <location filename="core/interpreter/corners.py" />
       <source>the next move, on line %1, is %2</source>
-      <translation type="unfinished" />
+      <translation>el movimiento siguiente, en la línea %1, es %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/count.py" />
       <source>Lower the counts of the loops.</source>
-      <translation type="unfinished" />
+      <translation>Baje las cuentas de los lazos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/count.py" />
       <source>The program executes %1 lines; %2 are the most.</source>
-      <translation type="unfinished" />
+      <translation>El programa ejecuta %1 líneas; lo más son %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/count.py" />
       <source>The program makes %1 blocks; %2 are the most.</source>
-      <translation type="unfinished" />
+      <translation>El programa hace %1 bloques; lo más son %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/count.py" />
       <source>about 10^%1</source>
-      <translation type="unfinished" />
+      <translation>cerca de 10^%1</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1 cannot run while nose compensation is active.</source>
-      <translation type="unfinished" />
+      <translation>%1 no puede correr con la compensación de punta activa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1 has no feed: none for cutting is in force.</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1 is the first move after the T on line %2: its start point is not known.</source>
-      <translation type="unfinished" />
+      <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1 needs %2, %3.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita %2, %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1 would make %2 %3; %4 are the most.</source>
-      <translation type="unfinished" />
+      <translation>%1 haría %2 %3; lo más son %4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1: %2, %3, must be over 0.</source>
-      <translation type="unfinished" />
+      <translation>%1: %2, %3, debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
-      <translation type="unfinished" />
+      <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Correct %1.</source>
-      <translation type="unfinished" />
+      <translation>Corrija %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Look for a lost decimal point in %1.</source>
-      <translation type="unfinished" />
+      <translation>Busque un punto decimal perdido en %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Move to X and Z of the start point before it.</source>
-      <translation type="unfinished" />
+      <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Put G40 and a departure before it.</source>
-      <translation type="unfinished" />
+      <translation>Ponga antes G40 y una salida.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Take the sign out.</source>
-      <translation type="unfinished" />
+      <translation>Quite el signo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/cycle_blocks.py" />
       <source>Write F on the %1 line.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F en la línea de %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program begins with its first block.</source>
-      <translation type="unfinished" />
+      <translation>Un programa Klartext empieza con su primer bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
-      <translation type="unfinished" />
+      <translation>Un programa Klartext necesita una fresadora con X, Y y Z, y su [kinematics]; esta máquina no lo es.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A SINUMERIK program begins with its first block.</source>
-      <translation type="unfinished" />
+      <translation>Un programa SINUMERIK empieza con su primer bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes.</source>
-      <translation type="unfinished" />
+      <translation>Un programa SINUMERIK de torno necesita un torno con X y Z; esta máquina tiene otros ejes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>An OmniTurn program needs a lathe with X, Z and C; this machine has other axes.</source>
-      <translation type="unfinished" />
+      <translation>Un programa OmniTurn necesita un torno con X, Z y C; esta máquina tiene otros ejes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>Choose the machine file of a lathe.</source>
-      <translation type="unfinished" />
+      <translation>Elija el archivo de máquina de un torno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>Choose the machine file of a mill: --machine ac-table-mill.</source>
-      <translation type="unfinished" />
+      <translation>Elija el archivo de máquina de una fresadora: --machine ac-table-mill.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>Start it from the beginning.</source>
-      <translation type="unfinished" />
+      <translation>Empiécelo desde el principio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>%1 lies in the hole, not before the depth of the first peck.</source>
-      <translation type="unfinished" />
+      <translation>%1 está dentro del barreno, no antes de la profundidad del primer picoteo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>%1 needs Z, the bottom of the hole.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita Z, el fondo del barreno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>%1: the rate of the retract goes from over 0 to %2.</source>
-      <translation type="unfinished" />
+      <translation>%1: la velocidad de retiro va de más de 0 a %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>Correct Z, or start farther out.</source>
-      <translation type="unfinished" />
+      <translation>Corrija Z, o empiece más afuera.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>R is where the drill comes out of the hole.</source>
-      <translation type="unfinished" />
+      <translation>R es donde la broca sale del barreno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>The bottom of the hole at %1 is not beyond the start point at %2.</source>
-      <translation type="unfinished" />
+      <translation>El fondo del barreno en %1 no está más allá del punto de inicio en %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>the depth of a peck</source>
-      <translation type="unfinished" />
+      <translation>la profundidad de un picoteo</translation>
     </message>
     <message>
       <location filename="core/interpreter/drilling.py" />
       <source>the distance before the cut at which the feed begins</source>
-      <translation type="unfinished" />
+      <translation>la distancia antes del corte en que empieza el avance</translation>
     </message>
     <message>
       <location filename="core/interpreter/execute.py" />
       <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
-      <translation type="unfinished" />
+      <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
     </message>
     <message>
       <location filename="core/interpreter/execute.py" />
       <source>G04 does not say how long.</source>
-      <translation type="unfinished" />
+      <translation>G04 no dice cuánto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/execute.py" />
       <source>Write G04Fn, n in seconds.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G04Fn, n en segundos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>At %1 rpm this feed is %2; %3 is the most.</source>
-      <translation type="unfinished" />
+      <translation>A %1 rpm este avance es %2; lo más es %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Feed %1 is out of range: %2 to %3.</source>
-      <translation type="unfinished" />
+      <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Feed %1 is very high for cutting.</source>
-      <translation type="unfinished" />
+      <translation>El avance %1 es muy alto para cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>G00 stands with F, G94 or G95, each of which ends the rapid.</source>
-      <translation type="unfinished" />
+      <translation>G00 está con F, G94 o G95, y cada uno termina el rápido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>G01 goes back to the last cutting feed, and none has been set after the first line.</source>
-      <translation type="unfinished" />
+      <translation>G01 vuelve al último avance de corte, y no se puso ninguno después de la primera línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>G96 is active and no S has given a surface speed.</source>
-      <translation type="unfinished" />
+      <translation>G96 está activo y ninguna S dio una velocidad superficial.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Look at F and at G94/G95.</source>
-      <translation type="unfinished" />
+      <translation>Vea la F y G94/G95.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Look for a lost decimal point, or G94 for G95.</source>
-      <translation type="unfinished" />
+      <translation>Busque un punto decimal perdido, o G94 en vez de G95.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Look for a lost decimal point.</source>
-      <translation type="unfinished" />
+      <translation>Busque un punto decimal perdido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Lower F or S.</source>
-      <translation type="unfinished" />
+      <translation>Baje F o S.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Set one with G95Fn or G94Fn.</source>
-      <translation type="unfinished" />
+      <translation>Ponga uno con G95Fn o G94Fn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Split the line.</source>
-      <translation type="unfinished" />
+      <translation>Divida la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Start it with M03 or M04, or use G94.</source>
-      <translation type="unfinished" />
+      <translation>Arránquelo con M03 o M04, o use G94.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>The move has no feed.</source>
-      <translation type="unfinished" />
+      <translation>El movimiento no tiene avance.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>The spindle stands, and the move runs at %1.</source>
-      <translation type="unfinished" />
+      <translation>El husillo está parado, y el movimiento corre a %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>This move takes %1 s at its feed.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento tarda %1 s a su avance.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Write F on this line or before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F en esta línea o antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>Write S beside G96.</source>
-      <translation type="unfinished" />
+      <translation>Escriba S junto a G96.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>a feed per revolution</source>
-      <translation type="unfinished" />
+      <translation>un avance por vuelta</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
       <source>constant surface speed</source>
-      <translation type="unfinished" />
+      <translation>velocidad superficial constante</translation>
     </message>
     <message>
       <location filename="core/interpreter/flow.py" />
       <source>A subroutine must not call itself.</source>
-      <translation type="unfinished" />
+      <translation>Una subrutina no debe llamarse a sí misma.</translation>
     </message>
     <message>
       <location filename="core/interpreter/flow.py" />
       <source>Subroutines call each other more than %1 deep.</source>
-      <translation type="unfinished" />
+      <translation>Las subrutinas se llaman unas a otras a más de %1 niveles.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow.py" />
       <source>A subprogram must not call itself.</source>
-      <translation type="unfinished" />
+      <translation>Un subprograma no debe llamarse a sí mismo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow.py" />
       <source>Calls are nested more than %1 deep at LBL %2.</source>
-      <translation type="unfinished" />
+      <translation>Las llamadas se anidan a más de %1 niveles en LBL %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source> with %1</source>
-      <translation type="unfinished" />
+      <translation> con %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>%1 %2 is not between %3 and %4.</source>
-      <translation type="unfinished" />
+      <translation>%1 %2 no está entre %3 y %4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>Correct the angle.</source>
-      <translation type="unfinished" />
+      <translation>Corrija el ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>Correct the points.</source>
-      <translation type="unfinished" />
+      <translation>Corrija los puntos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>Look at points, angles and SYM.</source>
-      <translation type="unfinished" />
+      <translation>Vea los puntos, los ángulos y SYM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>No position of the rotary axes inside their ranges gives this plane%1.</source>
-      <translation type="unfinished" />
+      <translation>Ninguna posición de los ejes giratorios dentro de su alcance da este plano%1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>TABLE ROT</source>
-      <translation type="unfinished" />
+      <translation>TABLE ROT</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>Take the word out.</source>
-      <translation type="unfinished" />
+      <translation>Quite la palabra.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/frames.py" />
       <source>This machine has no rotary axis %1.</source>
-      <translation type="unfinished" />
+      <translation>Esta máquina no tiene eje giratorio %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>M%1 stands twice in the block.</source>
-      <translation type="unfinished" />
+      <translation>M%1 está dos veces en el bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>M%1 starts the spindle, and no TOOL CALL has given S.</source>
-      <translation type="unfinished" />
+      <translation>M%1 arranca el husillo, y ningún TOOL CALL dio S.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>M%1 while M128 is on.</source>
-      <translation type="unfinished" />
+      <translation>M%1 con M128 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>More than one M function of the block steers the spindle.</source>
-      <translation type="unfinished" />
+      <translation>Más de una función M del bloque manda el husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>Switch it off with M129 before.</source>
-      <translation type="unfinished" />
+      <translation>Apáguelo antes con M129.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>TOOL %1</source>
-      <translation type="unfinished" />
+      <translation>TOOL %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>Take one out.</source>
-      <translation type="unfinished" />
+      <translation>Quite una.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>Write S behind TOOL CALL.</source>
-      <translation type="unfinished" />
+      <translation>Escriba S tras TOOL CALL.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>%1 stand elsewhere than the plane of line %2 asks.</source>
-      <translation type="unfinished" />
+      <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>A move of %1 with M128</source>
-      <translation type="unfinished" />
+      <translation>Un movimiento de %1 con M128</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>A move with M128 and %1 swivelled</source>
-      <translation type="unfinished" />
+      <translation>Un movimiento con M128 y %1 inclinado</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
-      <translation type="unfinished" />
+      <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>Start it with M3 or M4.</source>
-      <translation type="unfinished" />
+      <translation>Arránquelo con M3 o M4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>This feed move runs with the spindle at rest.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento de avance corre con el husillo parado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/moves.py" />
       <source>This machine has no axis %1.</source>
-      <translation type="unfinished" />
+      <translation>Esta máquina no tiene eje %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>M128 is on.</source>
-      <translation type="unfinished" />
+      <translation>M128 está activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
-      <translation type="unfinished" />
+      <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>No TOOL CALL has named a tool axis.</source>
-      <translation type="unfinished" />
+      <translation>Ningún TOOL CALL nombró un eje de herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>The datum was shifted in the tilted system of line %1.</source>
-      <translation type="unfinished" />
+      <translation>El origen se desplazó en el sistema inclinado de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM.</source>
-      <translation type="unfinished" />
+      <translation>Si era en el sistema de la pieza, escriba PLANE RESET STAY antes de TRANS DATUM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>Write MB with a length.</source>
-      <translation type="unfinished" />
+      <translation>Escriba MB con una longitud.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/planes.py" />
       <source>Write TOOL CALL n Z before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes TOOL CALL n Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>A file holds one program.</source>
-      <translation type="unfinished" />
+      <translation>Un archivo contiene un solo programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Correct the number, or write the label.</source>
-      <translation type="unfinished" />
+      <translation>Corrija el número, o escriba la etiqueta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>END PGM is missing.</source>
-      <translation type="unfinished" />
+      <translation>Falta END PGM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Give it another number.</source>
-      <translation type="unfinished" />
+      <translation>Déle otro número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>LBL %1 is nowhere in the program.</source>
-      <translation type="unfinished" />
+      <translation>LBL %1 no está en ninguna parte del programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>LBL %1 stands on line %2 too.</source>
-      <translation type="unfinished" />
+      <translation>LBL %1 está también en la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Look whether the file is whole.</source>
-      <translation type="unfinished" />
+      <translation>Vea si el archivo está completo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Move it before END PGM.</source>
-      <translation type="unfinished" />
+      <translation>Muévalo antes de END PGM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>The first block names program and unit.</source>
-      <translation type="unfinished" />
+      <translation>El primer bloque nombra programa y unidad.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>The program begins as %1 and ends as %2.</source>
-      <translation type="unfinished" />
+      <translation>El programa empieza como %1 y termina como %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>The subprogram LBL %1 has no LBL 0.</source>
-      <translation type="unfinished" />
+      <translation>El subprograma LBL %1 no tiene LBL 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>This block stands behind END PGM.</source>
-      <translation type="unfinished" />
+      <translation>Este bloque está después de END PGM.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Write LBL 0 behind it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba LBL 0 después.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/program.py" />
       <source>Write the unit of the program in both.</source>
-      <translation type="unfinished" />
+      <translation>Escriba en ambos la unidad del programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/run.py" />
       <source>The program makes more than %1 blocks or %2 executed lines.</source>
-      <translation type="unfinished" />
+      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>A tool by its name</source>
-      <translation type="unfinished" />
+      <translation>Una herramienta por su nombre</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>S%1 is over the spindle's %2 rpm.</source>
-      <translation type="unfinished" />
+      <translation>S%1 pasa de las %2 rpm del husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>Set the tool's offset.</source>
-      <translation type="unfinished" />
+      <translation>Ponga la compensación de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>TOOL CALL while M128 is on.</source>
-      <translation type="unfinished" />
+      <translation>TOOL CALL con M128 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>The tool axis %1</source>
-      <translation type="unfinished" />
+      <translation>El eje de herramienta %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
       <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
-      <translation type="unfinished" />
+      <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Correct the value.</source>
-      <translation type="unfinished" />
+      <translation>Corrija el valor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>F must be above zero.</source>
-      <translation type="unfinished" />
+      <translation>F debe ser mayor que cero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>No feed is in force.</source>
-      <translation type="unfinished" />
+      <translation>No hay avance vigente.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Q%1 has no value yet.</source>
-      <translation type="unfinished" />
+      <translation>Q%1 todavía no tiene valor.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>The last TOOL CALL has no F.</source>
-      <translation type="unfinished" />
+      <translation>El último TOOL CALL no tiene F.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Write F behind TOOL CALL.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F tras TOOL CALL.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Write F or FMAX.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F o FMAX.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Write Q%1 = … before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes Q%1 = …</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/words.py" />
       <source>Write a feed.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un avance.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>%1, less than the nose radius %2.</source>
-      <translation type="unfinished" />
+      <translation>%1, menos que el radio de punta %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>%1, less than twice the nose radius %2.</source>
-      <translation type="unfinished" />
+      <translation>%1, menos que el doble del radio de punta %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>Choose another way for the %1, or the other side.</source>
-      <translation type="unfinished" />
+      <translation>Elija otro camino para la %1, o el otro lado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>Keep twice the nose radius off the part.</source>
-      <translation type="unfinished" />
+      <translation>Quede a dos veces el radio de punta de la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>Move farther off the part.</source>
-      <translation type="unfinished" />
+      <translation>Aléjese más de la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>On the %1 the nose of G%2 cuts into the part.</source>
-      <translation type="unfinished" />
+      <translation>En la %1 la punta de G%2 corta la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>The %1 %2 %3 off the part</source>
-      <translation type="unfinished" />
+      <translation>La %1 %2 %3 de la pieza</translation>
     </message>
     <message>
       <location filename="core/interpreter/lead.py" />
       <source>The %1 is %2 long, less than the nose radius %3.</source>
-      <translation type="unfinished" />
+      <translation>La %1 mide %2, menos que el radio de punta %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
       <source>M%1 is no code of this machine.</source>
-      <translation type="unfinished" />
+      <translation>M%1 no es código de esta máquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
       <source>M13 opens the collet while the spindle turns.</source>
-      <translation type="unfinished" />
+      <translation>M13 abre la boquilla con el husillo girando.</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
       <source>Stop it with M05 first.</source>
-      <translation type="unfinished" />
+      <translation>Párelo primero con M05.</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
       <source>The machine file assigns the outputs.</source>
-      <translation type="unfinished" />
+      <translation>El archivo de máquina asigna las salidas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>%1 is finer than the step of %2 %3; %4 is used.</source>
-      <translation type="unfinished" />
+      <translation>%1 es más fino que el paso de %2 %3; se usa %4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>%1 is finer than the step; %2 is used.</source>
-      <translation type="unfinished" />
+      <translation>%1 es más fino que el paso; se usa %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>Round the number.</source>
-      <translation type="unfinished" />
+      <translation>Redondee el número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>The first move after %1 lacks %2.</source>
-      <translation type="unfinished" />
+      <translation>Al primer movimiento tras %1 le falta %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>This move is a rapid because of the G00 beside the comment on line %1.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento es rápido por el G00 junto al comentario de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>Write G01 if it is meant to cut.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G01 si debe cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>Write both X and Z, or G92 before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba X y Z, o G92 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/moves.py" />
       <source>the T on line %1</source>
-      <translation type="unfinished" />
+      <translation>la T de la línea %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>%1 stands while G%2 is on.</source>
-      <translation type="unfinished" />
+      <translation>%1 está con G%2 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>A subroutine is called while G%1 is on.</source>
-      <translation type="unfinished" />
+      <translation>Se llama una subrutina con G%1 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Approach on a straight line with D.</source>
-      <translation type="unfinished" />
+      <translation>Entre en línea recta con D.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>D belongs on the first move after G41 or G42 alone.</source>
-      <translation type="unfinished" />
+      <translation>D va sólo en el primer movimiento tras G41 o G42.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>D changes while G%1 is on.</source>
-      <translation type="unfinished" />
+      <translation>D cambia con G%1 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>End G%1 first: a move off the part, then G40.</source>
-      <translation type="unfinished" />
+      <translation>Termine primero G%1: un movimiento fuera de la pieza, luego G40.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Enter the nose radius among the offsets.</source>
-      <translation type="unfinished" />
+      <translation>Ponga el radio de punta entre las compensaciones.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Enter the nose radius without a sign; G41 and G42 say the side.</source>
-      <translation type="unfinished" />
+      <translation>Ponga el radio de punta sin signo; G41 y G42 dicen el lado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>G%1 comes while G%2 is on.</source>
-      <translation type="unfinished" />
+      <translation>G%1 viene con G%2 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>G%1 does not stand alone on its line.</source>
-      <translation type="unfinished" />
+      <translation>G%1 no va sola en su línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>G%1 stands in a subroutine.</source>
-      <translation type="unfinished" />
+      <translation>G%1 está en una subrutina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Move off the part and write G40 before it.</source>
-      <translation type="unfinished" />
+      <translation>Salga de la pieza y escriba G40 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Plane switching stands while G%1 is on.</source>
-      <translation type="unfinished" />
+      <translation>Hay cambio de plano con G%1 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>R of D%1 is 0: G%2 compensates nothing.</source>
-      <translation type="unfinished" />
+      <translation>La R de D%1 es 0: G%2 no compensa nada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>R of D%1 is negative.</source>
-      <translation type="unfinished" />
+      <translation>La R de D%1 es negativa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>The first move after G%1 on line %2 is no straight line.</source>
-      <translation type="unfinished" />
+      <translation>El primer movimiento tras G%1 en la línea %2 no es una recta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>The first move after G%1 on line %2 names no D.</source>
-      <translation type="unfinished" />
+      <translation>El primer movimiento tras G%1 en la línea %2 no nombra D.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>The program ends while G%1 is on.</source>
-      <translation type="unfinished" />
+      <translation>El programa termina con G%1 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Write Dn: its R is the nose radius.</source>
-      <translation type="unfinished" />
+      <translation>Escriba Dn: su R es el radio de punta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/nose.py" />
       <source>Write the compensated contour in the main program.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el contorno compensado en el programa principal.</translation>
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />
       <source>Begin with G90G94F300.</source>
-      <translation type="unfinished" />
+      <translation>Empiece con G90G94F300.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>Neither G90 (absolute) nor G91 (incremental) is in force.</source>
+      <translation>No está vigente ni G90 (absoluto) ni G91 (incremental).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/opening.py" />
+      <source>Say one of them first.</source>
+      <translation>Diga primero uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />
       <source>The first line must say G90 (absolute) or G91 (incremental).</source>
-      <translation type="unfinished" />
+      <translation>La primera línea debe decir G90 (absoluto) o G91 (incremental).</translation>
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />
       <source>The program names neither G70 nor G71; it runs in millimetres, as the job before it.</source>
-      <translation type="unfinished" />
+      <translation>El programa no dice G70 ni G71; corre en milímetros, como el trabajo anterior.</translation>
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />
       <source>Write G70 or G71 on the first line.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G70 o G71 en la primera línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
-      <translation type="unfinished" />
+      <translation>(~%1) necesita la herramienta del lado X negativo, y X es %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>(~%1) turns C, which is not locked.</source>
-      <translation type="unfinished" />
+      <translation>(~%1) gira C, que no está bloqueado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>(~%1) under G95: a plane is fed in inches a minute.</source>
-      <translation type="unfinished" />
+      <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>(~%1) with nose compensation on.</source>
-      <translation type="unfinished" />
+      <translation>(~%1) con compensación de punta activa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Correct it.</source>
-      <translation type="unfinished" />
+      <translation>Corríjalo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>D belongs to (~PLZC).</source>
-      <translation type="unfinished" />
+      <translation>D pertenece a (~PLZC).</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>D comes where Y is %1: it would move Y.</source>
-      <translation type="unfinished" />
+      <translation>D viene donde Y es %1: movería Y.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>D must be a diameter over 0.</source>
-      <translation type="unfinished" />
+      <translation>D debe ser un diámetro mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>H belongs to (~PLXC).</source>
-      <translation type="unfinished" />
+      <translation>H pertenece a (~PLXC).</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>H comes after a move or F.</source>
-      <translation type="unfinished" />
+      <translation>H viene después de un movimiento o F.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Move there before the plane.</source>
-      <translation type="unfinished" />
+      <translation>Muévase ahí antes del plano.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Move to X- before it.</source>
-      <translation type="unfinished" />
+      <translation>Muévase antes a X-.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>The T on line %1 has not been moved to X and Z.</source>
-      <translation type="unfinished" />
+      <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Write G40 before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes G40.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Write G94 with F before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes G94 con F.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Write M19 before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes M19.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Write it first.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo primero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane.py" />
       <source>Write it where Y is 0.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo donde Y es 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>I and J are the centre's coordinates.</source>
-      <translation type="unfinished" />
+      <translation>I y J son las coordenadas del centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>The tool stands meanwhile; lead it past the axis.</source>
-      <translation type="unfinished" />
+      <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>The tool's centre line stands H beside the axis.</source>
-      <translation type="unfinished" />
+      <translation>La línea central de la herramienta está a H del eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
-      <translation type="unfinished" />
+      <translation>El camino pasa a %1 del eje; con esta H la herramienta alcanza %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>The way leads through the axis: C turns by %1 degrees there.</source>
-      <translation type="unfinished" />
+      <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/plane_moves.py" />
       <source>Z%1 lies beyond the centre: Z is the diameter that the tip touches.</source>
-      <translation type="unfinished" />
+      <translation>Z%1 está más allá del centro: Z es el diámetro que toca la punta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>%1 has no number.</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
-      <translation type="unfinished" />
+      <translation>%1 es más fino que el paso de %2 grados; se usa %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>%1 needs a C axis, and the machine file switches it off.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>%1 turns the spindle, which is not locked.</source>
-      <translation type="unfinished" />
+      <translation>%1 gira el husillo, que no está bloqueado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>%1: C turns at more than 0 and at most %2 rpm.</source>
-      <translation type="unfinished" />
+      <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>At %1 rpm of C this feed is %2; %3 is the most.</source>
-      <translation type="unfinished" />
+      <translation>A %1 rpm de C este avance es %2; lo más es %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>C turns %1 degrees; the way of the slide at this feed needs %2.</source>
-      <translation type="unfinished" />
+      <translation>C gira %1 grados; el camino del carro a este avance necesita %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>G89 locks the spindle and stands without M codes.</source>
-      <translation type="unfinished" />
+      <translation>G89 bloquea el husillo y va sin códigos M.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>Set axis.C.enabled.</source>
-      <translation type="unfinished" />
+      <translation>Ponga axis.C.enabled.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>The line holds %1 and %2.</source>
-      <translation type="unfinished" />
+      <translation>La línea contiene %1 y %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>The slide is fed by the turns of C, and no S has said how fast it turns.</source>
-      <translation type="unfinished" />
+      <translation>El carro avanza por las vueltas de C, y ninguna S dijo qué tan rápido gira.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>Turn C further, or raise F: the slide would stop on its way.</source>
-      <translation type="unfinished" />
+      <translation>Gire más C, o suba F: el carro se detendría en el camino.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>Write M19 or M89 before.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes M19 o M89.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>Write S on the line.</source>
-      <translation type="unfinished" />
+      <translation>Escriba S en la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/positioning.py" />
       <source>Write the degrees.</source>
-      <translation type="unfinished" />
+      <translation>Escriba los grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>A comment stands inside a loop.</source>
-      <translation type="unfinished" />
+      <translation>Hay un comentario dentro de un lazo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>Move it before LS.</source>
-      <translation type="unfinished" />
+      <translation>Muévalo antes de LS.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>Move it before M30, or start a subroutine with }n.</source>
-      <translation type="unfinished" />
+      <translation>Muévalo antes de M30, o empiece una subrutina con }n.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>Plane switching on line %1 has no (END).</source>
-      <translation type="unfinished" />
+      <translation>El cambio de plano de la línea %1 no tiene (END).</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>The program is empty.</source>
-      <translation type="unfinished" />
+      <translation>El programa está vacío.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>This line stands after the end of the program and is in no subroutine.</source>
-      <translation type="unfinished" />
+      <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>Write (END) alone on a line.</source>
-      <translation type="unfinished" />
+      <translation>Escriba (END) solo en una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
       <source>Write G90 and M30.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G90 y M30.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>%1 and %2 cannot act on one line.</source>
-      <translation type="unfinished" />
+      <translation>%1 y %2 no pueden actuar en una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>%1 is no code of this control.</source>
-      <translation type="unfinished" />
+      <translation>%1 no es código de este control.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>%1 looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line.</source>
-      <translation type="unfinished" />
+      <translation>%1 parece cambio de plano; (~PLXC) y (~PLZC) van solos en una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Add %1 with its number.</source>
-      <translation type="unfinished" />
+      <translation>Agregue %1 con su número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Look it up.</source>
-      <translation type="unfinished" />
+      <translation>Búsquelo en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Put it on a line of its own.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo en su propia línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Take '/' out.</source>
-      <translation type="unfinished" />
+      <translation>Quite '/'.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Take it out or add its code.</source>
-      <translation type="unfinished" />
+      <translation>Quítelo o agregue su código.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>The line %1.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Write C1 or C0.</source>
-      <translation type="unfinished" />
+      <translation>Escriba C1 o C0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Write it alone.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo solo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>Write the input's number.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el número de la entrada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>deletes %1, without which the rest has no meaning</source>
-      <translation type="unfinished" />
+      <translation>borra %1, sin lo cual el resto no tiene sentido</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1 besides %2, which stands alone</source>
-      <translation type="unfinished" />
+      <translation>contiene %1 además de %2, que va solo</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1 twice</source>
-      <translation type="unfinished" />
+      <translation>contiene %1 dos veces</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1 without %2</source>
-      <translation type="unfinished" />
+      <translation>contiene %1 sin %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1, which is neither C1 (on) nor C0 (off)</source>
-      <translation type="unfinished" />
+      <translation>contiene %1, que no es C1 (encendido) ni C0 (apagado)</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1, which is no number of an input</source>
-      <translation type="unfinished" />
+      <translation>contiene %1, que no es número de una entrada</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds %1, which nothing on it takes</source>
-      <translation type="unfinished" />
+      <translation>contiene %1, que nada en ella usa</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds two M codes</source>
-      <translation type="unfinished" />
+      <translation>contiene dos códigos M</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
       <source>holds two codes of one group (%1)</source>
-      <translation type="unfinished" />
+      <translation>contiene dos códigos de un grupo (%1)</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/approach.py" />
       <source>%1 OFF</source>
-      <translation type="unfinished" />
+      <translation>%1 APAGADO</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/approach.py" />
       <source>%1 ON</source>
-      <translation type="unfinished" />
+      <translation>%1 ENCENDIDO</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>Line %1 %2</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>Line %1 is empty.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 está vacía.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>There is no line %1; the program has %2.</source>
-      <translation type="unfinished" />
+      <translation>No hay línea %1; el programa tiene %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>describes the contour of line %1.</source>
-      <translation type="unfinished" />
+      <translation>describe el contorno de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>is in subroutine %1: the line that calls it may be good.</source>
-      <translation type="unfinished" />
+      <translation>está en la subrutina %1: la línea que la llama puede servir.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>is in the corner of line %1.</source>
-      <translation type="unfinished" />
+      <translation>está en la esquina de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>is in the plane switching that begins on line %1.</source>
-      <translation type="unfinished" />
+      <translation>está en el cambio de plano que empieza en la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>is inside the loop of lines %1 to %2.</source>
-      <translation type="unfinished" />
+      <translation>está dentro del lazo de las líneas %1 a %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>is under the nose compensation that begins on line %1.</source>
-      <translation type="unfinished" />
+      <translation>está bajo la compensación de punta que empieza en la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
       <source>stands after the end of the program.</source>
-      <translation type="unfinished" />
+      <translation>está después del final del programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Line %1 depends on the input that line %2 asks.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 depende de la entrada que pregunta la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Line %1 is in plane switching.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 está en un cambio de plano.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Line %1 is no place to go on: %2</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 no es lugar para seguir: %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Line %1 is under nose compensation or in a corner.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 está bajo compensación de punta o en una esquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Nothing has moved before line %1: start the program from its first line.</source>
-      <translation type="unfinished" />
+      <translation>Nada se mueve antes de la línea %1: empiece el programa desde su primera línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>The program ends on line %1, before line %2.</source>
-      <translation type="unfinished" />
+      <translation>El programa termina en la línea %1, antes de la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>The program has errors before line %1.</source>
-      <translation type="unfinished" />
+      <translation>El programa tiene errores antes de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>Where the slides stand at line %1 depends on where they stood at Cycle Start.</source>
-      <translation type="unfinished" />
+      <translation>Dónde están los carros en la línea %1 depende de dónde estaban en el inicio de ciclo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>what input %1 answered on line %2 is not known.</source>
-      <translation type="unfinished" />
+      <translation>no se sabe qué respondió la entrada %1 en la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>what the input of line %1 answered is not known.</source>
-      <translation type="unfinished" />
+      <translation>no se sabe qué respondió la entrada de la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>%1 cuts a contour, and its lines would have to follow</source>
-      <translation type="unfinished" />
+      <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>%1 rounds the corner with the next move</source>
-      <translation type="unfinished" />
+      <translation>%1 redondea la esquina con el movimiento siguiente</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>/ leaves a line of a program out, and there is nothing to leave out</source>
-      <translation type="unfinished" />
+      <translation>/ salta una línea de un programa, y no hay nada que saltar</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>Write it in a program.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo en un programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>begins a loop, and its lines and LF would have to follow</source>
-      <translation type="unfinished" />
+      <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>begins a subroutine, and those stand in programs</source>
-      <translation type="unfinished" />
+      <translation>empieza una subrutina, y ésas van en programas</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>begins nose compensation, which looks at the lines that follow</source>
-      <translation type="unfinished" />
+      <translation>empieza compensación de punta, que mira las líneas que siguen</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>belongs to plane switching, whose lines would have to follow</source>
-      <translation type="unfinished" />
+      <translation>pertenece a un cambio de plano, cuyas líneas tendrían que seguir</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>calls a subroutine, and those stand in programs</source>
-      <translation type="unfinished" />
+      <translation>llama una subrutina, y ésas van en programas</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>ends a contour, and there is none</source>
-      <translation type="unfinished" />
+      <translation>termina un contorno, y no hay ninguno</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>ends a loop, and there is none</source>
-      <translation type="unfinished" />
+      <translation>termina un lazo, y no hay ninguno</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>ends a subroutine, and there is none</source>
-      <translation type="unfinished" />
+      <translation>termina una subrutina, y no hay ninguna</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>ends nose compensation, which looks at the lines around it</source>
-      <translation type="unfinished" />
+      <translation>termina compensación de punta, que mira las líneas alrededor</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
       <source>needs a G92 on the next line</source>
-      <translation type="unfinished" />
+      <translation>necesita un G92 en la línea siguiente</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>%1 is too small: the ends are %2 mm apart, half of which it takes at least.</source>
-      <translation type="unfinished" />
+      <translation>%1 es demasiado chico: los extremos están a %2 mm, y necesita al menos la mitad.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>%1: an opening angle lies over 0 and under 360.</source>
-      <translation type="unfinished" />
+      <translation>%1: un ángulo de apertura es mayor que 0 y menor que 360.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>AR stands without an end point and without I and K.</source>
-      <translation type="unfinished" />
+      <translation>AR está sin punto final y sin I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>Add one of them.</source>
-      <translation type="unfinished" />
+      <translation>Agregue uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>Correct CR or the end point.</source>
-      <translation type="unfinished" />
+      <translation>Corrija CR o el punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>I and K are distances from the start, I a radius; AC( ) makes them coordinates.</source>
-      <translation type="unfinished" />
+      <translation>I y K son distancias desde el inicio, I es radio; AC( ) las vuelve coordenadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>Keep two of them.</source>
-      <translation type="unfinished" />
+      <translation>Deje dos de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>Write G18 before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes G18.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>arcs of X and Z need G18.</source>
-      <translation type="unfinished" />
+      <translation>los arcos de X y Z necesitan G18.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the arc by %1 ends where it starts.</source>
-      <translation type="unfinished" />
+      <translation>el arco por %1 termina donde empieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the arc has AR, an end point and a centre.</source>
-      <translation type="unfinished" />
+      <translation>el arco tiene AR, un punto final y un centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the arc has CR and another way to say where its centre is.</source>
-      <translation type="unfinished" />
+      <translation>el arco tiene CR y otra forma de decir dónde está su centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the arc has neither CR, AR nor I and K.</source>
-      <translation type="unfinished" />
+      <translation>el arco no tiene ni CR ni AR ni I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the arc's radius is %1 mm at its start and %2 mm at its end.</source>
-      <translation type="unfinished" />
+      <translation>el radio del arco es %1 mm al inicio y %2 mm al final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/arcs.py" />
       <source>the centre of the arc is its start point.</source>
-      <translation type="unfinished" />
+      <translation>el centro del arco es su punto de inicio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>A corner needs two moves in a row.</source>
-      <translation type="unfinished" />
+      <translation>Una esquina necesita dos movimientos seguidos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>Give another end point.</source>
-      <translation type="unfinished" />
+      <translation>Dé otro punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>Put it behind a G1.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo tras un G1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>corners of X and Z need G18</source>
-      <translation type="unfinished" />
+      <translation>las esquinas de X y Z necesitan G18</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>it takes %1 mm of the move on line %2, which has %3 mm</source>
-      <translation type="unfinished" />
+      <translation>ocupa %1 mm del movimiento de la línea %2, que tiene %3 mm</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
-      <translation type="unfinished" />
+      <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>the block is no straight move at feed</source>
-      <translation type="unfinished" />
+      <translation>el bloque no es una recta con avance</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>the next move, on line %1, is no straight move of X and Z</source>
-      <translation type="unfinished" />
+      <translation>el movimiento siguiente, en la línea %1, no es una recta de X y Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
       <source>the size of a corner</source>
-      <translation type="unfinished" />
+      <translation>el tamaño de una esquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>G96 is in force and no S has given a surface speed.</source>
-      <translation type="unfinished" />
+      <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>Start it with S and M3 or M4, or use G94.</source>
-      <translation type="unfinished" />
+      <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>Write F. Between G94 and G95 the old value is forgotten.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>kind of feed</source>
-      <translation type="unfinished" />
+      <translation>clase de avance</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>no feedrate is programmed.</source>
-      <translation type="unfinished" />
+      <translation>no hay avance programado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>no spindle speed for G95: the spindle stands.</source>
-      <translation type="unfinished" />
+      <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/feeds.py" />
       <source>the feed</source>
-      <translation type="unfinished" />
+      <translation>el avance</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow.py" />
       <source>%1 line %2: %3</source>
-      <translation type="unfinished" />
+      <translation>%1 línea %2: %3</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow.py" />
       <source>M%1 ends a main program, and this is a subprogram.</source>
-      <translation type="unfinished" />
+      <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow.py" />
       <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
-      <translation type="unfinished" />
+      <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow.py" />
       <source>subprograms call each other more than %1 deep.</source>
-      <translation type="unfinished" />
+      <translation>los subprogramas se llaman unos a otros a más de %1 niveles.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow.py" />
       <source>the subprogram %1 does not exist.</source>
-      <translation type="unfinished" />
+      <translation>el subprograma %1 no existe.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes.py" />
+      <source>absolute or incremental</source>
+      <translation>absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes.py" />
+      <source>unit of length</source>
+      <translation>unidad de longitud</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/moves.py" />
       <source>%1 belongs to an arc, and G%2 is in force.</source>
-      <translation type="unfinished" />
+      <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/moves.py" />
       <source>Write G2 or G3, or take it out.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G2 o G3, o quítelo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/offsets.py" />
       <source>%1: an offset is a plain number.</source>
-      <translation type="unfinished" />
+      <translation>%1: un desplazamiento es un número simple.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/offsets.py" />
       <source>Take C out, or choose a machine file that has it.</source>
-      <translation type="unfinished" />
+      <translation>Quite C, o elija un archivo de máquina que lo tenga.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/offsets.py" />
       <source>Write %1 with its number.</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1 con su número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/offsets.py" />
       <source>settable offset</source>
-      <translation type="unfinished" />
+      <translation>cero ajustable</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
-      <translation type="unfinished" />
+      <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
       <source>Add the axes.</source>
-      <translation type="unfinished" />
+      <translation>Agregue los ejes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
       <source>G53 acts in a block that moves an axis.</source>
-      <translation type="unfinished" />
+      <translation>G53 actúa en un bloque que mueve un eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
       <source>Lower the passes of the calls.</source>
-      <translation type="unfinished" />
+      <translation>Baje las repeticiones de las llamadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
-      <source>absolute or incremental</source>
-      <translation type="unfinished" />
+      <source>kind of spindle speed</source>
+      <translation>clase de velocidad del husillo</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
       <source>suppression of offsets</source>
-      <translation type="unfinished" />
+      <translation>supresión de desplazamientos</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/run.py" />
       <source>the program makes more than %1 blocks or %2 executed lines.</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
-      <source>unit of length</source>
-      <translation type="unfinished" />
+      <translation>el programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 is a dwell of %2 s; %3 are the most.</source>
-      <translation type="unfinished" />
+      <translation>%1 es una espera de %2 s; lo más son %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 is over the spindle's %2 rpm.</source>
-      <translation type="unfinished" />
+      <translation>%1 pasa de las %2 rpm del husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 m/min is no surface speed that a tool can stand.</source>
-      <translation type="unfinished" />
+      <translation>%1 m/min no es velocidad superficial que aguante una herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 needs a controlled spindle, which this machine does not have.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita un husillo controlado, que esta máquina no tiene.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 starts the spindle and no S has said how fast.</source>
-      <translation type="unfinished" />
+      <translation>%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1 starts the spindle with the collet open.</source>
-      <translation type="unfinished" />
+      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1: a dwell is 0 or longer.</source>
-      <translation type="unfinished" />
+      <translation>%1: una espera es 0 o más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
-      <translation type="unfinished" />
+      <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>Close it.</source>
-      <translation type="unfinished" />
+      <translation>Ciérrela.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>F counts in seconds, S in revolutions.</source>
-      <translation type="unfinished" />
+      <translation>F cuenta en segundos, S en vueltas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>G4 %1 waits for revolutions of a spindle that stands.</source>
-      <translation type="unfinished" />
+      <translation>G4 %1 espera vueltas de un husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>G96 is in force and F counts in mm/min (G94).</source>
+      <translation>G96 está vigente y F cuenta en mm/min (G94).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>G97 makes S rpm.</source>
-      <translation type="unfinished" />
+      <translation>G97 hace de S rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>Start it with M3 or M4, or write G4 F.</source>
-      <translation type="unfinished" />
+      <translation>Arránquelo con M3 o M4, o escriba G4 F.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <source>Write G95 where F is meant as mm a revolution.</source>
+      <translation>Escriba G95 donde F signifique mm por vuelta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>Write S in the block.</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
-      <source>kind of spindle speed</source>
-      <translation type="unfinished" />
+      <translation>Escriba S en el bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle.py" />
       <source>the limit of the speed</source>
-      <translation type="unfinished" />
+      <translation>el tope de la velocidad</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/state.py" />
       <source>%1: %2 must be over 0.</source>
-      <translation type="unfinished" />
+      <translation>%1: %2 debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/state.py" />
       <source>R%1 has no value: the program has not set it.</source>
-      <translation type="unfinished" />
+      <translation>R%1 no tiene valor: el programa no lo puso.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/state.py" />
       <source>Write R%1=… before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes R%1=…</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 and %2 are of one group (%3).</source>
-      <translation type="unfinished" />
+      <translation>%1 y %2 son de un mismo grupo (%3).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 and %2 stand in one block.</source>
-      <translation type="unfinished" />
+      <translation>%1 y %2 están en un bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 are the most.</source>
-      <translation type="unfinished" />
+      <translation>lo más son %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 is programmed twice in the block.</source>
-      <translation type="unfinished" />
+      <translation>%1 está programado dos veces en el bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 needs a block of its own, with axes and nothing else.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita su propio bloque, con ejes y nada más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 stands in a block without X or Z.</source>
-      <translation type="unfinished" />
+      <translation>%1 está en un bloque sin X ni Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>DIAMON and DIAMOF are of one group.</source>
-      <translation type="unfinished" />
+      <translation>DIAMON y DIAMOF son de un mismo grupo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>G4 needs a block of its own, with F (seconds) or S (revolutions).</source>
-      <translation type="unfinished" />
+      <translation>G4 necesita su propio bloque, con F (segundos) o S (vueltas).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>M%1 and M%2 exclude each other.</source>
-      <translation type="unfinished" />
+      <translation>M%1 y M%2 se excluyen.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>One G code of a group per block.</source>
-      <translation type="unfinished" />
+      <translation>Un código G de un grupo por bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>Put it behind a move.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo tras un movimiento.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>Split the block.</source>
-      <translation type="unfinished" />
+      <translation>Divida el bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
       <source>the block holds %1 M codes.</source>
-      <translation type="unfinished" />
+      <translation>el bloque contiene %1 códigos M.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/targets.py" />
       <source>%1 is no position of a modulo axis, which has 0 to &lt;360</source>
-      <translation type="unfinished" />
+      <translation>%1 no es posición de un eje módulo, que tiene de 0 a &lt;360</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/targets.py" />
       <source>%1 needs a modulo rotary axis</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita un eje giratorio módulo</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/targets.py" />
       <source>the end point %1 lies beyond -360 to +360 of the machine</source>
-      <translation type="unfinished" />
+      <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/travel.py" />
       <source>%1: %2 needs a rotary axis.</source>
-      <translation type="unfinished" />
+      <translation>%1: %2 necesita un eje giratorio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/travel.py" />
       <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
-      <translation type="unfinished" />
+      <translation>El C de esta máquina cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/travel.py" />
       <source>Correct the target or the offset of C.</source>
-      <translation type="unfinished" />
+      <translation>Corrija el destino o el desplazamiento de C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/travel.py" />
       <source>Write %1=AC( ) or %2=IC( ).</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1=AC( ) o %2=IC( ).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/travel.py" />
       <source>Write an angle from 0 to 359.999, or IC( ) for a distance.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un ángulo de 0 a 359.999, o IC( ) para una distancia.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>%1 is no surface speed that a tool can stand.</source>
-      <translation type="unfinished" />
+      <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
-      <translation type="unfinished" />
+      <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>Close it with M12 first.</source>
-      <translation type="unfinished" />
+      <translation>Ciérrela primero con M12.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>Correct one of them.</source>
-      <translation type="unfinished" />
+      <translation>Corrija uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>G%1 needs S, a speed in rpm.</source>
-      <translation type="unfinished" />
+      <translation>G%1 necesita S, una velocidad en rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
-      <translation type="unfinished" />
+      <translation>G76 (%1 rpm) pasa de G77 (%2 rpm).</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>M%1 starts the spindle and no S has said how fast.</source>
-      <translation type="unfinished" />
+      <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>M%1 starts the spindle with the collet open.</source>
-      <translation type="unfinished" />
+      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>M%1 starts the spindle, which is locked as the axis C.</source>
-      <translation type="unfinished" />
+      <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>Release it with M05 first.</source>
-      <translation type="unfinished" />
+      <translation>Libérelo primero con M05.</translation>
     </message>
     <message>
       <location filename="core/interpreter/spindle.py" />
       <source>Write G%1Sn.</source>
-      <translation type="unfinished" />
+      <translation>Escriba G%1Sn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>%1 has no LF.</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene LF.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Add G75 or G78, or take it out.</source>
-      <translation type="unfinished" />
+      <translation>Agregue G75 o G78, o quítelo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Add LF where the loop ends.</source>
-      <translation type="unfinished" />
+      <translation>Agregue LF donde termina el lazo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Add LS with a count, or take it out.</source>
-      <translation type="unfinished" />
+      <translation>Agregue LS con una cuenta, o quítelo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Add M99 at its end.</source>
-      <translation type="unfinished" />
+      <translation>Agregue M99 a su final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>LF ends no loop.</source>
-      <translation type="unfinished" />
+      <translation>LF no termina ningún lazo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>M30 goes before the subroutines.</source>
-      <translation type="unfinished" />
+      <translation>M30 va antes de las subrutinas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>M99 ends no subroutine here.</source>
-      <translation type="unfinished" />
+      <translation>M99 no termina aquí ninguna subrutina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>RF ends no contour here.</source>
-      <translation type="unfinished" />
+      <translation>RF no termina aquí ningún contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Subroutine %1 begins on line %2 already.</source>
-      <translation type="unfinished" />
+      <translation>La subrutina %1 ya empieza en la línea %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Subroutine %1 has no M99.</source>
-      <translation type="unfinished" />
+      <translation>La subrutina %1 no tiene M99.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Subroutine %1 is called, and no }%2 begins it.</source>
-      <translation type="unfinished" />
+      <translation>Se llama la subrutina %1, y ningún }%2 la empieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>The contour of G%1 has no RF.</source>
-      <translation type="unfinished" />
+      <translation>El contorno de G%1 no tiene RF.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>The main program ends without M30 or M02.</source>
-      <translation type="unfinished" />
+      <translation>El programa principal termina sin M30 ni M02.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Write RF alone on the line after it, or P with the number of a subroutine.</source>
-      <translation type="unfinished" />
+      <translation>Escriba RF solo en la línea que sigue, o P con el número de una subrutina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>Write it after M30.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo después de M30.</translation>
     </message>
     <message>
       <location filename="core/interpreter/structure.py" />
       <source>}%1 has no M99 before this line.</source>
-      <translation type="unfinished" />
+      <translation>}%1 no tiene M99 antes de esta línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>A comment stands on a line by itself.</source>
-      <translation type="unfinished" />
+      <translation>Hay un comentario solo en una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>A comment stands on the line that starts a subroutine.</source>
-      <translation type="unfinished" />
+      <translation>Hay un comentario en la línea que empieza una subrutina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Move it down a line.</source>
-      <translation type="unfinished" />
+      <translation>Bájelo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Press Return after it.</source>
-      <translation type="unfinished" />
+      <translation>Oprima Return después.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Put it on a line with a command.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo en una línea con una orden.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Save the file with the line ends of this machine.</source>
-      <translation type="unfinished" />
+      <translation>Guarde el archivo con los finales de línea de esta máquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Take it out for the original control.</source>
-      <translation type="unfinished" />
+      <translation>Quítelo para el control original.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>The comment holds more than letters, digits and blanks.</source>
-      <translation type="unfinished" />
+      <translation>El comentario contiene más que letras, números y espacios.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>The last line has no line end.</source>
-      <translation type="unfinished" />
+      <translation>La última línea no tiene final de línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>The line is blank.</source>
-      <translation type="unfinished" />
+      <translation>La línea está en blanco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>The lines end in a carriage return.</source>
-      <translation type="unfinished" />
+      <translation>Las líneas terminan en retorno de carro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>The tool number has a leading zero.</source>
-      <translation type="unfinished" />
+      <translation>El número de herramienta lleva un cero delante.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Use plain text.</source>
-      <translation type="unfinished" />
+      <translation>Use texto simple.</translation>
     </message>
     <message>
       <location filename="core/interpreter/style.py" />
       <source>Write T1 for T01.</source>
-      <translation type="unfinished" />
+      <translation>Escriba T1 en vez de T01.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>%1 leaves nothing to cut: %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 no deja nada que cortar: %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>%1 lies on the other side of the spindle axis: %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 está del otro lado del eje del husillo: %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>%1: %2 stands without a number here.</source>
-      <translation type="unfinished" />
+      <translation>%1: aquí %2 está sin número.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>%1: the angle of infeed is 30 degrees at most.</source>
-      <translation type="unfinished" />
+      <translation>%1: el ángulo de entrada es de 30 grados a lo más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>%1: the lead must be above 0 and at most %2.</source>
-      <translation type="unfinished" />
+      <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>At %1 rpm this lead is %2; %3 is the most.</source>
-      <translation type="unfinished" />
+      <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Correct C; bare C is 29 degrees.</source>
-      <translation type="unfinished" />
+      <translation>Corrija C; C sola es 29 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Correct Z, or move away before the G33.</source>
-      <translation type="unfinished" />
+      <translation>Corrija Z, o aléjese antes del G33.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>G%1 is active, and a thread is cut without nose compensation.</source>
-      <translation type="unfinished" />
+      <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>G35 allows more.</source>
-      <translation type="unfinished" />
+      <translation>G35 permite más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>G35F2 allows more.</source>
-      <translation type="unfinished" />
+      <translation>G35F2 permite más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>G96 is active, and a thread needs one speed from first pass to last.</source>
-      <translation type="unfinished" />
+      <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>I is missing.</source>
-      <translation type="unfinished" />
+      <translation>Falta I.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>I, the depth of the first pass, must be above 0.</source>
-      <translation type="unfinished" />
+      <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>K is missing, and %1 is there.</source>
-      <translation type="unfinished" />
+      <translation>Falta K, y está %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>K, the lead, is missing.</source>
-      <translation type="unfinished" />
+      <translation>Falta K, el paso.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Look at the sign of X and at where the tool starts.</source>
-      <translation type="unfinished" />
+      <translation>Vea el signo de X y dónde empieza la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Start at the depth of the first pass.</source>
-      <translation type="unfinished" />
+      <translation>Empiece a la profundidad de la primera pasada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Start farther away from Z.</source>
-      <translation type="unfinished" />
+      <translation>Empiece más lejos de Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Start it with M03 or M04.</source>
-      <translation type="unfinished" />
+      <translation>Arránquelo con M03 o M04.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>The flank angle moves the start of the last pass beyond its end.</source>
-      <translation type="unfinished" />
+      <translation>El ángulo de flanco lleva el inicio de la última pasada más allá de su final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>The spindle stands, and a thread is cut by its turns.</source>
-      <translation type="unfinished" />
+      <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>The thread ends at the Z where it starts.</source>
-      <translation type="unfinished" />
+      <translation>La rosca termina en la Z en que empieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>The thread would take %1 passes; %2 are the most.</source>
-      <translation type="unfinished" />
+      <translation>La rosca haría %1 pasadas; lo más son %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Was K%1 meant?</source>
-      <translation type="unfinished" />
+      <translation>¿Se quiso decir K%1?</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Write %1 alone.</source>
-      <translation type="unfinished" />
+      <translation>Escriba sólo %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Write G97S before it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba antes G97S.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Write I, the depth of the first pass.</source>
-      <translation type="unfinished" />
+      <translation>Escriba I, la profundidad de la primera pasada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Write K, the lead per revolution.</source>
-      <translation type="unfinished" />
+      <translation>Escriba K, el paso por vuelta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>X of the last pass is missing.</source>
-      <translation type="unfinished" />
+      <translation>Falta la X de la última pasada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>Z, the end of the thread, is missing.</source>
-      <translation type="unfinished" />
+      <translation>Falta Z, el final de la rosca.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
       <source>the tool stands at radius %1</source>
-      <translation type="unfinished" />
+      <translation>la herramienta está en radio %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/threads.py" />
       <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
-      <translation type="unfinished" />
+      <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/threads.py" />
       <source>Start farther away, or lower S.</source>
-      <translation type="unfinished" />
+      <translation>Empiece más lejos, o baje S.</translation>
     </message>
     <message>
       <location filename="core/interpreter/threads.py" />
       <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
-      <translation type="unfinished" />
+      <translation>La carrera de arranque es %1; el carro necesita %2 para llegar a la velocidad del paso.</translation>
     </message>
     <message>
       <location filename="core/interpreter/threads.py" />
       <source>The thread takes %1 passes.</source>
-      <translation type="unfinished" />
+      <translation>La rosca hace %1 pasadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>G%1 needs X or Z.</source>
-      <translation type="unfinished" />
+      <translation>G%1 necesita X o Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
-      <translation type="unfinished" />
+      <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>No T follows this G10, so the work shift never takes effect.</source>
-      <translation type="unfinished" />
+      <translation>Ninguna T sigue a este G10, así que el desplazamiento nunca actúa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>Put G97 before the T.</source>
-      <translation type="unfinished" />
+      <translation>Ponga G97 antes de la T.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>Put it before a T.</source>
-      <translation type="unfinished" />
+      <translation>Póngalo antes de una T.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
       <source>Write the coordinates.</source>
-      <translation type="unfinished" />
+      <translation>Escriba las coordenadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/units.py" />
       <source>%1 mm</source>
-      <translation type="unfinished" />
+      <translation>%1 mm</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>%1 goes up to %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 llega hasta %2.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>%1 has an empty name.</source>
-      <translation type="unfinished" />
+      <translation>%1 tiene un nombre vacío.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>%1 has no number</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene número</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>%1 has no value</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene valor</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>%1 needs a whole number</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita un número entero</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>; '%1' stands here</source>
-      <translation type="unfinished" />
+      <translation>; aquí está '%1'</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>; the line ends here</source>
-      <translation type="unfinished" />
+      <translation>; la línea termina aquí</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Correct the number.</source>
-      <translation type="unfinished" />
+      <translation>Corrija el número.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Q parameters go up to Q%1.</source>
-      <translation type="unfinished" />
+      <translation>Los parámetros Q llegan hasta Q%1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Take another parameter.</source>
-      <translation type="unfinished" />
+      <translation>Use otro parámetro.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Write a number such as +10, or a Q parameter.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un número como +10, o un parámetro Q.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Write a number.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un número.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
       <source>Write the name.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el nombre.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>%1 is not supported here.</source>
-      <translation type="unfinished" />
+      <translation>Aquí no se admite %1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Contradictory entry</source>
-      <translation type="unfinished" />
+      <translation>Entrada contradictoria</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Entered angle not permitted</source>
-      <translation type="unfinished" />
+      <translation>Ángulo introducido no permitido</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Excessive nesting</source>
-      <translation type="unfinished" />
+      <translation>Demasiados niveles</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Feed rate is missing</source>
-      <translation type="unfinished" />
+      <translation>Falta el avance</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Input value incorrect</source>
-      <translation type="unfinished" />
+      <translation>Valor introducido incorrecto</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Label defined twice</source>
-      <translation type="unfinished" />
+      <translation>Etiqueta definida dos veces</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Label not found</source>
-      <translation type="unfinished" />
+      <translation>Etiqueta no encontrada</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Not permitted with M128</source>
-      <translation type="unfinished" />
+      <translation>No permitido con M128</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Not supported</source>
-      <translation type="unfinished" />
+      <translation>No se admite</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>PLANE not permitted with M128</source>
-      <translation type="unfinished" />
+      <translation>PLANE no permitido con M128</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Plane wrongly defined</source>
-      <translation type="unfinished" />
+      <translation>Plano mal definido</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Program it with L moves and PLANE, or run the program on a control that has it.</source>
-      <translation type="unfinished" />
+      <translation>Prográmelo con movimientos L y PLANE, o corra el programa en un control que lo tenga.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Program start undefined</source>
-      <translation type="unfinished" />
+      <translation>Inicio de programa sin definir</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Q parameter not defined</source>
-      <translation type="unfinished" />
+      <translation>Parámetro Q sin definir</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Syntax error</source>
-      <translation type="unfinished" />
+      <translation>Error de sintaxis</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Tool axis is missing</source>
-      <translation type="unfinished" />
+      <translation>Falta el eje de herramienta</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Wrong axis programmed</source>
-      <translation type="unfinished" />
+      <translation>Eje mal programado</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
       <source>Wrong rpm</source>
-      <translation type="unfinished" />
+      <translation>RPM incorrectas</translation>
     </message>
     <message>
       <location filename="core/language/klartext/feeds.py" />
       <source>%1 stands twice in the block.</source>
-      <translation type="unfinished" />
+      <translation>%1 está dos veces en el bloque.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/feeds.py" />
       <source>F has no value</source>
-      <translation type="unfinished" />
+      <translation>F no tiene valor</translation>
     </message>
     <message>
       <location filename="core/language/klartext/feeds.py" />
       <source>Write a number, Q, MAX or AUTO behind F.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un número, Q, MAX o AUTO tras F.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>%1 is missing</source>
-      <translation type="unfinished" />
+      <translation>Falta %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>%1 needs a name and MM or INCH.</source>
-      <translation type="unfinished" />
+      <translation>%1 necesita un nombre y MM o INCH.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>A corner needs X, Y and Z.</source>
-      <translation type="unfinished" />
+      <translation>Una esquina necesita X, Y y Z.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>BLK FORM %1</source>
-      <translation type="unfinished" />
+      <translation>BLK FORM %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>BLK FORM 0.1 needs the tool axis</source>
-      <translation type="unfinished" />
+      <translation>BLK FORM 0.1 necesita el eje de herramienta</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>END PGM</source>
-      <translation type="unfinished" />
+      <translation>END PGM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>It takes a tool, its axis, S, F, DL and DR.</source>
-      <translation type="unfinished" />
+      <translation>Lleva una herramienta, su eje, S, F, DL y DR.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>No word of BLK FORM</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de BLK FORM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>No word of TOOL CALL</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de TOOL CALL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>TOOL CALL</source>
-      <translation type="unfinished" />
+      <translation>TOOL CALL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>Write Z behind 0.1.</source>
-      <translation type="unfinished" />
+      <translation>Escriba Z tras 0.1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/headers.py" />
       <source>Write both behind it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba los dos después.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>'%1' begins no block.</source>
-      <translation type="unfinished" />
+      <translation>'%1' no empieza ningún bloque.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>A block begins with L, PLANE, TOOL CALL, LBL or the like.</source>
-      <translation type="unfinished" />
+      <translation>Un bloque empieza con L, PLANE, TOOL CALL, LBL o similar.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>A block over several lines (~)</source>
-      <translation type="unfinished" />
+      <translation>Un bloque de varias líneas (~)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>BLK FORM</source>
-      <translation type="unfinished" />
+      <translation>BLK FORM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>Break it into lines.</source>
-      <translation type="unfinished" />
+      <translation>Divídala en líneas.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CALL LBL</source>
-      <translation type="unfinished" />
+      <translation>CALL LBL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CALL PGM</source>
-      <translation type="unfinished" />
+      <translation>CALL PGM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CALL SELECTED</source>
-      <translation type="unfinished" />
+      <translation>CALL SELECTED</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CONTOUR DEF</source>
-      <translation type="unfinished" />
+      <translation>CONTOUR DEF</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CYCL CALL</source>
-      <translation type="unfinished" />
+      <translation>CYCL CALL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>CYCL DEF</source>
-      <translation type="unfinished" />
+      <translation>CYCL DEF</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>PATTERN DEF</source>
-      <translation type="unfinished" />
+      <translation>PATTERN DEF</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>SEL CONTOUR</source>
-      <translation type="unfinished" />
+      <translation>SEL CONTOUR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>SEL PATTERN</source>
-      <translation type="unfinished" />
+      <translation>SEL PATTERN</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>SEL PGM</source>
-      <translation type="unfinished" />
+      <translation>SEL PGM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>SEL TABLE</source>
-      <translation type="unfinished" />
+      <translation>SEL TABLE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>STOP stands alone</source>
-      <translation type="unfinished" />
+      <translation>STOP va solo</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TCH PROBE</source>
-      <translation type="unfinished" />
+      <translation>TCH PROBE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TOOL DEF</source>
-      <translation type="unfinished" />
+      <translation>TOOL DEF</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TRANS DATUM</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TRANS MIRROR</source>
-      <translation type="unfinished" />
+      <translation>TRANS MIRROR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TRANS ROTATION</source>
-      <translation type="unfinished" />
+      <translation>TRANS ROTATION</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>TRANS SCALE</source>
-      <translation type="unfinished" />
+      <translation>TRANS SCALE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line.py" />
       <source>The line has %1 characters.</source>
-      <translation type="unfinished" />
+      <translation>La línea tiene %1 caracteres.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>An M function was expected</source>
-      <translation type="unfinished" />
+      <translation>Se esperaba una función M</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>It takes axes, R0, a feed and M functions.</source>
-      <translation type="unfinished" />
+      <translation>Lleva ejes, R0, un avance y funciones M.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>M128 takes a feed in numbers.</source>
-      <translation type="unfinished" />
+      <translation>M128 lleva un avance en números.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>M140 needs MB</source>
-      <translation type="unfinished" />
+      <translation>M140 necesita MB</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>No word of an L block</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de un bloque L</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>Radius compensation R%1</source>
-      <translation type="unfinished" />
+      <translation>Compensación de radio R%1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>The axis has no value</source>
-      <translation type="unfinished" />
+      <translation>El eje no tiene valor</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>There are more than %1 M functions in the block.</source>
-      <translation type="unfinished" />
+      <translation>Hay más de %1 funciones M en el bloque.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>Write F and a number.</source>
-      <translation type="unfinished" />
+      <translation>Escriba F y un número.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>Write MB and a length, or MB MAX.</source>
-      <translation type="unfinished" />
+      <translation>Escriba MB y una longitud, o MB MAX.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/moves.py" />
       <source>Write a number such as +10.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un número como +10.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>'=' was expected behind Q%1</source>
-      <translation type="unfinished" />
+      <translation>Se esperaba '=' tras Q%1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>CYCL DEF %1</source>
-      <translation type="unfinished" />
+      <translation>CYCL DEF %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
-      <translation type="unfinished" />
+      <translation>CYCL DEF 7.%1 lleva uno de X, Y y Z</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>Call another label.</source>
-      <translation type="unfinished" />
+      <translation>Llame otra etiqueta.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>LBL 0 ends a subprogram; it cannot be called.</source>
-      <translation type="unfinished" />
+      <translation>LBL 0 termina un subprograma; no se puede llamar.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>No word of CALL LBL</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de CALL LBL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>No word of LBL</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de LBL</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>No word of TRANS DATUM</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de TRANS DATUM</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>No word of cycle 7</source>
-      <translation type="unfinished" />
+      <translation>No es palabra del ciclo 7</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>TRANS DATUM AXIS needs X, Y or Z</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>TRANS DATUM TABLE</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM TABLE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>TRANS DATUM needs AXIS or RESET</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM necesita AXIS o RESET</translation>
     </message>
     <message>
       <location filename="core/language/klartext/others.py" />
       <source>The formula '%1'</source>
-      <translation type="unfinished" />
+      <translation>La fórmula '%1'</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>%1 %2 missing</source>
-      <translation type="unfinished" />
+      <translation>%1: falta %2</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>%1 ROT</source>
-      <translation type="unfinished" />
+      <translation>%1 ROT</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>%1 stands behind %2.</source>
-      <translation type="unfinished" />
+      <translation>%1 está tras %2.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>All of them are needed, zeros too.</source>
-      <translation type="unfinished" />
+      <translation>Se necesitan todos, también los ceros.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>COORD ROT or TABLE ROT</source>
-      <translation type="unfinished" />
+      <translation>COORD ROT o TABLE ROT</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>DIST belongs to MOVE, not to %1.</source>
-      <translation type="unfinished" />
+      <translation>DIST pertenece a MOVE, no a %1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>MOVE, TURN or STAY is missing</source>
-      <translation type="unfinished" />
+      <translation>Falta MOVE, TURN o STAY</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>No word of a PLANE block</source>
-      <translation type="unfinished" />
+      <translation>No es palabra de un bloque PLANE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>PLANE %1</source>
-      <translation type="unfinished" />
+      <translation>PLANE %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>PLANE AXIAL needs an axis angle</source>
-      <translation type="unfinished" />
+      <translation>PLANE AXIAL necesita un ángulo de eje</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>PLANE RELATIV takes one of SPA, SPB and SPC.</source>
-      <translation type="unfinished" />
+      <translation>PLANE RELATIV lleva uno de SPA, SPB y SPC.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET</source>
-      <translation type="unfinished" />
+      <translation>PLANE necesita AXIAL, POINTS, SPATIAL, RELATIV o RESET</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>STAY moves nothing: no %1 here.</source>
-      <translation type="unfinished" />
+      <translation>STAY no mueve nada: aquí no va %1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>SYM or SEQ</source>
-      <translation type="unfinished" />
+      <translation>SYM o SEQ</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>Say how the rotary axes are positioned.</source>
-      <translation type="unfinished" />
+      <translation>Diga cómo se posicionan los ejes giratorios.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>Take one of them out.</source>
-      <translation type="unfinished" />
+      <translation>Quite uno de ellos.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>Write A, B or C with its angle.</source>
-      <translation type="unfinished" />
+      <translation>Escriba A, B o C con su ángulo.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/planes.py" />
       <source>Write one angle.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un ángulo.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>%1 PGM %2 %3</source>
-      <translation type="unfinished" />
+      <translation>%1 PGM %2 %3</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>BLK FORM 0.%1</source>
-      <translation type="unfinished" />
+      <translation>BLK FORM 0.%1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>CYCL DEF 7.%1</source>
-      <translation type="unfinished" />
+      <translation>CYCL DEF 7.%1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>LBL %1</source>
-      <translation type="unfinished" />
+      <translation>LBL %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>MB MAX</source>
-      <translation type="unfinished" />
+      <translation>MB MAX</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>REP %1</source>
-      <translation type="unfinished" />
+      <translation>REP %1</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>TRANS DATUM AXIS</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM AXIS</translation>
     </message>
     <message>
       <location filename="core/language/klartext/written.py" />
       <source>TRANS DATUM RESET</source>
-      <translation type="unfinished" />
+      <translation>TRANS DATUM RESET</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 has a decimal point and no digit.</source>
-      <translation type="unfinished" />
+      <translation>%1 tiene punto decimal y ninguna cifra.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 has a sign and no number.</source>
-      <translation type="unfinished" />
+      <translation>%1 tiene signo y ningún número.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 has over %2 digits.</source>
-      <translation type="unfinished" />
+      <translation>%1 tiene más de %2 cifras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 is no word of the language.</source>
-      <translation type="unfinished" />
+      <translation>%1 no es palabra del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 is out of range: %2 goes from %3 to %4.</source>
-      <translation type="unfinished" />
+      <translation>%1 está fuera de rango: %2 va de %3 a %4.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 is out of range: a loop runs %2 to %3 times.</source>
-      <translation type="unfinished" />
+      <translation>%1 está fuera de rango: un lazo corre de %2 a %3 veces.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 must be a whole number without a sign.</source>
-      <translation type="unfinished" />
+      <translation>%1 debe ser un número entero sin signo.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1 takes no number.</source>
-      <translation type="unfinished" />
+      <translation>%1 no lleva número.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1: %2 takes exactly two digits.</source>
-      <translation type="unfinished" />
+      <translation>%1: %2 lleva exactamente dos cifras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
-      <translation type="unfinished" />
+      <translation>%1: las compensaciones van de 1 a 32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>%1: tools go from 1 to 32.</source>
-      <translation type="unfinished" />
+      <translation>%1: las herramientas van de 1 a 32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>'%1' is no part of the language.</source>
-      <translation type="unfinished" />
+      <translation>'%1' no es parte del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>')' closes no comment.</source>
-      <translation type="unfinished" />
+      <translation>')' no cierra ningún comentario.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>'/' may only stand first on a line.</source>
-      <translation type="unfinished" />
+      <translation>'/' sólo puede ir primero en una línea.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>A comma is not allowed anywhere.</source>
-      <translation type="unfinished" />
+      <translation>La coma no se permite en ninguna parte.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>A feed is F.</source>
-      <translation type="unfinished" />
+      <translation>Un avance es F.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>A number stands without a letter.</source>
-      <translation type="unfinished" />
+      <translation>Hay un número sin letra.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>A sign stands inside a number.</source>
-      <translation type="unfinished" />
+      <translation>Hay un signo dentro de un número.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Add '(' or take it out.</source>
-      <translation type="unfinished" />
+      <translation>Agregue '(' o quítelo.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Comments go in parentheses.</source>
-      <translation type="unfinished" />
+      <translation>Los comentarios van entre paréntesis.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Correct the count.</source>
-      <translation type="unfinished" />
+      <translation>Corrija la cuenta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>D0 cancels.</source>
-      <translation type="unfinished" />
+      <translation>D0 cancela.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Lines have no numbers here: N is not allowed.</source>
-      <translation type="unfinished" />
+      <translation>Aquí las líneas no llevan número: N no se permite.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Look the word up in the language page.</source>
-      <translation type="unfinished" />
+      <translation>Busque la palabra en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Move it to the front.</source>
-      <translation type="unfinished" />
+      <translation>Muévalo al principio.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Numbers have no exponent here.</source>
-      <translation type="unfinished" />
+      <translation>Aquí los números no llevan exponente.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Round it.</source>
-      <translation type="unfinished" />
+      <translation>Redondéelo.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Split it into two words.</source>
-      <translation type="unfinished" />
+      <translation>Divídalo en dos palabras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>T0 cancels the tool.</source>
-      <translation type="unfinished" />
+      <translation>T0 cancela la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Take the N word out.</source>
-      <translation type="unfinished" />
+      <translation>Quite la palabra N.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>The comment has no closing parenthesis.</source>
-      <translation type="unfinished" />
+      <translation>El comentario no tiene paréntesis de cierre.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>The letter O stands where a zero belongs.</source>
-      <translation type="unfinished" />
+      <translation>Hay una letra O donde va un cero.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>The number has two decimal points.</source>
-      <translation type="unfinished" />
+      <translation>El número tiene dos puntos decimales.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write %1%2.</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1%2.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write a decimal point.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un punto decimal.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write it after %1.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo después de %1.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write its letter.</source>
-      <translation type="unfinished" />
+      <translation>Escriba su letra.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write the digits.</source>
-      <translation type="unfinished" />
+      <translation>Escriba las cifras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write the number after it.</source>
-      <translation type="unfinished" />
+      <translation>Escriba después el número.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write the number out; a feed is F.</source>
-      <translation type="unfinished" />
+      <translation>Escriba el número completo; un avance es F.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
       <source>Write two digits.</source>
-      <translation type="unfinished" />
+      <translation>Escriba dos cifras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1 belongs to an arc, and neither G02 nor G03 is on the line.</source>
-      <translation type="unfinished" />
+      <translation>%1 pertenece a un arco, y ni G02 ni G03 está en la línea.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1 is missing: I and J are the coordinates of the arc's centre.</source>
-      <translation type="unfinished" />
+      <translation>Falta %1: I y J son las coordenadas del centro del arco.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1 is no word of plane switching.</source>
-      <translation type="unfinished" />
+      <translation>%1 no es palabra del cambio de plano.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1 is out of range.</source>
-      <translation type="unfinished" />
+      <translation>%1 está fuera de rango.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1 stands with other words.</source>
-      <translation type="unfinished" />
+      <translation>%1 va con otras palabras.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>%1: of the G codes only G02 and G03 may stand in a plane.</source>
-      <translation type="unfinished" />
+      <translation>%1: de los códigos G sólo G02 y G03 pueden estar en un plano.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>'%1' is no word of plane switching.</source>
-      <translation type="unfinished" />
+      <translation>'%1' no es palabra del cambio de plano.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>An arc of a plane moves X and Y alone.</source>
-      <translation type="unfinished" />
+      <translation>Un arco de un plano mueve sólo X y Y.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>Between the entry and (END) stand only (X Y Z F), (G02 or G03 X Y I J), (H) and (D).</source>
-      <translation type="unfinished" />
+      <translation>Entre la entrada y (END) sólo van (X Y Z F), (G02 o G03 X Y I J), (H) y (D).</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>G02 and G03 are one shot.</source>
-      <translation type="unfinished" />
+      <translation>G02 y G03 valen una sola vez.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>Look for a lost point.</source>
-      <translation type="unfinished" />
+      <translation>Busque un punto perdido.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>Move Z on another line.</source>
-      <translation type="unfinished" />
+      <translation>Mueva Z en otra línea.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>The line holds %1 twice.</source>
-      <translation type="unfinished" />
+      <translation>La línea contiene %1 dos veces.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>The statement is empty.</source>
-      <translation type="unfinished" />
+      <translation>La instrucción está vacía.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>This line is no statement in parentheses.</source>
-      <translation type="unfinished" />
+      <translation>Esta línea no es una instrucción entre paréntesis.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
       <source>Write (%1n) alone.</source>
-      <translation type="unfinished" />
+      <translation>Escriba sólo (%1n).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/faults.py" />
       <source>%1 axis %2</source>
-      <translation type="unfinished" />
+      <translation>%1 eje %2</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/faults.py" />
       <source>Alarm %1: %2: %3</source>
-      <translation type="unfinished" />
+      <translation>Alarma %1: %2: %3</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/faults.py" />
       <source>channel %1 block %2</source>
-      <translation type="unfinished" />
+      <translation>canal %1 bloque %2</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 are the most; split it.</source>
-      <translation type="unfinished" />
+      <translation>lo más son %1; divídalo.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 has no value in its brackets</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/lexer.py" />
-      <source>%1 is no code</source>
-      <translation type="unfinished" />
+      <translation>%1 no tiene valor entre sus paréntesis</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 is no word</source>
-      <translation type="unfinished" />
+      <translation>%1 no es una palabra</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 is nothing that %2= takes</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/lexer.py" />
-      <source>%1 is out of range</source>
-      <translation type="unfinished" />
+      <translation>%1 no es nada que %2= acepte</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 lacks its =</source>
-      <translation type="unfinished" />
+      <translation>a %1 le falta su =</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 lacks its brackets</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/lexer.py" />
-      <source>%1 lies between %2 and %3.</source>
-      <translation type="unfinished" />
+      <translation>a %1 le faltan sus paréntesis</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1 stands behind %2</source>
-      <translation type="unfinished" />
+      <translation>%1 está tras %2</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1%2 is no number</source>
-      <translation type="unfinished" />
+      <translation>%1%2 no es un número</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>%1= has no value</source>
-      <translation type="unfinished" />
+      <translation>%1= no tiene valor</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>A call stands alone.</source>
-      <translation type="unfinished" />
+      <translation>Una llamada va sola.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>A subprogram's name stands alone in its block.</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/lexer.py" />
-      <source>Codes are whole numbers.</source>
-      <translation type="unfinished" />
+      <translation>El nombre de un subprograma va solo en su bloque.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>It takes %1.</source>
-      <translation type="unfinished" />
+      <translation>Acepta %1.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>P%1 is no number of passes</source>
-      <translation type="unfinished" />
+      <translation>P%1 no es un número de repeticiones</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>R parameters are R0 to R%1</source>
-      <translation type="unfinished" />
+      <translation>Los parámetros R son de R0 a R%1</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write %1 with a number, or %2=…</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1 con un número, o %2=…</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write %1=%2(…).</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1=%2(…).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write %1=…</source>
-      <translation type="unfinished" />
+      <translation>Escriba %1=…</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write P1 to P%1.</source>
-      <translation type="unfinished" />
+      <translation>Escriba de P1 a P%1.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write a number or an R parameter.</source>
-      <translation type="unfinished" />
+      <translation>Escriba un número o un parámetro R.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>Write it at the start.</source>
-      <translation type="unfinished" />
+      <translation>Escríbalo al principio.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>a number or an R parameter</source>
-      <translation type="unfinished" />
+      <translation>un número o un parámetro R</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>in line %1</source>
-      <translation type="unfinished" />
+      <translation>en la línea %1</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>more stands behind %1</source>
-      <translation type="unfinished" />
+      <translation>hay más tras %1</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>syntax error: %1.</source>
-      <translation type="unfinished" />
+      <translation>error de sintaxis: %1.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>the block has %1 characters</source>
-      <translation type="unfinished" />
+      <translation>el bloque tiene %1 caracteres</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>the block number does not stand first</source>
-      <translation type="unfinished" />
+      <translation>el número de bloque no va primero</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>the bracket of %1 is not closed</source>
-      <translation type="unfinished" />
+      <translation>el paréntesis de %1 no está cerrado</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>this control does not execute it</source>
-      <translation type="unfinished" />
+      <translation>este control no lo ejecuta</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
       <source>this control has no such word</source>
-      <translation type="unfinished" />
+      <translation>este control no tiene esa palabra</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/spans.py" />
       <source>in line</source>
-      <translation type="unfinished" />
+      <translation>en la línea</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
-      <source>
-    AMIRROR AROT AROTS ASCALE ASPOS BRISK CALL CASE CFC CFIN CFTCP CIP CT CYCLE DEF DEFAULT DEFINE DIAM90
-    DIAMCYCOF ELSE ENDFOR ENDIF ENDLOOP ENDPROC ENDWHILE EXTERN FFWOF FFWON FOR FRC FRCM G5 GOTO GOTOB GOTOC
-    GOTOF GOTOS IF INVCCW INVCW LOOP MCALL MIRROR MSG OEMIPO OFFN POLF POS POSA PROC REPEAT REPEATB REPOS
-    RET RNDM ROT ROTS SAVE SBLOF SBLON SCALE SETAL SETMS SOFT SPCOF SPCON SPOS STOPRE SUPA TRACYL TRAFOOF
-    TRANSMIT TURN UNTIL VELOLIM WAITM WAITP WAITS WHILE WORKPIECE
-</source>
-      <translation type="unfinished" />
+      <location filename="core/language/sinumerik/values.py" />
+      <source>%1 is no code</source>
+      <translation>%1 no es un código</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/values.py" />
+      <source>%1 is out of range</source>
+      <translation>%1 está fuera de rango</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/values.py" />
+      <source>%1 lies between %2 and %3.</source>
+      <translation>%1 está entre %2 y %3.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/values.py" />
+      <source>Codes are whole numbers of up to four digits.</source>
+      <translation>Los códigos son números enteros de hasta cuatro cifras.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>H functions are not part of this control's SINUMERIK subset</source>
-      <translation type="unfinished" />
+      <translation>las funciones H no son parte del SINUMERIK de este control</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>L is a subprogram only as L with a whole number</source>
-      <translation type="unfinished" />
+      <translation>L es subprograma sólo como L con un número entero</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>P stands only behind the name of a subprogram</source>
-      <translation type="unfinished" />
+      <translation>P va sólo tras el nombre de un subprograma</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>an R parameter stands behind = or is set with =, such as R1=10</source>
-      <translation type="unfinished" />
+      <translation>un parámetro R va tras = o se pone con =, como R1=10</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>an arc in G18 has I and K</source>
-      <translation type="unfinished" />
+      <translation>un arco en G18 tiene I y K</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>incremental words are written with IC( ), such as X=IC(1)</source>
-      <translation type="unfinished" />
+      <translation>las palabras incrementales se escriben con IC( ), como X=IC(1)</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>incremental words are written with IC( ), such as Z=IC(1)</source>
-      <translation type="unfinished" />
+      <translation>las palabras incrementales se escriben con IC( ), como Z=IC(1)</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>this lathe has no axis A</source>
-      <translation type="unfinished" />
+      <translation>este torno no tiene eje A</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>this lathe has no axis B</source>
-      <translation type="unfinished" />
+      <translation>este torno no tiene eje B</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>this lathe has no axis Y</source>
-      <translation type="unfinished" />
+      <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>tool offsets are not part of this control's SINUMERIK subset; use G54 to G59</source>
-      <translation type="unfinished" />
+      <translation>las compensaciones de herramienta no son parte del SINUMERIK de este control; use G54 a G59</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/vocabulary.py" />
       <source>tools are not part of this control's SINUMERIK subset; put the offset into G54 to G59</source>
-      <translation type="unfinished" />
+      <translation>las herramientas no son parte del SINUMERIK de este control; ponga el desplazamiento en G54 a G59</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>%1 cannot be read: %2.</source>
-      <translation type="unfinished" />
+      <translation>no se puede leer %1: %2.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>%1 holds zero bytes: it is no program text.</source>
-      <translation type="unfinished" />
+      <translation>%1 contiene bytes cero: no es texto de programa.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>%1 is empty.</source>
-      <translation type="unfinished" />
+      <translation>%1 está vacío.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>%1 is over 64 MB.</source>
-      <translation type="unfinished" />
+      <translation>%1 pasa de 64 MB.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>%1 is stored as UTF-16.</source>
-      <translation type="unfinished" />
+      <translation>%1 está guardado como UTF-16.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Choose a file that holds a program.</source>
-      <translation type="unfinished" />
+      <translation>Elija un archivo que contenga un programa.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Choose a program file with line ends.</source>
-      <translation type="unfinished" />
+      <translation>Elija un archivo de programa con finales de línea.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Choose a text file.</source>
-      <translation type="unfinished" />
+      <translation>Elija un archivo de texto.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Line %1 of %2 has %3 characters; %4 are the most.</source>
-      <translation type="unfinished" />
+      <translation>La línea %1 de %2 tiene %3 caracteres; lo más son %4.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Look at the name and the disk.</source>
-      <translation type="unfinished" />
+      <translation>Vea el nombre y el disco.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Save it as UTF-8 or plain text.</source>
-      <translation type="unfinished" />
+      <translation>Guárdelo como UTF-8 o texto simple.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>Split the program.</source>
-      <translation type="unfinished" />
+      <translation>Divida el programa.</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />
       <source>reading failed</source>
-      <translation type="unfinished" />
+      <translation>falló la lectura</translation>
     </message>
     <message>
       <location filename="core/motion/limits.py" />
@@ -8755,6 +8854,11 @@
       <translation>%1 no está vacía; dé una carpeta nueva para la exportación</translation>
     </message>
     <message>
+      <location filename="core/store/export.py" />
+      <source>[zero.%1]  # mm and degrees</source>
+      <translation>[zero.%1]  # mm and degrees</translation>
+    </message>
+    <message>
       <location filename="core/store/fields.py" />
       <source>%1…%2 in</source>
       <translation>%1…%2 pulg</translation>
@@ -8878,6 +8982,11 @@
       <location filename="core/store/store.py" />
       <source>%1 is open for reading only; nothing can be stored</source>
       <translation>%1 está abierto sólo para lectura; no se puede guardar nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/toolset.py" />
+      <source>T%1 was never set; touch both X and Z</source>
+      <translation>T%1 nunca se puso; toque X y Z</translation>
     </message>
     <message>
       <location filename="core/store/writer.py" />

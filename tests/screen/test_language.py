@@ -14,7 +14,7 @@ from app.desk.words import speak
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
 from core.executor.snapshot import Alarm
-from resources.translations.collect import HERE, HOLE
+from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
 
@@ -116,3 +116,14 @@ def test_key_labels_fit(spanish: Hands) -> None:
             assert len(told) <= KEY_LABEL, f"{label}: {told}"
         spanish.key(Key.Key_F1)
     assert re.fullmatch(r"MENÚ", catalogue("es").translate("MENU"))
+
+
+def test_every_text_has_its_spanish() -> None:
+    """Run ``python -m resources.translations.collect``, then write what it has put in as unfinished."""
+    known = written("es")
+    assert sorted(text for text in texts() if not known.get(text)) == []
+
+
+def test_the_templates_are_those_of_the_texts() -> None:
+    listed = set((HERE / "templates.txt").read_text(encoding="utf-8").splitlines())
+    assert listed == {text for text in texts() if HOLE.search(text)}

@@ -1,0 +1,60 @@
+"""The journal while a backup takes the store's place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.compose.journal import Journal
+from core.executor.snapshot import Event
+from core.store.errors import StoreError
+
+
+@pytest.fixture
+def journal(tmp_path: Path) -> Iterator[Journal]:
+    journal = Journal(tmp_path / "home")
+    yield journal
+    journal.close()
+
+
+def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.db"
+    bad.write_bytes(b"no database" * 50)
+    journal.hear(Event(0.0, "start", "before"))
+    with pytest.raises(StoreError, match="is not a database"):
+        journal.restore(bad)
+    journal.hear(Event(0.0, "start", "after"))
+    journal.keep_text("a.nc", b"M30", "so that all is written")
+    assert [event.text for event in journal.events("", (), 9)] == ["after", "before"]
+    assert journal.trouble == ""
+
+
+def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal, tmp_path: Path) -> None:
+    journal.hear(Event(0.0, "load", "/programs/pin.nc"))
+    journal.keep_text("pin.nc", b"M30", "test")
+    target = tmp_path / "copy.db"
+    journal.backup(target)
+    book = journal.book()
+    before = book.store
+    journal.restore(target)
+    journal.hear(Event(0.0, "part", "part 1"))
+    journal.keep_text("pin.nc", b"M02", "so that all is written")
+    assert journal.parts("pin.nc") == 1
+    assert book.poll() == ""
+    assert book.store is not before
+    assert book.changes == 1
+
+
+def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> None:
+    (tmp_path / "home").write_text("a file where the folder should be")
+    journal = Journal(tmp_path / "home")
+    assert journal.trouble
+    for call in (lambda: journal.backup(tmp_path / "x.db"), lambda: journal.restore(tmp_path / "x.db")):
+        with pytest.raises(StoreError):
+            call()
+    journal.keep_setting("a", 1)
+    assert journal.setting("a") is None
+    assert journal.parts("pin.nc") == 0
+    journal.close()
