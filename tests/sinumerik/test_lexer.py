@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from core.language.ink import Ink
 from core.language.sinumerik import Form, lex_line
-from core.language.sinumerik.spans import Ink, spans
+from core.language.sinumerik.spans import spans
 
 
 def words(text: str) -> list[tuple[str, float | None]]:

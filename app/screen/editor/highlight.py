@@ -7,9 +7,11 @@ from PySide6.QtGui import QFont, QSyntaxHighlighter, QTextCharFormat, QTextDocum
 from app.screen.look import Look
 from core.language.diagnostics import ProgramError
 from core.language.dialect import Dialect
+from core.language.ink import Ink
+from core.language.klartext.spans import spans as klartext_spans
 from core.language.omniturn import Line, Word, lex_line
 from core.language.omniturn.plane import ends_program, lex_plane, plane_entry
-from core.language.sinumerik.spans import Ink, spans
+from core.language.sinumerik.spans import spans as sinumerik_spans
 
 PLAIN, IN_PLANE = 0, 1  # states that lines hand on
 
@@ -82,10 +84,10 @@ class Highlighter(QSyntaxHighlighter):
             self._plain(text)
 
     def _spans(self, text: str) -> None:
-        """A line of SINUMERIK."""
-        if self._dialect is Dialect.SINUMERIK:
-            for start, length, ink in spans(text):
-                self.setFormat(start, length, self._format(*_OF_INK[ink]))
+        """A line of SINUMERIK or Klartext."""
+        spans = klartext_spans if self._dialect is Dialect.KLARTEXT else sinumerik_spans
+        for start, length, ink in spans(text):
+            self.setFormat(start, length, self._format(*_OF_INK[ink]))
 
     def _plane(self, text: str) -> None:
         try:

@@ -2,34 +2,10 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import NamedTuple
-
+from core.language.ink import Ink, Span
 from core.language.sinumerik.lexer import lex_line
 from core.language.sinumerik.sections import HEADER
 from core.language.sinumerik.vocabulary import CORNERS, KEYS
-
-
-class Ink(StrEnum):
-    """What a part of a line is."""
-
-    NUMBER = "number"  # of the block
-    CODE = "code"
-    POSITION = "position"
-    RUN = "run"  # feed and speed
-    KEY = "key"
-    CALL = "call"
-    COMMENT = "comment"
-    FAULT = "fault"
-
-
-class Span(NamedTuple):
-    """Some signs of a line: the first one's index from 0, and how many."""
-
-    start: int
-    length: int
-    ink: Ink
-
 
 _OF_NAME = {"G": Ink.CODE, "M": Ink.CODE, "F": Ink.RUN, "S": Ink.RUN, "LIMS": Ink.RUN}
 

@@ -1,0 +1,167 @@
+"""The screen on the mill with an A-C table: a tilted program is chosen, run and edited by keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.cli.offset_file import read_offsets
+from app.compose.screen import desk_and_executor, samples, step_clock
+from app.desk import pages
+from app.desk.offsets.book import OffsetBook
+from app.screen.editor.page import EditorPage
+from app.screen.look import Look
+from app.screen.page import AutomaticPage
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import Snapshot, State
+from core.store.store import Store
+from tests.screen.hands import Key
+
+TICK = 0.01
+LONG = 200.0  # s of machine time
+
+
+class Mill:
+    """The desk on the simulated mill, on a clock that the test moves, and the window in front of it."""
+
+    def __init__(self, folder: Path) -> None:
+        self._clock = step_clock()
+        offsets = samples() / "offsets.toml"
+        self.desk, self._executor = desk_and_executor(
+            "ac-table-mill", lambda: read_offsets(offsets), self._clock
+        )
+        self._store = Store.open(folder)
+        for number, tool in read_offsets(offsets)[0].items():
+            self._store.set_tool(number, "measured", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)
+        self.desk.book = OffsetBook(self._store)
+        self.desk.hands.clock = self._clock.now
+        self.window = MainWindow(Look(DARK))
+        self.window.resize(1024, 600)
+        self.window.open_desk(self.desk)
+        self.window.show()
+
+    def close(self) -> None:
+        self.window.put_away()
+        self.desk.close()
+        self._store.close()
+
+    def key(self, key: Key) -> None:
+        QTest.keyClick(QApplication.focusWidget() or self.window, key)
+
+    def type(self, text: str) -> None:
+        QTest.keyClicks(QApplication.focusWidget() or self.window, text)
+
+    def goes_on(self, until: Callable[[Snapshot], bool]) -> Snapshot:
+        end = self._clock.now() + LONG
+        while not until(self.desk.snapshot()):
+            assert self._clock.now() < end, self.desk.snapshot()
+            self._executor.tick()
+            self._clock.sleep_until(self._clock.now() + TICK)
+        self.window.refresh()
+        return self.desk.snapshot()
+
+    def choose(self, name: str) -> None:
+        self.key(Key.Key_F2)
+        self.type(name)
+        self.key(Key.Key_Return)
+        assert not self.desk.session.settled(60.0).errors
+        self.goes_on(lambda s: s.state is State.DISABLED)
+        self.key(Key.Key_D)
+        self.goes_on(lambda s: s.state is State.IDLE)
+
+    def start(self) -> None:
+        QTest.keyPress(self.window, Key.Key_F11)
+        QTest.keyPress(self.window, Key.Key_F12)
+        self.goes_on(lambda s: s.state is not State.IDLE)
+        QTest.keyRelease(self.window, Key.Key_F11)
+        QTest.keyRelease(self.window, Key.Key_F12)
+
+    @property
+    def page(self) -> AutomaticPage:
+        assert self.window.frame is not None
+        return self.window.frame.automatic
+
+
+@pytest.fixture
+def mill(qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Mill]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    made = Mill(tmp_path / "store")
+    yield made
+    made.close()
+
+
+def line_of(text: str) -> int:
+    """The first line of the sample that holds this."""
+    lines = (samples() / "roof.h").read_text().splitlines()
+    return next(number for number, line in enumerate(lines, start=1) if text in line)
+
+
+def test_a_tilted_program_from_the_list_to_its_end(mill: Mill) -> None:
+    mill.choose("roof")
+    page = mill.page
+    assert page.space.isVisible()
+    mill.start()
+    cut = line_of("L X+90 F900")
+    mill.goes_on(lambda s: s.line == cut and s.modal.tool == 20)
+    first = line_of("PLANE AXIAL")
+    assert page.space.words.startswith(f"TILTED PLANE OF LINE {first}:  A+30.000  C+0.000")
+    picture = page.space.grab().toImage()
+    mill.goes_on(lambda s: s.line == cut and s.actual[4] > 170.0)
+    assert page.space.grab().toImage() != picture
+    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    assert not end.alarms
+    assert end.actual[3] == pytest.approx(0.0, abs=0.01)
+
+
+def test_hold_in_the_middle_of_a_swivel_and_go_on(mill: Mill) -> None:
+    mill.choose("roof")
+    mill.start()
+    swivel = line_of("PLANE AXIAL A+30 C+180")
+    mill.goes_on(lambda s: s.line == swivel and s.actual[4] > 20.0)
+    mill.key(Key.Key_H)
+    held = mill.goes_on(lambda s: s.state is State.HOLD).actual
+    assert 20.0 < held[4] < 175.0
+    later = mill.desk.snapshot().t + 1.0
+    mill.goes_on(lambda s: s.t > later)
+    assert mill.desk.snapshot().actual == pytest.approx(held, abs=0.01)
+    QTest.keyPress(mill.window, Key.Key_F11)
+    QTest.keyPress(mill.window, Key.Key_F12)
+    mill.goes_on(lambda s: s.state is State.RUN)
+    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    assert not end.alarms
+
+
+def test_keys_of_looking_around_are_the_spaces(mill: Mill) -> None:
+    mill.choose("roof")
+    space = mill.page.space
+    assert space.camera is not None
+    mill.key(Key.Key_V)
+    assert space.camera.shown.name == "FRONT"
+    near = space.camera.nearness
+    mill.key(Key.Key_Z)
+    assert space.camera.nearness > near
+    mill.key(Key.Key_F5)
+    assert space.camera.nearness == near
+
+
+def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill) -> None:
+    mill.choose("roof")
+    mill.key(Key.Key_F3)
+    assert mill.window.frame is not None
+    page = mill.window.frame.page
+    assert isinstance(page, EditorPage)
+    assert page.NAME == pages.EDITOR
+    mill.window.refresh()
+    page.editor.checker.settled(30.0)
+    plane = line_of("PLANE POINTS")
+    for _ in range(plane - page.field.line):
+        mill.key(Key.Key_Down)
+    mill.window.refresh()
+    assert page.field.line == plane
+    assert page.space.isVisible()
+    assert page.space.words.startswith(f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000")
