@@ -16,6 +16,7 @@ from core.proving.tally import Tally
 from core.proving.timeline import Moved, Rested, Timeline
 from core.proving.travel import travel_findings
 
+_AT_ONCE = 1000  # blocks that are looked at together
 MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the travel; nobody reads more
 
 
@@ -46,6 +47,7 @@ class _Proof:
     def __init__(self, machine: Machine) -> None:
         self._machine = machine
         self._tally = Tally()
+        self._unseen: list[Block] = []
         self._cutting = self._rapid = self._dwell = self._wait = 0.0
         self._beyond: dict[tuple[int, str], Diagnostic] = {}
         self.last: Block | None = None
@@ -60,13 +62,20 @@ class _Proof:
 
     def _moved(self, stretch: Moved) -> None:
         blocks, spent = stretch.blocks, (stretch.chunk.t1 - stretch.chunk.t0).tolist()
-        self._tally.add(blocks)
+        self._unseen += blocks
         rapid = sum(t for block, t in zip(blocks, spent, strict=True) if block.rapid)
         self._rapid += rapid
         self._cutting += sum(spent) - rapid
         self.elementary += len(blocks)
         if blocks:
             self.last = self._last_move = blocks[-1]
+        if len(self._unseen) >= _AT_ONCE:
+            self._see()
+
+    def _see(self) -> None:
+        """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
+        blocks, self._unseen = self._unseen, []
+        self._tally.add(blocks)
         if len(self._beyond) < MAX_FINDINGS:
             for finding in (*travel_findings(blocks, self._machine), *c_findings(blocks, self._machine)):
                 self._beyond.setdefault((finding.line, finding.message[:1]), finding)
@@ -84,6 +93,7 @@ class _Proof:
             self._wait += spent
 
     def report(self, timeline: Timeline, source: Source) -> Report:
+        self._see()
         found = [*timeline.diagnostics, *list(self._beyond.values())[:MAX_FINDINGS]]
         interpreter, last, tally = timeline.interpreter, self.last, self._tally
         end = self._last_move  # in its own frame: M30 takes the work shift away, and moves nothing
