@@ -24,5 +24,6 @@ def after_end(old: Modal, rpm: float, *, reset: bool) -> Modal:
         coolant=old.coolant and not reset,
         outputs=frozenset() if reset else old.outputs,
         comment=old.comment,
-        offset_c=old.offset_c,
+        offset_c=old.offset_c if old.offset_c % 360.0 == 0.0 else 0.0,  # whole turns stay, offsets go
+        wraps_c=old.wraps_c,
     )

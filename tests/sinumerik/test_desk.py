@@ -122,11 +122,14 @@ def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
     while not bench.desk.zero.rows:
         bench.desk.look()
     bench.started()
+    turned = bench.until(lambda s: s.line == 5)
+    assert view_of(turned, Readout.POSITION, with_c=True).tool == "G54"
+    bench.until(lambda s: s.line == 5 and bench.c() == "0.00")
     end = bench.until(lambda s: s.state is State.IDLE and s.parts == 1)
     assert end.actual[1] == pytest.approx(-15.0, abs=0.01)
     assert end.actual[2] % 360 == pytest.approx(30.0, abs=0.01)
-    assert bench.c() == "0.00"
-    assert view_of(end, Readout.POSITION, with_c=True).tool == "G54"
+    assert bench.c() == "30.00"  # the end has taken the offsets away
+    assert end.modal.settable == 0
 
 
 def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.blocks import Block
+from core.interpreter.ending import after_end
 from core.interpreter.setup import ZeroOffset
 from tests.sinumerik.lathe import good, refused, run, setup
 
@@ -118,3 +119,19 @@ def test_an_offset_is_no_target() -> None:
 
 def test_g53_without_a_move() -> None:
     assert refused("G53").code == "word-unused"
+
+
+@pytest.mark.parametrize("end", ["M30", "M2", "M17"])
+def test_the_end_takes_the_offsets_away(end: str) -> None:
+    """MDI and the next program, in whatever language, count from the machine's own zero."""
+    around = setup(zero={54: ZeroOffset(5.0, -20.0, 15.0)})
+    last = run(f"G54 G0 X10\nTRANS C20 Z3\nS100 M3\n{end}", around).blocks[-1]
+    modal = last.modal
+    assert (modal.settable, modal.offset_x, modal.offset_z, modal.offset_c, modal.spindle) == (0, 0, 0, 0, 0)
+    assert (last.mx, last.mz) == pytest.approx((10, 50))
+
+
+def test_so_does_a_program_that_is_given_up() -> None:
+    modal = run("TRANS X4 Z3 C20\nG0 X1").blocks[-1].modal
+    left = after_end(modal, 0.0, reset=True)
+    assert (modal.offset_c, left.offset_x, left.offset_z, left.offset_c) == (20, 0, 0, 0)

@@ -33,6 +33,13 @@ def programmed_offset(state: State, made: Statement) -> None:
     state.derive_offsets()
 
 
+def leave_offsets(state: State) -> None:
+    """The end of a program takes its offsets away: what comes next, in whatever language, counts without."""
+    state.settable = state.programmed = NO_OFFSET
+    state.adopt(state.modal._replace(settable=0))
+    state.derive_offsets()
+
+
 def check_c(state: State, made: Statement) -> None:
     """Raises ProgramError for a C word on a machine that has no C."""
     word = made.words.get("C")

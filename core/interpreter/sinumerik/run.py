@@ -18,7 +18,7 @@ from core.interpreter.sinumerik.feeds import feed_words
 from core.interpreter.sinumerik.flow import Flow, ends_main
 from core.interpreter.sinumerik.modes import modes
 from core.interpreter.sinumerik.moves import straight
-from core.interpreter.sinumerik.offsets import programmed_offset
+from core.interpreter.sinumerik.offsets import leave_offsets, programmed_offset
 from core.interpreter.sinumerik.spindle import dwell, spindle_words
 from core.interpreter.sinumerik.state import State
 from core.interpreter.sinumerik.statement import Statement, statement
@@ -173,6 +173,8 @@ class Interpreter:
             if code in made.m:
                 yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
         if made.ends and not self._flow.called:
+            leave_offsets(state)
+            state.adopt(state.modal._replace(spindle=0))
             code = next(code for code in (2, 17, 30) if code in made.m)
             yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
 
