@@ -17,6 +17,7 @@ from drivers.canopen.states import HM, MODE_BITS, DriveState
 from drivers.setpoint_queue import SetpointQueue, Tolerance
 
 _POWER = 1.5  # s in which the drives must come on
+_CUBIC = -1  # 0x60C0: position, velocity and time
 _REST = 2  # counts from one answer to the next; less is standing
 
 
@@ -192,7 +193,8 @@ class CanopenAxes:
         config = axis.config
         mode = MODE_BITS[self.follower.mode] | (0 if config.absolute else MODE_BITS[HM])
         records = (od.PVT_RECORD,) if isinstance(self.follower, PvtFollower) else ()
-        axis.drive.connect(records, mode, (*_standing(config, self._bus), *config.objects))
+        cubic = ((od.IP_SUBMODE, 0, _CUBIC),) if records else ()
+        axis.drive.connect(records, mode, (*_standing(config, self._bus), *cubic, *config.objects))
         axis.homed, axis.last = config.absolute, axis.drive.position
         axis.drive.mode = self.follower.mode
 
@@ -240,6 +242,7 @@ class CanopenAxes:
         if self.homing.done:
             homed = next(a for a in self.driven if self.homing and a.config is self.homing.config)
             homed.homed, self.homing = True, None
+            homed.drive.setup.write_all(_limits(homed.config))
             self.queue.rest_at(self._actual())
 
     def _power_on(self) -> None:
@@ -312,13 +315,17 @@ def _ready(axis: DrivenAxis) -> bool:
     return axis.drive.enabled and axis.drive.shown_mode == axis.drive.mode
 
 
+def _limits(config: AxisConfig) -> tuple[tuple[int, int, int], ...]:
+    """The drive's own software limits; they mean something once it knows where home is."""
+    if config.travel is None:
+        return ()
+    low, high = config.travel
+    return ((od.LIMITS, 1, round(low / config.count)), (od.LIMITS, 2, round(high / config.count)))
+
+
 def _standing(config: AxisConfig, bus: Bus) -> tuple[tuple[int, int, int], ...]:
     """What every drive is told unless the machine file says otherwise: how to stop, and what to watch."""
     beat = bus.config.heartbeat
-    limits: tuple[tuple[int, int, int], ...] = ()
-    if config.travel is not None and config.absolute:
-        low, high = config.travel
-        limits = ((od.LIMITS, 1, round(low / config.count)), (od.LIMITS, 2, round(high / config.count)))
     return (
         (od.ABORT_OPTION, 0, 3),
         (od.QUICK_OPTION, 0, 2),
@@ -326,7 +333,7 @@ def _standing(config: AxisConfig, bus: Bus) -> tuple[tuple[int, int, int], ...]:
         (od.WINDOW, 0, round(config.following_window / config.count)),
         (od.WINDOW_TIME, 0, round(1000 * config.following_time)),
         (od.QUICK_DECEL, 0, round(config.amax / config.count)),
-        *limits,
+        *(_limits(config) if config.absolute else ()),
         (od.HEARTBEAT, 0, round(1000 * beat)),
         (od.WATCHED, 1, bus.config.host_id << 16 | round(3000 * beat)),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from enum import Enum
 from typing import Protocol
@@ -13,6 +14,9 @@ from drivers.canopen.pvt import packed, span
 from drivers.canopen.states import BIT_12, CSP, IP, NEW
 from drivers.setpoint_queue import SetpointQueue
 
+_log = logging.getLogger(__name__)
+
+LOW_WATER = 2  # records; with fewer a drive faults
 RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
 _LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
 _BEGIN = 0.3  # s in which a drive must have begun
@@ -130,7 +134,12 @@ class PvtFollower:
         self._top_up(now)
 
     def _watch(self, now: float) -> None:
-        self.lowest = min(self.lowest, self.front - now)
+        left = self.front - now
+        if left < LOW_WATER * 0.001 * self._longest and left < self.lowest:
+            _log.warning("the drives' queues are low: %.0f ms left", 1000 * left)
+        self.lowest = min(self.lowest, left)
+        if left <= 0.0:
+            self.trouble = self.trouble or "the drives' queues ran dry: this computer was away for too long"
         if now - self._begun > _BEGIN and not self._active(all):
             names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
             self.trouble = self.trouble or f"{', '.join(names)}: the drive's queue has stopped playing"

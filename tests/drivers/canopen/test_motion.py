@@ -140,6 +140,8 @@ def test_homing_ends_at_the_switch_and_not_by_stale_bits(lost: CanBench) -> None
     assert 0.3 + took == pytest.approx(12.0 / 25.4, abs=0.2)  # 60 in/min
     assert axes.sample().actual[1] == pytest.approx(0.0, abs=0.00127)
     assert not axes.sample().moving
+    # now that it knows where home is, the drive has its limits: 6 in
+    assert lost.peers.plant.drives["Z"].values[0x607D, 1] == round(-152.4 / 0.00127)
     axes.splice(ramp(lost.clock.now() + 0.15, (axes.sample().demand[0], 0.0, 0.0), 60.0, 0.1))
     lost.run(1.0)
     assert axes.sample().fault == ""

@@ -26,6 +26,7 @@ def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> N
         assert values[od.WINDOW, 0] == round(2.032 / 0.00127)  # .08 in
         assert values[od.WINDOW_TIME, 0] == 20
         assert values[od.LIMITS, 2] == round((101.6 if name == "X" else 152.4) / 0.00127)
+        assert values[od.IP_SUBMODE, 0] == -1
         assert values[od.HEARTBEAT, 0] == 100
         assert values[od.WATCHED, 1] == 127 << 16 | 300
 
