@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
 from app.cli.offset_file import read_offsets
 from app.compose.screen import desk_and_executor, samples, step_clock
-from app.desk import pages
 from app.desk.offsets.book import OffsetBook
 from app.screen.editor.page import EditorPage
 from app.screen.look import Look
@@ -149,19 +149,16 @@ def test_keys_of_looking_around_are_the_spaces(mill: Mill) -> None:
     assert space.camera.nearness == near
 
 
-def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill) -> None:
+def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot) -> None:
     mill.choose("roof")
     mill.key(Key.Key_F3)
     assert mill.window.frame is not None
     page = mill.window.frame.page
     assert isinstance(page, EditorPage)
-    assert page.NAME == pages.EDITOR
-    mill.window.refresh()
-    page.editor.checker.settled(30.0)
+    qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=20_000)
     plane = line_of("PLANE POINTS")
     for _ in range(plane - page.field.line):
         mill.key(Key.Key_Down)
-    mill.window.refresh()
     assert page.field.line == plane
-    assert page.space.isVisible()
-    assert page.space.words.startswith(f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000")
+    wanted = f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000"
+    qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=20_000)
