@@ -156,7 +156,7 @@ class FilePrompt(Panel):
             self._list(painter)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6))
-        put(painter, foot, LEFT, "RETURN takes the marked program   ESC keeps the present one")
+        put(painter, foot, LEFT, "RETURN takes the marked program   ESC keeps the present one   F2 shows the list")
         put(painter, foot, RIGHT, f"{len(self._entries)} programs")
 
     def _list(self, painter: QPainter) -> None:

@@ -167,7 +167,9 @@ class AutomaticPage(Page):
         self._go(pages.EDITOR)
 
     def ask_file(self) -> None:
-        """``FILE TO BE PROCESSED``, unless a program is under way."""
-        if self.desk.may_choose():
+        """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""
+        if self.files.isVisible():
+            self._go(pages.PROGRAMS)
+        elif self.desk.may_choose():
             self.host.clear_away()
             self.files.ask()

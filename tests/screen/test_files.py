@@ -95,6 +95,7 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     assert shop.frame.page is shop.page
     shop.sees(lambda: shop.prompt().startswith("TO START"))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
+    shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
     shop.open_list()
     shop.sees(lambda: shop.list.model.here is not None and shop.list.model.here.run.proof == "PROVED")
 
@@ -291,3 +292,13 @@ def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -
     mounted = {tmp_path / "one", tmp_path / "user" / "two"}
     found = sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__)
     assert [stick.label for stick in found] == ["one", "two"]
+
+
+def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
+    shop.key(Key.Key_F2)
+    assert shop.page.files.isVisible()
+    shop.key(Key.Key_F2)
+    assert shop.frame.title.page == pages.PROGRAMS
+    assert not shop.page.files.isVisible()
+    shop.key(Key.Key_Escape)
+    assert shop.frame.page is shop.page

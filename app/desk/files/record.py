@@ -23,6 +23,7 @@ class RunRecord:
     keep: Keep = field(default_factory=NothingKept)
     running: str = ""  # the program under way
     _parts: int | None = None
+    _lines: int = 0  # of MDI, when nothing was under way: a line is no run of the program on the desk
     _loaded: Loaded | None = None
 
     def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
@@ -41,7 +42,9 @@ class RunRecord:
             if not self.running:
                 self.keep.run_started(name)
             self._end(name, COMPLETE)
-        under_way = snapshot.state in _RUNNING and snapshot.block > 0
+        if snapshot.state not in _RUNNING:
+            self._lines = snapshot.lines
+        under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines
         if under_way and not self.running and name:
             self.running = name
             self.keep.run_started(name)

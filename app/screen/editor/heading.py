@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
 
@@ -40,7 +40,7 @@ class HeadLine(Panel):
         painter.setPen(look.colour("text"))
         font = look.fit(now.name, 2.3, 40 * u, bold=True)
         painter.setFont(font)
-        put(painter, QRectF(1.4 * u, 0, 41 * u, high), LEFT, now.name)
+        put_raw(painter, QRectF(1.4 * u, 0, 41 * u, high), LEFT, now.name)
         left = 3.0 * u + min(40 * u, QFontMetricsF(font).horizontalAdvance(now.name))
         if now.mark:
             painter.setFont(look.font(1.7, bold=True))

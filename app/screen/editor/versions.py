@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.editing.differences import Row
 from app.desk.editing.history import History
-from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 from core.store.rows import VersionRow
 
@@ -105,7 +105,7 @@ class VersionList(Panel):
         painter.setPen(look.colour(INKS[change.sign]))
         painter.setFont(look.font(2.0, bold=change.sign in "+-"))
         put(painter, QRectF(row.x() + 11.4 * u, row.y(), 2.4 * u, row.height()), LEFT, change.sign)
-        put(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
+        put_raw(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
 
     def _marker(self, place: int) -> Callable[[], None]:
         return lambda: self._history.mark(place)

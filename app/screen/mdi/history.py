@@ -10,7 +10,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.words import tr
-from app.screen.look import LEFT, Look, put
+from app.screen.look import LEFT, Look, put, put_raw
 from app.screen.panel import Panel
 
 ROW = 3.4  # units
@@ -44,7 +44,7 @@ class HistoryPanel(Panel):
                 painter.fillRect(row, look.colour("here"))
             painter.setFont(look.font(2.2, bold=back == self.back))
             painter.setPen(look.colour("text"))
-            put(painter, row.adjusted(0.8 * u, 0, -0.8 * u, 0), LEFT, self.lines[number])
+            put_raw(painter, row.adjusted(0.8 * u, 0, -0.8 * u, 0), LEFT, self.lines[number])
             self.place(row, partial(self._choose, back))
         if not self.lines:
             painter.setFont(look.font(2.0))

@@ -7,7 +7,7 @@ from PySide6.QtGui import QFontMetricsF, QPainter, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.words import tr
-from app.screen.look import LEFT, Look, put
+from app.screen.look import LEFT, Look, put, put_raw
 from app.screen.panel import Panel
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -51,7 +51,7 @@ class LinePanel(Panel):
         row = QRectF(room.x(), room.y(), room.width(), 5.6 * u)
         painter.setFont(font)
         painter.setPen(look.colour("text"))
-        put(painter, row, LEFT, self.text)
+        put_raw(painter, row, LEFT, self.text)
         at = row.x() + metrics.horizontalAdvance(self.text[: self.at])
         painter.fillRect(QRectF(at, row.center().y() - 2.2 * u, 0.35 * u, 4.4 * u), look.colour("accent"))
         if self._first is not None:

@@ -86,6 +86,13 @@ def test_jogging_is_no_run() -> None:
     assert told(READY, replace(READY, state=State.JOG), READY) == []
 
 
+def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
+    line = replace(RUNNING, lines=1)
+    after = replace(READY, lines=1)
+    assert told(READY, line, line, after) == []
+    assert told(READY, line, after, replace(RUNNING, lines=1)) == [("started", "pin.nc")]
+
+
 def test_a_proof_is_kept_once() -> None:
     keep = Kept()
     record = RunRecord(keep)
