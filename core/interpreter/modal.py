@@ -51,7 +51,7 @@ class Modal(NamedTuple):
     c_rpm: float | None = None  # S beside M19 or a C word, unsigned
     offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
     settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
-    zero_x: float = 0.0  # SINUMERIK: settable and programmed offsets together, mm; those of C are in offset_c
+    zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm; G54 stands in tool_x, both of C in offset_c
     zero_z: float = 0.0
     wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)

@@ -135,3 +135,17 @@ def test_so_does_a_program_that_is_given_up() -> None:
     modal = run("TRANS X4 Z3 C20\nG0 X1").blocks[-1].modal
     left = after_end(modal, 0.0, reset=True)
     assert (modal.offset_c, left.offset_x, left.offset_z, left.offset_c) == (20, 0, 0, 0)
+
+
+def test_the_picture_is_drawn_from_the_zero_of_the_program() -> None:
+    """G54 moves the part in the machine and nothing in the picture; TRANS moves what it is meant to move."""
+    text = "G54 G0 X20 Z5\nG1 Z-10 F100\nTRANS Z-30\nZ0\nG53 G0 X100 Z80\nM30\n"
+    here = setup(start=(0.0, 0.0, 0.0))
+    there = setup(start=(0.0, 0.0, 0.0), zero={54: ZeroOffset(50.0, -200.0, 0.0)})
+    ends = [
+        [(b.mx - b.modal.tool_x, b.mz - b.modal.tool_z) for b in good(text, around)]
+        for around in (here, there)
+    ]
+    assert ends[0][:3] == [(10.0, 5.0), (10.0, -10.0), (10.0, -30.0)]
+    assert ends[1][:3] == ends[0][:3]
+    assert ends[1][3] == pytest.approx((0.0, 280.0))  # the machine's own X100 Z80, seen from G54

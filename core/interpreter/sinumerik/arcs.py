@@ -28,12 +28,10 @@ def arc(state: State, made: Statement) -> Block:
     # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
     clockwise = state.motion == 3
     centre, way = _centre(state, made, way, clockwise)
-    offset = way.modal.offset_x
+    offset = way.offset_x
     feed = check_feed(state, made, way.x0 - offset, way.x - offset)
     made_block = block_of(state, made, way, Kind.ARC, feed)
-    return replace(
-        made_block, cx=centre[0] - way.modal.offset_x, cz=centre[1] - way.modal.offset_z, clockwise=clockwise
-    )
+    return replace(made_block, cx=centre[0] - way.offset_x, cz=centre[1] - way.offset_z, clockwise=clockwise)
 
 
 def _centre(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[Point, Way]:
@@ -58,8 +56,8 @@ def _centre(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[P
 
 def _by_words(state: State, made: Statement, way: Way) -> Point:
     """I and K: distances from the start, or coordinates with AC( )."""
-    x = way.x0 + _component(state, made, "I", way.x0, way.modal.offset_x)
-    return x, way.z0 + _component(state, made, "K", way.z0, way.modal.offset_z)
+    x = way.x0 + _component(state, made, "I", way.x0, way.offset_x)
+    return x, way.z0 + _component(state, made, "K", way.z0, way.offset_z)
 
 
 def _component(state: State, made: Statement, name: str, start: float, offset: float) -> float:

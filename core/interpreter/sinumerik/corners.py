@@ -124,7 +124,7 @@ class Corners:
     def _along(self, block: Block, line: Line) -> Block:
         """The block's own move on a part of its line; a rapid takes the time of its slowest axis."""
         (x0, z0), (x, z) = line.start, line.end
-        way = Way(x0, z0, block.c0, x, z, block.c, block.modal)
+        way = Way(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
         rapid = block.kind is Kind.RAPID
         feed = way.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
         return replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))

@@ -16,7 +16,7 @@ def straight(state: State, made: Statement) -> Block:
         text = f"{made.words[name].text} belongs to an arc, and G{state.motion} is in force."
         raise made.refuse(made.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
     way = way_of(state, made)
-    offset = way.modal.offset_x
+    offset = way.offset_x
     if state.motion == 0:
         speeds = state.setup.limits.speeds
         return block_of(state, made, way, Kind.RAPID, way.rapid_rate(speeds))
@@ -29,7 +29,7 @@ def block_of(state: State, made: Statement, way: Way, kind: Kind, feed: float) -
     """The block of a way; the state then stands at its end."""
     state.x, state.z, state.c = way.x, way.z, way.c
     modal = way.modal
-    dx, dz, dc = modal.offset_x, modal.offset_z, modal.offset_c
+    dx, dz, dc = way.offset_x, way.offset_z, modal.offset_c
     return Block(
         n=0, line=made.line.number, kind=kind, text=made.line.text,
         x0=way.x0 - dx, z0=way.z0 - dz, c0=way.c0 - dc, x=way.x - dx, z=way.z - dz, c=way.c - dc,

@@ -42,9 +42,8 @@ class State:
     def derive_offsets(self) -> None:
         """The offsets in force: settable and programmed ones summed."""
         one, other = self.settable, self.programmed
-        self.adopt(
-            self.modal._replace(zero_x=one.x + other.x, zero_z=one.z + other.z, offset_c=one.c + other.c)
-        )
+        frame = self.modal._replace(tool_x=one.x, tool_z=one.z, zero_x=other.x, zero_z=other.z)
+        self.adopt(frame._replace(offset_c=one.c + other.c))
 
     def length(self, made: Statement, word: Word) -> float:
         """A length in mm: as written under G71, inches under G70."""

@@ -19,7 +19,7 @@ NO_WAY = 1e-6
 class Way(NamedTuple):
     """From where to where, machine coordinates: mm, X a radius, C in degrees over its turns.
 
-    ``modal`` holds the frame of the block: without offsets under G53.
+    ``offset_x offset_z`` and ``modal`` hold the frame of the block: none under G53.
     """
 
     x0: float
@@ -29,6 +29,8 @@ class Way(NamedTuple):
     z: float
     c: float
     modal: Modal
+    offset_x: float
+    offset_z: float
 
     @property
     def length(self) -> float:
@@ -56,11 +58,11 @@ def way_of(state: State, made: Statement) -> Way:
     """The way of a block. Raises ProgramError for a word that names no place."""
     check_c(state, made)
     modal = state.modal
+    dx, dz = modal.offset_x, modal.offset_z
     if "suppression of offsets" in made.g:
-        modal = modal._replace(zero_x=0.0, zero_z=0.0, offset_c=0.0)
-    x = _slide(state, made, "X", state.x, modal.offset_x)
-    z = _slide(state, made, "Z", state.z, modal.offset_z)
-    way = Way(state.x, state.z, state.c, x, z, state.c + _turn(state, made, modal), modal)
+        modal, dx, dz = modal._replace(offset_c=0.0), 0.0, 0.0
+    x, z = _slide(state, made, "X", state.x, dx), _slide(state, made, "Z", state.z, dz)
+    way = Way(state.x, state.z, state.c, x, z, state.c + _turn(state, made, modal), modal, dx, dz)
     return way._replace(x=state.x, z=state.z) if way.length < NO_WAY else way
 
 
