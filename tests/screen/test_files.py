@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
@@ -302,3 +304,23 @@ def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
     assert not shop.page.files.isVisible()
     shop.key(Key.Key_Escape)
     assert shop.frame.page is shop.page
+
+
+def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F4)
+    pad = shop.list.letters
+    shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
+    for _ in range(8):
+        touch(shop, 41)  # DEL
+    for place in (30, 20):  # z, a
+        touch(shop, place)
+    touch(shop, 42)  # RETURN
+    shop.sees(lambda: "za.nc" in shop.rows())
+    shop.sees(lambda: not pad.isVisible())
+
+
+def touch(shop: Shop, place: int) -> None:
+    pad = shop.list.letters
+    box, _press = pad._places[place]
+    QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))

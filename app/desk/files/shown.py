@@ -74,7 +74,7 @@ def chooser_sheet(chooser: Chooser, title: str) -> Sheet:
         rows,
         chooser.marked if rows else -1,
         notes=(chooser.trouble,) if chooser.trouble else (),
-        raw=frozenset({2}),
+        raw=frozenset({2} if chooser.at is None else {0, 2}),
         figures=frozenset({2}),
     )
 

@@ -40,6 +40,7 @@ class EventsSection(Section):
         self.trouble = ""
         self._rows: tuple[Row, ...] = ()
         self._next = 0.0
+        self._asking = self._again = False  # a search is under way; another one was asked for meanwhile
 
     @property
     def count(self) -> int:
@@ -72,12 +73,17 @@ class EventsSection(Section):
         )
 
     def look(self) -> None:
-        """Ask the store; the answer comes with a later frame."""
+        """Ask the store; the answer comes with a later frame. Of questions meanwhile only the last counts."""
+        if self._asking:
+            self._again = True
+            return
+        self._asking = True
         search, kinds = self.entry.text.strip(), FILTERS[self.filter]
         self.worker.ask(lambda: tuple(self.keep.events(search, kinds, SHOWN)), self._found, self._failed)
 
     def _found(self, events: tuple[EventRow, ...]) -> None:
         self.trouble = ""
+        self._answered()
         if events != self.events:
             self.events = events
             self._rows = tuple(_row(event) for event in events)
@@ -85,6 +91,12 @@ class EventsSection(Section):
 
     def _failed(self, why: str) -> None:
         self.trouble = why
+        self._answered()
+
+    def _answered(self) -> None:
+        self._asking, again, self._again = False, self._again, False
+        if again:
+            self.look()
 
     def keys(self) -> Mapping[str, Key]:
         """Search and filter."""

@@ -14,6 +14,7 @@ from app.desk.view import View
 from app.screen.files.record import RecordPanel
 from app.screen.pages import Doings, Host, Page
 from app.screen.pathview import PathView
+from app.screen.special.letters import LetterPad
 from app.screen.special.table import SheetPanel
 from core.executor.snapshot import Snapshot
 
@@ -37,6 +38,7 @@ class FilesPage(Page):
         self.table = SheetPanel(self.look, self._chosen, self)
         self.path = PreviewPath(self.look, self)
         self.record = RecordPanel(self.look, self)
+        self.letters = LetterPad(self.look, self._touched, self)
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
@@ -67,6 +69,12 @@ class FilesPage(Page):
             self.typed("Enter")
         else:
             model.choose(row)
+
+    def _touched(self, key: str) -> None:
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
 
     def typed(self, key: str) -> bool:
         """Return on a program loads it and leads to Automatic; everything else is the model's."""
@@ -115,6 +123,7 @@ class FilesPage(Page):
         if picture is not self.path.picture:
             self.path.show_picture(picture)
         self.path.advance()
+        self.letters.setVisible(bool(model.question or model.find.text) and not model.traffic.open)
         self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -126,3 +135,5 @@ class FilesPage(Page):
         self.table.setGeometry(0, 0, left, self.height())
         self.path.setGeometry(left + gap, 0, right, self.height() - low - gap)
         self.record.setGeometry(left + gap, self.height() - low, right, low)
+        self.letters.setGeometry(self.record.geometry())
+        self.letters.raise_()

@@ -14,10 +14,12 @@ from app.desk.view import View
 from app.screen.offsets.keypad import KeyPad
 from app.screen.pages import Doings, Host, Page
 from app.screen.special.items import ItemList
+from app.screen.special.letters import LetterPad
 from app.screen.special.table import SheetPanel
 from core.executor.snapshot import Snapshot
 
 LIST, PAD = 34.0, 24.0  # units: widths
+LETTERS = 24.0  # units: height
 
 
 class SpecialPage(Page):
@@ -31,6 +33,7 @@ class SpecialPage(Page):
         self.items = ItemList(self.look, model, self._enter, self)
         self.table = SheetPanel(self.look, self._chosen, self)
         self.pad = KeyPad(self.look, self._touched, own=None, parent=self)
+        self.letters = LetterPad(self.look, self._touched, self)
 
     def _enter(self, number: int) -> None:
         self.model.enter(number)
@@ -92,14 +95,15 @@ class SpecialPage(Page):
     def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
         """The table of this snapshot."""
         self.model.look()
-        sheet = self.model.section.sheet(snapshot)
+        section = self.model.section
+        sheet = section.sheet(snapshot)
         self.items.show_items()
         self.table.show_sheet(sheet)
-        wants_pad = (
-            bool(sheet.question) and self.model.section.takes("1") and not self.model.section.takes("a")
-        )
-        if wants_pad is self.pad.isHidden():
-            self.pad.setVisible(wants_pad)
+        letters = bool(sheet.question) and section.takes("a")
+        figures = bool(sheet.question) and section.takes("1") and not letters
+        if (figures, letters) != (not self.pad.isHidden(), not self.letters.isHidden()):
+            self.pad.setVisible(figures)
+            self.letters.setVisible(letters)
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -111,5 +115,8 @@ class SpecialPage(Page):
         gap, left = max(4, round(0.7 * u)), round(LIST * u)
         pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
         self.items.setGeometry(0, 0, left, self.height())
-        self.table.setGeometry(left + gap, 0, self.width() - left - gap - pad, self.height())
+        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        right = self.width() - left - gap
+        self.table.setGeometry(left + gap, 0, right - pad, self.height() - low)
+        self.letters.setGeometry(left + gap, self.height() - low + gap, right, max(0, low - gap))
         self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
