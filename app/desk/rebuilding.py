@@ -10,7 +10,7 @@ from app.desk.offsets.force import use_offsets
 from app.desk.prompts import UNDER_WAY
 from app.desk.session import Phase, Session
 from app.desk.zero_offsets.book import ZeroBook
-from core.executor.commands import Command
+from core.executor.commands import Command, SetSwitch
 from core.executor.job import outdated
 from core.executor.snapshot import Snapshot, State
 
@@ -32,6 +32,8 @@ class Rebuilding:
         self._changes = book.changes + zero.changes
         if trouble:
             self.say(f"REFUSED: {trouble}")
+        if self._changes != before and snapshot.state in UNDER_WAY and snapshot.cycle_repeat:
+            post(SetSwitch("cycle_repeat", on=False))  # it would go on with what was before
         if self._changes != before or self._outdated(snapshot):
             self.wanted = True
         if self.wanted and snapshot.state not in UNDER_WAY and not (book.busy or zero.busy):

@@ -34,9 +34,7 @@ def standing(snapshot: Snapshot) -> str:
     if snapshot.state is not State.PROGRAM_STOP:
         return ""
     if snapshot.cycle_repeat:
-        return tr(
-            "CYCLE REPEAT GOES ON WITH THE OLD OFFSETS: SWITCH IT OFF, A CHANGE COUNTS AFTER THIS CYCLE"
-        )
+        return tr("A CORRECTION SWITCHES CYCLE REPEAT OFF: IT COUNTS FROM THE NEXT CYCLE START")
     return tr("THE JOB UNDER WAY KEEPS ITS OFFSETS: A CHANGE COUNTS FROM THE NEXT CYCLE START")
 
 

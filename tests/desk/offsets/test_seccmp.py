@@ -225,7 +225,7 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
 
 def test_cycle_repeat_is_named(room: Room) -> None:
     stopped = replace(room.now[0], state=State.PROGRAM_STOP, cycle_repeat=True)
-    assert room.page().prompt(stopped).startswith("CYCLE REPEAT GOES ON WITH THE OLD OFFSETS")
+    assert room.page().prompt(stopped).startswith("A CORRECTION SWITCHES CYCLE REPEAT OFF")
 
 
 def test_offsets_of_a_file_are_read_only(room: Room) -> None:

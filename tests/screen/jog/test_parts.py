@@ -12,9 +12,9 @@ from tests.screen.jog.bench import INCH, JogBench, Key
 PROGRAM = "G90G94F300\nG72\nT1\nM03S1000\nX1Z.1\nG01F60X.5Z.1\nZ-.5\nX1Z.5G00\nM30\n"
 
 
-def load(jog: JogBench, folder: Path) -> None:
+def load(jog: JogBench, folder: Path, program: str = PROGRAM) -> None:
     path = folder / "part.nc"
-    path.write_text(PROGRAM, encoding="utf-8")
+    path.write_text(program, encoding="utf-8")
     assert jog.desk.choose(str(path))
     proved(jog)
 
@@ -25,16 +25,22 @@ def proved(jog: JogBench) -> None:
     jog.run(0.05)
 
 
-def cut(jog: JogBench) -> float:
-    """Both palms, one part; the least machine X on the way, mm."""
-    jog.key(Key.Key_F1)
-    jog.key(Key.Key_F2)
+def start(jog: JogBench) -> None:
+    """Both palms, until something happens."""
     jog.run(0.5)
+    before = jog.shot.state
     jog.down(Key.Key_F11)
     jog.down(Key.Key_F12)
-    jog.until(lambda: jog.shot.state is not State.IDLE, 2.0)
+    jog.until(lambda: jog.shot.state is not before, 2.0)
     jog.up(Key.Key_F11)
     jog.up(Key.Key_F12)
+
+
+def cut(jog: JogBench) -> float:
+    """One part; the least machine X on the way, mm."""
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F2)
+    start(jog)
     least = [0.0]
 
     def ended() -> bool:
@@ -62,18 +68,48 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
     assert cut(jog) - first == pytest.approx(-0.001 * INCH, abs=1e-6)
 
 
+def test_a_correction_at_a_stop_ends_cycle_repeat_and_counts_in_the_next_part(
+    jog: JogBench, tmp_path: Path
+) -> None:
+    """Gauged at M00 with Cycle Repeat on: this part ends as it began, none follows with the old wear."""
+    jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
+    jog.desk.book.__post_init__()
+    load(jog, tmp_path, PROGRAM.replace("M30", "M00\nX.6Z.5\nM30"))
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F2)
+    jog.key(Key.Key_C)
+    start(jog)
+    jog.until(lambda: jog.shot.state is State.PROGRAM_STOP, 60.0)
+    assert jog.shot.cycle_repeat
+    jog.key(Key.Key_F8)
+    jog.run(0.02)
+    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY: AT A STOP ONLY WEAR")
+    for _ in range(4):
+        jog.key(Key.Key_Right)
+    assert jog.prompt.startswith("A CORRECTION SWITCHES CYCLE REPEAT OFF")
+    jog.enter("-.002")
+    jog.saved()
+    jog.run(0.05)
+    assert jog.prompt == "T1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
+    assert not jog.shot.cycle_repeat
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F2)
+    start(jog)
+    jog.until(lambda: jog.shot.state is State.IDLE, 60.0)
+    assert jog.shot.parts == 1
+    proved(jog)
+    job = jog.desk.session.now.job
+    assert job is not None
+    assert job.setup.tools[1].x == pytest.approx((-1.0 - 0.001) * INCH)
+
+
 def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
     jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
     jog.desk.book.__post_init__()
     load(jog, tmp_path)
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
-    jog.run(0.5)
-    jog.down(Key.Key_F11)
-    jog.down(Key.Key_F12)
-    jog.until(lambda: jog.shot.state is State.RUN, 2.0)
-    jog.up(Key.Key_F11)
-    jog.up(Key.Key_F12)
+    start(jog)
     jog.key(Key.Key_F8)
     jog.enter("5")
     jog.run(0.02)
