@@ -71,8 +71,9 @@ class Tally:
             span.see(float(table[:, column].min()), float(table[:, column].max()))
         turned = np.array([b.kind is Kind.ROTATE or _swivels(b) for b in blocks])
         by_c = turned | np.array([b.modal.c_locked for b in blocks])
-        if not turned.all():
-            self._feeds(table[~turned])
+        in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
+        if not in_degrees.all():
+            self._feeds(table[~in_degrees])
         self._turning(table[~by_c])
 
     def _see_axes(self, block: Block) -> None:

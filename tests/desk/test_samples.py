@@ -6,8 +6,9 @@ import pytest
 
 from app.cli.offset_file import read_offsets
 from app.compose.machine import setup_for
+from core.language.sinumerik.sections import with_subprograms
 from core.language.source import load_source
-from core.machine.load import load_machine
+from core.machine.load import load_machine, named_machine
 from core.proving.prove import prove
 from tests.screen.desks import SAMPLES
 
@@ -19,3 +20,12 @@ def test_sample_proves(name: str) -> None:
     report = prove(load_source(SAMPLES / name), setup_for(machine, tools=tools, secondary=secondary), machine)
     assert report.diagnostics == ()
     assert report.missing_tools == ()
+
+
+@pytest.mark.parametrize("name", [None, "sinumerik-modulo", "sinumerik-linear"])
+def test_the_sinumerik_sample_proves_on_every_lathe(name: str | None) -> None:
+    machine = named_machine(name)
+    source = with_subprograms(load_source(SAMPLES / "ring.mpf"), [SAMPLES])
+    report = prove(source, setup_for(machine, tools={}, secondary={}), machine)
+    assert report.diagnostics == ()
+    assert report.final == pytest.approx((15.0, 30.0, 0.0 if machine.c_modulo else 360.0))
