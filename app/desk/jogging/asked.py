@@ -8,8 +8,8 @@ from app.desk.arithmetic import EntryError
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.desk.offsets.book import OffsetBook
 from app.desk.offsets.cells import ToolCells
-from app.desk.offsets.entry import shown_value, value_typed, word
-from app.desk.offsets.figures import not_set
+from app.desk.offsets.entry import marked, shown_value, value_typed, word
+from app.desk.offsets.figures import Mode, not_set
 from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
@@ -75,15 +75,26 @@ def old_to_new(setting: Setting) -> str:
     if not setting.asked or setting.asked == TOOL:
         return setting.ledger.last_told
     mode, name, row = setting.ledger.mode, TOUCHES.get(setting.asked, setting.asked), setting.row
+    touched, mark = setting.asked in TOUCHES, marked(name, mode)
+    title = f"{word(name)} {mark}" if mark else word(name)
     was = shown_value(name, getattr(row, name), mode) if row else not_set()
     try:
-        touched = setting.asked in TOUCHES
         value = (
             setting.touching.place(setting.text, mode) if touched else value_typed(name, setting.text, mode)
         )
-        return f"{word(name)}  {was}  →  {shown_value(name, value, mode)}"
+        ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
+        return f"{title}  {was}  →  {shown_value(name, value, mode)}{ends}"
     except EntryError:
-        return f"{word(name)}  {was}  →  …"  # half a sum is no mistake yet
+        return f"{title}  {was}  →  …"  # half a sum is no mistake yet
+
+
+def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
+    """The wear of the touched axis is in the new geometry and begins again at nought."""
+    if row is None or not getattr(row, name):
+        return ""
+    return (
+        f"   {word(name)}  {shown_value(name, getattr(row, name), mode)}  →  {shown_value(name, 0.0, mode)}"
+    )
 
 
 def tip(setting: Setting, snapshot: Snapshot) -> Pair | None:

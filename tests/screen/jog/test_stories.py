@@ -99,7 +99,8 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     jog.type("1")
     jog.run(0.02)
     # radius .5 in; was −5 mm = −.19685 in
-    assert jog.page.asked.asked.change == "X  −0.19685  →  −0.50000"
+    change = jog.page.asked.asked.change
+    assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
     jog.saved()
     assert jog.store.tools()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
