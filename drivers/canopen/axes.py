@@ -232,6 +232,7 @@ class CanopenAxes:
         for axis in self.driven:
             axis.drive.goal, axis.drive.extra = goal, 0
         self.follower.abort()
+        self.follower.urgent = True
         self.queue.rest_at(self._actual())
 
     def _go_on(self, now: float) -> None:

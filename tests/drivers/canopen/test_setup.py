@@ -183,3 +183,19 @@ def test_a_feeder_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanBench)
     bench.run(0.5)
     assert "EMCY FF0C" in axes.sample().fault
     assert not any(drive.power.powered for drive in bench.peers.plant.drives.values())
+
+
+def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: CanBench) -> None:
+    axes, plant = bench.machine.axes, bench.peers.plant
+    axes.enable(True)
+    both = ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 100.0, 0.5)
+    for part in (both.p, both.v, both.a):
+        part[:, 1] = part[:, 0]
+    axes.splice(both)
+    bench.run(0.4)
+    plant.drives["X"].power.trip()  # silently: the status word alone tells
+    took = bench.until(lambda: plant.drives["Z"].power.braking, 0.1)
+    assert took <= 0.01 + 0.005 + 1e-9  # until the next answer, and a tick
+    bench.run(0.3)
+    assert "X: drive fault" in axes.sample().fault
+    assert plant.servos[1].v == 0.0

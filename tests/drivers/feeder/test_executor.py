@@ -1,0 +1,70 @@
+"""The executor sees no difference: the same run through the feeder's messages, event by event."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import FeedHold
+from core.executor.snapshot import State
+from core.interpreter.setup import ToolOffset
+from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.links import LoopLink
+from drivers.feeder.server import Feeder
+from drivers.simulated import Simulation
+from tests.drivers.contract.rigs import SimDriven
+from tests.executor.rig import Rig
+from tests.executor.test_threads import EXTERNAL
+
+TURN = "G90G94F300\nT1\nM03S1000\nM08\nX.5Z0\nG95F.005\nG01X.4Z-.2\nX.5\nM09\nM05\nG94F300\nZ0\nM30\n"
+TOOLS = {1: ToolOffset(0.0, 0.0, 0.0)}
+
+
+class FedRig(Rig):
+    """The executor's rig with the feeder between it and the simulation."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        plain = self.sim
+        feeder = Feeder(SimDriven(plain.ports, plain.machine))
+        ports = feeder_ports(Line(LoopLink(feeder), self.clock))
+        self.sim = Simulation(ports, plain.machine)
+        self.events.clear()
+        self.executor = type(self.executor)(self.machine, ports, self.events.append, self._passes)
+        self.executor.tick()
+
+
+def story(rig: Rig, text: str) -> list[tuple[float, str, str, int]]:
+    rig.events.clear()
+    rig.start(text, TOOLS)
+    rig.until(State.IDLE)
+    return [(round(event.t, 6), event.kind, event.text, event.line) for event in rig.events]
+
+
+@pytest.mark.parametrize("text", [TURN, EXTERNAL], ids=["turning", "thread"])
+def test_a_part_takes_the_same_steps_at_the_same_times(text: str) -> None:
+    plain, fed = story(Rig(), text), story(FedRig(), text)
+    assert fed == plain
+    assert any(kind == "part" for _, kind, _, _ in fed)
+
+
+def test_a_hold_comes_to_rest_at_the_same_place() -> None:
+    places = []
+    for rig in (Rig(), FedRig()):
+        rig.start("G90G94F300\nG01F300\nX3Z-4\nX0Z0\nM30\n")
+        rig.run(0.5)
+        rig.post(FeedHold())
+        rig.until(State.HOLD)
+        places.append(rig.shot.demand)
+    assert places[0] == pytest.approx(places[1], abs=1e-12)
+
+
+def test_estop_takes_the_same_way() -> None:
+    for rig in (Rig(), FedRig()):
+        rig.start("G90G94F300\nG01F300\nX3Z-4\nX0Z0\nM30\n")
+        rig.run(0.5)
+        rig.sim.machine.press_estop()
+        rig.until(State.ESTOP, limit=0.05)
+        rig.run(0.5)
+        rig.sim.machine.release_estop()
+        rig.run(0.5)
+        assert rig.state is State.DISABLED
