@@ -10,6 +10,7 @@ from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.model import Axis, Machine
 
 OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
+HOW = {"lathe": "X IS A RADIUS FROM HOME", "mill": "FROM HOME"}
 AXES = frozenset("XYZABC")
 OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
 
@@ -32,7 +33,7 @@ class DrivesSection(Section):
         unit = "MM" if metric else "INCH"
         largest = formats.length(snapshot.max_following_error, metric)
         return Sheet(
-            f"DRIVE STATUS  ·  {unit}  ·  X IS A RADIUS FROM HOME",
+            f"DRIVE STATUS  ·  {unit}  ·  {HOW[self.machine.kind]}",
             ("AXIS", "POWER", "HOME", "DEMAND", "ACTUAL", "FOLLOWING", "ALLOWED", "FAULT"),
             (0.08, 0.1, 0.12, 0.16, 0.16, 0.15, 0.13, 0.1),
             (*rows, self._spindle(snapshot)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
@@ -10,19 +11,30 @@ from PySide6.QtWidgets import QWidget
 from app.desk import pages
 from app.desk.files.files import FilesDesk
 from app.desk.session import Loaded
+from app.desk.swivel.telling import at_line
 from app.desk.view import View
 from app.screen.files.record import RecordPanel
 from app.screen.pages import Doings, Host, Page
 from app.screen.pathview import PathView
 from app.screen.special.letters import LetterPad
 from app.screen.special.table import SheetPanel
+from app.screen.swivel.view import SwivelView
 from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.desk.picture import Picture
 
 SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
 
 
 class PreviewPath(PathView):
     """The path of a program that is only looked at."""
+
+    title = "PREVIEW"
+
+
+class PreviewSpace(SwivelView):
+    """The same for a mill: table, workpiece and path."""
 
     title = "PREVIEW"
 
@@ -37,6 +49,8 @@ class FilesPage(Page):
         self.model = model
         self.table = SheetPanel(self.look, self._chosen, self)
         self.path = PreviewPath(self.look, self)
+        self.space = PreviewSpace(self.look, self)
+        self._shown: Picture | None = None
         self.record = RecordPanel(self.look, self)
         self.letters = LetterPad(self.look, self._touched, self)
 
@@ -119,12 +133,21 @@ class FilesPage(Page):
         model.look()
         self.table.show_sheet(model.sheet())
         here = model.here
-        picture = model.preview.of(here)
-        if picture is not self.path.picture:
-            self.path.show_picture(picture)
-        self.path.advance()
+        self._show_picture(model.preview.of(here))
         self.letters.setVisible(bool(model.question or model.find.text) and not model.traffic.open)
         self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
+
+    def _show_picture(self, picture: Picture | None) -> None:
+        scene = picture.scene if picture is not None else None
+        if picture is not self._shown:
+            self._shown = picture
+            self.space.show_scene(scene)
+            self.space.setVisible(scene is not None)
+            self.path.show_picture(picture if scene is None else None)
+        if scene is None:
+            self.path.advance()
+        else:
+            self.space.show_instant(at_line(scene, 0), "")
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """List beside picture over record."""
@@ -133,7 +156,8 @@ class FilesPage(Page):
         left, low = round(SHARE * self.width()), round(RECORD * u)
         right = self.width() - left - gap
         self.table.setGeometry(0, 0, left, self.height())
-        self.path.setGeometry(left + gap, 0, right, self.height() - low - gap)
+        for part in (self.path, self.space):
+            part.setGeometry(left + gap, 0, right, self.height() - low - gap)
         self.record.setGeometry(left + gap, self.height() - low, right, low)
         self.letters.setGeometry(self.record.geometry())
         self.letters.raise_()
