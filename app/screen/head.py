@@ -12,6 +12,8 @@ from app.desk.words import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 
+LATHE_COLUMNS = 3  # X, Z and C; a mill has more
+
 
 class HeadLine(Panel):
     """Everything of one snapshot; X keeps its filled Ø or hollow R."""
@@ -41,11 +43,13 @@ class HeadLine(Panel):
                 1.2 * self.look.u, 2.2 * self.look.u, -1.2 * self.look.u, -0.6 * self.look.u
             ),
         )
-        share = 0.58 * room.width() / 3
+        columns = max(LATHE_COLUMNS, len(position.axes))
+        share = (0.58 if columns == LATHE_COLUMNS else 0.7) * room.width() / columns
         for number, axis in enumerate(position.axes):
             at = QRectF(room.x() + number * share, room.y(), share - 1.4 * u, room.height())
             self._axis(painter, at, axis)
-        rest = QRectF(room.x() + 3 * share, room.y(), room.width() - 3 * share, room.height())
+        taken = columns * share
+        rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
         self._figures(painter, rest, view)
 
     def _axis(self, painter: QPainter, at: QRectF, axis: AxisView) -> None:

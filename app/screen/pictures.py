@@ -29,6 +29,8 @@ CORRECTIONS = (
     (1, -0.00125, 0.0, "X -.0015"),
 )
 AT_Z = -0.3 * 25.4
+MILL, TILTED = "ac-table-mill", "roof"
+TILTED_BLOCK = 29  # the way back along the rear slope
 TICK = 0.01
 LOADING = 60.0  # seconds after which loading has failed
 
@@ -36,7 +38,7 @@ LOADING = 60.0  # seconds after which loading has failed
 class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
-    def __init__(self, journal: Journal | None = None) -> None:
+    def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
         from app.cli.offset_file import read_offsets
         from app.compose.screen import desk_and_executor, samples, step_clock
         from app.desk.offsets.book import OffsetBook
@@ -44,7 +46,7 @@ class Stage:
 
         self.clock = step_clock()
         self.desk, self._executor = desk_and_executor(
-            None, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
+            machine, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
         )
         self._folder = TemporaryDirectory()
         book = journal.book() if journal is not None else OffsetBook(Store.open(Path(self._folder.name)))
@@ -81,15 +83,15 @@ class Stage:
             self._executor.tick()
             self.clock.sleep_until(self.clock.now() + TICK)
 
-    def make_ready(self) -> None:
+    def make_ready(self, program: str = PROGRAM) -> None:
         """Load, drives on."""
         from core.executor.snapshot import State
 
         desk = self.desk
-        desk.choose(PROGRAM)
+        desk.choose(program)
         loaded = desk.session.settled(LOADING)
         if loaded.errors:
-            raise ValueError(f"{PROGRAM} does not prove: {loaded.errors[0].message}")
+            raise ValueError(f"{program} does not prove: {loaded.errors[0].message}")
         self.tick(lambda: desk.snapshot().state is State.DISABLED)
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
@@ -143,6 +145,22 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
     yield from taken(stage.desk, out, True, sizes, themes)
     stage.close()
     journal.close()
+    yield from _of_the_mill(out, sizes, themes)
+
+
+def _of_the_mill(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
+    """A tilted program, standing and caught in a cut of its second slope."""
+    from app.screen.scenes import taken
+
+    stage = Stage(machine=MILL)
+    stage.make_ready(TILTED)
+    yield from taken(stage.desk, out, False, sizes, themes, mill=True)
+    stage.desk.starts_here = True  # the editor was in front, and has handed its program over again
+    stage.desk.session.settled(LOADING)
+    stage.press_start()
+    stage.tick(lambda: stage.desk.snapshot().block >= TILTED_BLOCK)
+    yield from taken(stage.desk, out, True, sizes, themes, mill=True)
+    stage.close()
 
 
 def _z(desk: Desk) -> float:

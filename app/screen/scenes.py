@@ -27,6 +27,8 @@ class Scene:
     keys: str = ""
     running: bool = False
     language: str = "en"
+    mill: bool = False  # the tilted sample on the mill with an A-C table
+    line: int = 0  # where the editor's cursor is put
 
 
 # One line for each picture.
@@ -53,11 +55,19 @@ SCENES = (
     Scene("screen", "F10 7"),
     Scene("automatic", running=True),
     Scene("spanish", running=True, language="es"),
+    Scene("mill-editor", "F3", mill=True, line=18),
+    Scene("mill", running=True, mill=True),
 )
 
 
 def taken(
-    desk: Desk, out: Path, running: bool, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]
+    desk: Desk,
+    out: Path,
+    running: bool,
+    sizes: tuple[tuple[int, int], ...],
+    themes: tuple[str, ...],
+    *,
+    mill: bool = False,
 ) -> Iterator[Path]:
     """The scenes of a machine that runs or stands, at every size and in every theme."""
     from app.screen.look import Look, dress, load_fonts
@@ -69,7 +79,7 @@ def taken(
         dress(PALETTES[theme])
         for width, height in sizes:
             for scene in SCENES:
-                if scene.running is not running:
+                if (scene.running, scene.mill) != (running, mill):
                     continue
                 desk.settings.choose("theme", theme)
                 desk.settings.choose("language", scene.language)
@@ -78,6 +88,7 @@ def taken(
                 window.open_desk(desk)
                 path = out / f"{scene.name}-{theme}-{width}x{height}.png"
                 press(window, scene.keys)
+                _to_line(window, scene.line)
                 _grab(window, path)
                 _leave(window)
                 yield path
@@ -99,6 +110,15 @@ def press(window: MainWindow, keys: str) -> None:
             frame = window.frame
             if frame is not None and not frame.page.typed(key):
                 window.press(key)
+
+
+def _to_line(window: MainWindow, line: int) -> None:
+    from app.screen.editor.page import EditorPage
+
+    page = window.frame.page if window.frame is not None else None
+    if line and isinstance(page, EditorPage):
+        _settle(window, SETTLE)
+        page.go_to(line)
 
 
 def _settle(window: MainWindow, seconds: float) -> None:

@@ -176,10 +176,10 @@ class SwivelView(Panel):
     def _words(self, painter: QPainter, room: QRectF) -> None:
         look, u = self.look, self.look.u
         painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(self.words, 1.7, room.width() - 9 * u, bold=True))
+        painter.setFont(look.fit(self.words, 1.7, room.width(), bold=True))
         put_raw(
             painter,
-            QRectF(room.x(), room.bottom() - 2.4 * u, room.width() - 9 * u, 2.4 * u),
+            QRectF(room.x(), room.bottom() - 2.4 * u, room.width(), 2.4 * u),
             LEFT,
             self.words,
         )
