@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
 
 from app.desk import prompts
 from app.desk.arithmetic import LONGEST, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.formats import fixed
 from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.words import tr
 from app.desk.zero_offsets.book import ZeroBook
+from app.desk.zero_offsets.figures import entered, shown, told
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
-from core.store.zero import CODES, FIELDS, ZeroChange, ZeroRow, reach
+from core.store.zero import CODES, FIELDS, ZeroChange, ZeroRow
 
 KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
-PLACES = 3
 _STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
 _LOOKED_AT = 200  # changes
 
@@ -146,7 +144,7 @@ class ZeroDesk:
             self.desk.say(why)
             return
         try:
-            value = self._value()
+            value = entered(self.code, self.name, self.text)
         except EntryError as error:
             self.desk.say(tr("REFUSED: {why}").format(why=error))
             return
@@ -160,18 +158,6 @@ class ZeroDesk:
             self.desk.say(why)
         else:
             self.text = ""
-
-    def _value(self) -> float:
-        """What was typed. Raises EntryError out of the range."""
-        value, most = value_of(self.text), reach(self.name)
-        if abs(value) > most:
-            unit = tr("degrees") if self.name == "c" else tr("mm")
-            text = tr("{name} would become {value} {unit}; it may be {low}…{high}")
-            name = f"G{self.code} {self.name.upper()}"
-            raise EntryError(
-                text.format(name=name, value=shown(value), unit=unit, low=f"-{most:g}", high=f"{most:g}")
-            )
-        return round(value, 10)
 
     def _clear(self) -> None:
         why = self.barred(self.desk.snapshot())
@@ -227,23 +213,3 @@ class ZeroDesk:
         except StoreError as error:
             self.desk.say(str(error))
             return ()
-
-
-def shown(value: float) -> str:
-    """A value with its sign, also a plus: an offset without one reads like a dimension."""
-    figure = fixed(value, PLACES)
-    return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
-
-
-def in_words(row: ZeroRow | None) -> str:
-    """An offset in one line."""
-    if row is None:
-        return tr("not set")
-    return f"X {shown(row.x)}  Z {shown(row.z)}  C {shown(row.c)}"
-
-
-def told(change: ZeroChange) -> tuple[str, str, str, str]:
-    """Of one change: when (local time), which offset, from → to, why and by whom."""
-    at = datetime.fromisoformat(change.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
-    who = "" if change.who == "operator" else f" ({change.who})"
-    return at, f"G{change.code}", f"{in_words(change.old)}  →  {in_words(change.new)}", f"{change.why}{who}"

@@ -10,7 +10,8 @@ from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.desk.words import tr
-from app.desk.zero_offsets.desk import ZeroDesk, told
+from app.desk.zero_offsets.desk import ZeroDesk
+from app.desk.zero_offsets.figures import told
 from app.screen.offsets.asked import Asked, AskedPanel
 from app.screen.offsets.history import HistoryList
 from app.screen.offsets.keypad import KeyPad

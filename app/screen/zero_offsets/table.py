@@ -10,7 +10,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.words import tr
-from app.desk.zero_offsets.desk import shown
+from app.desk.zero_offsets.figures import shown
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 from core.store.zero import CODES, FIELDS, ZeroRow
