@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
+from app.desk.mdi.findings import never_set, prompt
 from app.desk.mdi.typing import Typing
 from app.desk.session import Proved, Watch
 from app.desk.words import tr
@@ -160,13 +161,7 @@ class MdiDesk:
         """What can be done now; ``start`` names what starts a cycle here."""
         if snapshot.state is not State.IDLE:
             return ""
-        if self.busy:
-            return tr("PROVING THE LINE")
-        if self.errors:
-            return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
-        if self.ready is not None:
-            return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
-        return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
+        return prompt(start, busy=self.busy, wrong=bool(self.errors), ready=self.ready is not None)
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
@@ -187,7 +182,7 @@ class MdiDesk:
                 self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=error))
             return
         job, proved = asked.result()
-        self.found = (*proved.diagnostics, *_never_set(job, proved))
+        self.found = (*proved.diagnostics, *never_set(job, proved))
         if not self.errors:
             self.ready = job
             self.post(Prepare(Starts.LINE, job, proved.proof))
@@ -206,12 +201,3 @@ class MdiDesk:
                 raise AbandonedError
 
         return watch
-
-
-def _never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
-    missing = sorted(set(proved.proof.tools) - job.tools_set)
-    text = "Tool {number} was never set."
-    return tuple(
-        Diagnostic(1, 0, Severity.ERROR, "tool-never-set", text.format(number=number), "Set it with F8.")
-        for number in missing
-    )

@@ -2,90 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
-from app.desk.searchto.cursor import Cursor
-from app.desk.searchto.finder import Answer, Finder
-from app.desk.searchto.plan import Plan, plan_of
+from app.desk.searchto.finder import Answer
+from app.desk.searchto.opening import SearchOpening
+from app.desk.searchto.plan import plan_of
 from app.desk.searchto.prompting import prompt
 from app.desk.searchto.stage import Stage
-from app.desk.session import Loaded, Phase, Proved, Session
+from app.desk.session import Loaded, Proved
 from app.desk.words import tr
-from core.executor.commands import Command, Prepare
+from core.executor.commands import Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.interpreter.restart.approach import Choices
 from core.interpreter.restart.rebuild import Found, NotGood
-from core.language.dialect import Dialect
 
 
-@dataclass(slots=True)
-class SearchDesk:
-    """The model behind the SEARCHTO page. ``say`` answers on the prompt line, ``clear`` takes that back."""
+class SearchDesk(SearchOpening):
+    """The model behind the SEARCHTO page."""
 
-    session: Session
-    post: Callable[[Command], None]
-    snapshot: Callable[[], Snapshot]
-    say: Callable[[str], None]
-    clear: Callable[[], None]
-    choices: Choices = field(default_factory=Choices)
-    cursor: Cursor = field(default_factory=Cursor)
-    stage: Stage = Stage.CHOOSE
-    open: bool = False
-    answer: NotGood | None = None
-    plan: Plan | None = None
-    proved: Proved | None = None
-    started: bool = False  # the restart was started: what is to be seen now is the Automatic page
-    finder: Finder = field(init=False)
-    _job: Job | None = None
-    _of: Job | None = None  # the program's job that was searched
-    _accepted: bool = False
-
-    def __post_init__(self) -> None:
-        self.finder = Finder(self.session.workshop.prove)
-
-    # --- page ----------------------------------------------------------------------------------------
-
-    def opens(self) -> bool:
-        """Whether it may be opened now; says why not."""
-        why = self._why_closed(self.snapshot(), self.session.now)
-        if why:
-            self.say(why)
-        return not why
-
-    def opened(self) -> None:
-        """From now on Cycle Start begins a confirmed restart and nothing else."""
-        loaded, snapshot = self.session.now, self.snapshot()
-        self.open, self.started = True, False
-        lines = loaded.source.lines if loaded.source is not None else ()
-        before = self.cursor.line if self.cursor.lines is lines else 1
-        self.cursor.show(lines, snapshot.interrupted or before)
-        self._forget()
-
-    def leave(self) -> None:
-        """Cycle Start begins programs again."""
-        if self.open:
-            self.open = False
-            self._withdraw()
-            self.post(Prepare(Starts.PROGRAM))
-
-    def close(self) -> None:
-        """End the worker."""
-        self.finder.close()
-
-    def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:
-        if snapshot.state in CYCLE:
-            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO")
-        if loaded.source is None or loaded.job is None:
-            return tr("CHOOSE A PROGRAM FIRST (F2)")
-        if loaded.source.dialect is not Dialect.OMNITURN:
-            return tr("SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE")
-        if loaded.phase is not Phase.READY:
-            return tr("THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT")
-        return ""
+    __slots__ = ()
 
     # --- choosing ------------------------------------------------------------------------------------
 
@@ -250,14 +188,3 @@ class SearchDesk:
             return
         self.stage, self._job, self._accepted = Stage.READY, job, False
         self.post(Prepare(Starts.RESTART, job, proved.proof))
-
-    def _forget(self) -> None:
-        """Nothing is shown and nothing is ready."""
-        self._withdraw()
-        if self.open:
-            self.post(Prepare(Starts.RESTART))
-
-    def _withdraw(self) -> None:
-        self.finder.give_up()
-        self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
-        self._job, self._accepted = None, False

@@ -1,0 +1,123 @@
+"""A line of a program by number or text; the worker that finds it."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from app.desk.searchto.cursor import Cursor
+from app.desk.searchto.finder import Finder
+from app.desk.session import Proved
+from core.executor.job import Job, Proof
+from core.interpreter.restart.rebuild import Found, NotGood
+from core.language.source import Source
+from tests.interpreter.programs import setup
+
+LINES = ("G90G94F300", "X1Z1(FACE)", "Z0", "X.5", "z.5(face again)", "M30")
+LIMIT = 10.0
+
+
+def typed(text: str, line: int = 1) -> Cursor:
+    cursor = Cursor(LINES, line)
+    for key in text:
+        assert cursor.type(key)
+    return cursor
+
+
+def test_figures_are_a_number_and_with_a_quotation_mark_a_text() -> None:
+    assert typed("12").number == 12
+    assert typed('"12').number is None
+    assert typed('"12').wanted == "12"
+    assert typed("x1").number is None
+
+
+def test_next_and_previous_go_round_the_end_and_know_no_case() -> None:
+    cursor = typed("(face")
+    assert cursor.find(1)
+    assert cursor.line == 2
+    assert cursor.find(1)
+    assert cursor.line == 5
+    assert cursor.find(1)
+    assert cursor.line == 2
+    assert cursor.find(-1)
+    assert cursor.line == 5
+
+
+def test_a_text_that_is_nowhere_leaves_the_cursor_where_it_is() -> None:
+    cursor = typed("QQ", 3)
+    assert not cursor.find(1)
+    assert cursor.line == 3
+    assert not typed("", 3).find(1)
+
+
+@pytest.mark.parametrize(("line", "there"), [(-5, 1), (0, 1), (4, 4), (99, 6)])
+def test_the_cursor_stays_in_the_program(line: int, there: int) -> None:
+    cursor = Cursor(LINES)
+    cursor.go(line)
+    assert cursor.line == there
+
+
+def test_editing_keys() -> None:
+    cursor = typed("X.55")
+    cursor.type("Back")
+    assert cursor.text == "X.5"
+    cursor.type("Delete")
+    assert cursor.text == ""
+    assert not cursor.type("Tab")
+
+
+def job(text: str) -> Job:
+    return Job(Source("PART", text), setup(), "digest")
+
+
+@pytest.fixture
+def finder() -> Finder:
+    return Finder(lambda job, _watch: Proved(Proof(job.digest, ())))
+
+
+def answer(finder: Finder) -> object:
+    finder.settle(LIMIT)
+    future = finder.poll()
+    assert future is not None
+    return future.result()
+
+
+def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
+    part = job("\n".join(LINES) + "\n")
+    finder.find(part, 4)
+    assert isinstance(answer(finder), Found)
+    finder.find(part, 2)
+    assert isinstance(answer(finder), NotGood)
+    finder.find(part, 5)
+    found = answer(finder)
+    assert isinstance(found, Found)
+    assert found.line == 5
+    finder.close()
+
+
+def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: Finder) -> None:
+    long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
+    finder.find(long, 7)
+    finder.give_up()
+    finder.find(long, 3)
+    found = answer(finder)
+    assert isinstance(found, Found)
+    assert found.line == 3
+    finder.close()
+
+
+def test_a_restart_is_proved_on_the_worker(finder: Finder) -> None:
+    asked: list[str] = []
+
+    def prove(job: Job, _watch: object) -> Proved:
+        asked.append(threading.current_thread().name)
+        return Proved(Proof(job.digest, ()))
+
+    finder.prove = prove
+    finder.check(job("G90\nM30\n"))
+    result = answer(finder)
+    assert isinstance(result, tuple)
+    assert result[1].proof.digest == "digest"
+    assert asked[0].startswith("loading-search")
+    finder.close()
