@@ -73,10 +73,10 @@ def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
 def test_a_store_that_fails_takes_no_line_away() -> None:
     class Broken(NothingKept):
         def setting(self, key: str) -> object:
-            raise StoreError("gone")
+            raise StoreError(f"{key} is gone")
 
         def keep_setting(self, key: str, value: object) -> None:
-            raise StoreError("gone")
+            raise StoreError(f"{key} cannot take {value}")
 
     typing = Typing(Broken())
     typing.put("X1")
