@@ -111,7 +111,7 @@ class Timeline:
         if not first.rapid:
             yield from self._at_speed()
         yield self._rest(self._wait(self._machine.timing.commit))
-        if first.kind is Kind.THREAD:
+        if first.kind is Kind.THREAD and not self._ideal:
             yield self._index(first)
         start = self.t - self._planner.t
         try:

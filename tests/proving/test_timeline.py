@@ -1,0 +1,53 @@
+"""An ideal machine: times by feeds and limits of speed alone, for every language; no waits, no ramps."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.machine import setup_for
+from core.interpreter.blocks import Kind
+from core.interpreter.setup import ToolOffset
+from core.language.dialect import Dialect
+from core.language.source import Source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from core.proving.timeline import Timeline, timed_blocks
+
+MACHINE = load_machine()
+HEAD = "G90G94F300G73\nM03S600\nT1\nX.3Z.2\nX.25\n"
+
+
+def laid(text: str, dialect: Dialect = Dialect.OMNITURN, *, ideal: bool = True) -> list[tuple[Kind, float]]:
+    setup = setup_for(MACHINE, tools={1: ToolOffset()}, secondary={})
+    timeline = Timeline.of(Source("T", text, dialect), setup, MACHINE, ideal=ideal)
+    found = [(block.kind, t1 - t0) for block, t0, t1 in timed_blocks(timeline)]
+    assert not timeline.errors, timeline.diagnostics
+    return found
+
+
+def test_ways_take_length_over_speed() -> None:
+    """.1 in of radius and .1 in of Z at 300 in/min, then 2 in at .01 in/rev and 600 rpm: 20 s."""
+    times = [t for kind, t in laid(HEAD + "G95F.01\nZ-1.8\nM30\n") if kind is Kind.FEED]
+    assert times[-1] == pytest.approx(20.0, abs=1e-6)
+
+
+def test_corners_and_waits_take_nothing() -> None:
+    """Eight sides of 1 in at 60 in/min are 8 s, however sharp; the spindle is at speed at once."""
+    side = "Z-.8\nX.125\nZ.2\nX.25\n"
+    text = HEAD + "G94F60\n" + side * 2 + "M30\n"
+    report = prove(
+        Source("T", text), setup_for(MACHINE, tools={1: ToolOffset()}, secondary={}), MACHINE, ideal=True
+    )
+    assert report.times.wait == 0.0
+    assert report.times.cutting == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
+
+
+def test_a_thread_waits_for_no_index() -> None:
+    """Ten turns of .1 s a pass, and nothing before it."""
+    found = laid(HEAD + "G33X.249Z-.8I.01K.1\nM30\n")
+    assert [t for kind, t in found if kind is Kind.THREAD] == pytest.approx([1.0, 1.0], abs=1e-6)
+
+
+def test_a_real_machine_takes_longer() -> None:
+    text = HEAD + "G94F60\nZ-.8\nX.125\nM30\n"
+    assert sum(t for _, t in laid(text, ideal=False)) > sum(t for _, t in laid(text))
