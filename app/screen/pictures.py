@@ -123,7 +123,8 @@ def main(argv: list[str] | None = None) -> int:
     with TemporaryDirectory() as folder:
         os.environ["TURNDESK_HOME"] = folder
         for path in _pictures(args.out, SIZES[:1] if args.guide else SIZES, THEMES[: 1 if args.guide else 2]):
-            sys.stdout.write(f"{path}\n")
+            shown = path.replace(path.with_name(f"{path.name.split('-dark')[0]}.png")) if args.guide else path
+            sys.stdout.write(f"{shown}\n")
     return 0
 
 
