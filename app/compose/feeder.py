@@ -27,7 +27,10 @@ class FeederProcess:
         ours, theirs = socket.socketpair()
         with theirs:
             command = [sys.executable, "-m", "app.compose.feeder", str(theirs.fileno()), repr(clock.zero)]
-            self.process = subprocess.Popen(command, stdin=subprocess.PIPE, pass_fds=(theirs.fileno(),))
+            # A session of its own: Ctrl-C is for the control, which then ends the feeder in good order.
+            self.process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, pass_fds=(theirs.fileno(),), start_new_session=True
+            )
         assert self.process.stdin is not None
         with self.process.stdin as pipe:
             pipe.write(pickle.dumps(machine))

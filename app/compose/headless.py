@@ -78,8 +78,10 @@ def headless(
     try:
         _set_inputs(connected, inputs)
         executor = Executor(machine, connected.ports, log.add)
-        yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
-        executor.shut()
+        try:
+            yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
+        finally:
+            executor.shut()  # also on Ctrl-C: the slides brake at once
     finally:
         connected.close()
 

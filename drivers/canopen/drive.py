@@ -7,7 +7,6 @@ import struct
 import canopen
 from canopen.emcy import EmcyError
 
-from core.ports import DriverError
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus, Node
 from drivers.canopen.setup import Setup
@@ -29,7 +28,7 @@ class Drive402:
         self.bus = bus
         self.name = name
         self.id = node
-        self.node = Node(node, _dictionary(name, eds))
+        self.node = Node(node, od.dictionary(name, eds, od.drive_objects))
         bus.add_node(self.node)
         self.setup = Setup(bus, self.node, name)
         self._target_object, self._more_object = target, more
@@ -149,12 +148,3 @@ class Drive402:
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
             self._wrong(f"{self.name}: {error.get_desc().lower() or 'drive error'} (EMCY {error.code:04X})")
-
-
-def _dictionary(name: str, eds: str) -> canopen.ObjectDictionary:
-    if not eds:
-        return od.drive_objects()
-    try:
-        return canopen.import_od(eds)
-    except (OSError, ValueError, KeyError) as error:
-        raise DriverError(f"{name}: the EDS file {eds} cannot be read: {error}") from error

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from canopen import ObjectDictionary
+import configparser
+from collections.abc import Callable
+
+from canopen import ObjectDictionary, import_od
 from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
+
+from core.ports import DriverError
 
 U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
 I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
@@ -49,6 +54,18 @@ def drive_objects() -> ObjectDictionary:
 def module_objects() -> ObjectDictionary:
     """The dictionary of an I/O module without an EDS file."""
     return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
+
+
+def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
+    """That of the EDS file, or the standard one. Raises DriverError naming the node and the file."""
+    if not eds:
+        return standard()
+    try:
+        found: ObjectDictionary = import_od(eds)
+    except (OSError, ValueError, KeyError, configparser.Error) as error:
+        reason = str(error).splitlines()[0]
+        raise DriverError(f"{name}: the EDS file {eds} cannot be read: {reason}") from error
+    return found
 
 
 def _dictionary(

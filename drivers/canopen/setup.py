@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import canopen
-from canopen.pdo import PdoMap
+from canopen.pdo import PdoBase, PdoMap
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from core.ports import DriverError
@@ -76,13 +76,20 @@ class Setup:
 
     def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
         """Map what the node receives in PDO ``number``: (object, bits)."""
-        self._map(self._node.rpdo[number], entries, _AT_ONCE if at_once else _ON_SYNC)
+        self._map(self._pdo(self._node.rpdo, number), entries, _AT_ONCE if at_once else _ON_SYNC)
 
     def transmit(self, number: int, heard: Callable[[PdoMap], None], *entries: tuple[int, int]) -> None:
         """Map what the node sends in PDO ``number`` at each SYNC: (object + sub · 65536, bits)."""
-        pdo = self._node.tpdo[number]
+        pdo = self._pdo(self._node.tpdo, number)
         self._map(pdo, entries, _ON_SYNC)
         pdo.callbacks[:] = [heard]
+
+    def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
+        try:
+            found: PdoMap = pdos[number]
+        except KeyError as error:
+            raise DriverError(f"{self._name}: PDO {number} is not in the node's EDS file") from error
+        return found
 
     def _map(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
         """The library's own ``save`` writes no entries where the dictionary has them as an array."""

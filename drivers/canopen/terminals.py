@@ -26,8 +26,7 @@ class Module401:
     def __init__(self, config: ModuleConfig, bus: Bus) -> None:
         self.config = config
         self._bus = bus
-        objects = canopen.import_od(config.eds) if config.eds else od.module_objects()
-        self.node = Node(config.node, objects)
+        self.node = Node(config.node, od.dictionary(config.name, config.eds, od.module_objects))
         bus.add_node(self.node)
         self.setup = Setup(bus, self.node, config.name)
         self.inputs = bytearray(_BYTES)
@@ -154,7 +153,10 @@ class CanopenIO:
         module = self._module(output.terminal)
         if on and (self._bus.trouble or module.trouble):
             raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}")
-        where = output.terminal
+        self._switch(name, output.terminal, on)
+
+    def _switch(self, name: str, where: Terminal, on: bool) -> None:
+        module = self._module(where)
         raw = on is not where.active_low
         byte = module.outputs[where.sub - 1] & ~(1 << where.bit)
         module.outputs[where.sub - 1] = byte | raw << where.bit
@@ -164,7 +166,7 @@ class CanopenIO:
         """Every output to its safe state; at once, as far as the bus is alive."""
         for name, output in self._config.outputs.items():
             if output.safe is not None:
-                self.write(name, output.safe)
+                self._switch(name, output.terminal, output.safe)
         if not self._bus.trouble:
             for module in self.modules.values():
                 module.send(self._bus.clock.now())

@@ -68,6 +68,8 @@ class Feeder:
             return answer(message)
         except DriverError as error:
             return _refused(str(error))
+        finally:
+            self._heard = self._ports.clock.now()  # some orders wait for a drive
 
     def tick(self) -> None:
         """Drivers first, then whether the control still speaks."""

@@ -218,3 +218,17 @@ def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
     line = Line(SocketLink(ours), RealClock())
     with ours, theirs, pytest.raises(DriverError, match="has not answered"):
         feeder_ports(line)
+
+
+def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    enable = bench.sim.ports.axes.enable
+
+    def slowly(on: bool) -> None:
+        bench.clock.advance(1.0)  # a drive that takes its time
+        enable(on)
+
+    bench.ports.io.write("coolant", True)
+    monkeypatch.setattr(bench.sim.ports.axes, "enable", slowly)
+    bench.ports.axes.enable(True)
+    bench.feeder.tick()
+    assert bench.ports.io.outputs()["coolant"]

@@ -1,0 +1,39 @@
+"""Drives by their own dictionary: an EDS file beside the machine file."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import canopen
+import pytest
+
+from app.compose.canopen import canopen_config
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.canopen.objects import drive_objects
+from tests.drivers.canopen.bench import CanBench, can_machine
+
+
+def beside(folder: Path) -> Machine:
+    """A machine file in ``folder`` whose X has an EDS file there."""
+    machine = can_machine(("X = { id = 1 }", 'X = { id = 1, eds = "x.eds" }'))
+    return dataclasses.replace(machine, source=str(folder / "machine.toml"))
+
+
+def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
+    canopen.export_od(drive_objects(), str(tmp_path / "x.eds"), "eds")
+    assert canopen_config(beside(tmp_path)).axes[0].eds == str(tmp_path / "x.eds")
+    bench = CanBench(beside(tmp_path))
+    bench.machine.axes.enable(True)
+    assert bench.machine.axes.sample().enabled
+    bench.close()
+
+
+@pytest.mark.filterwarnings("ignore:The 'warn' method")  # of the library's logger
+@pytest.mark.parametrize("text", [None, "", "[6040]\nParameterName=\n", "\x00\x01"])
+def test_an_eds_that_cannot_be_read_is_named(tmp_path: Path, text: str | None) -> None:
+    if text is not None:
+        (tmp_path / "x.eds").write_text(text)
+    with pytest.raises(DriverError, match=r"x\.eds|X: node 1"):
+        CanBench(beside(tmp_path))
