@@ -141,3 +141,27 @@ def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Stor
     opened(hands)
     enter(hands, "4")
     hands.sees(lambda: store.zero_offsets() != {} and hands.desk.session.now.job is not before.job)
+
+
+def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store) -> None:
+    """At machine Z -83.5 the face is touched with 1.5 to come off: Z 1.5 lies there, so zero is at -85."""
+    page = opened(hands)
+    hands.machine.now = replace(hands.machine.now, actual=(12.0, -83.5, 735.0))
+    hands.key(Key.Key_Tab)
+    hands.type("1.5")
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0)})
+    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.key(Key.Key_Tab)
+    hands.key(Key.Key_F2)
+    hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0, c=15.0)})
+    assert store.zero_history()[1].why == "Z reads 1.5"
+    assert page.model.text == ""
+
+
+def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store: Store) -> None:
+    opened(hands)
+    hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
+    hands.key(Key.Key_F2)
+    assert hands.prompt() == "X DOES NOT KNOW ITS POSITION: HOME IT FIRST"
+    assert store.zero_history() == ()

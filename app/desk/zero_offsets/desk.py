@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from app.desk import prompts
 from app.desk.arithmetic import LONGEST, EntryError, value_of
@@ -10,14 +11,13 @@ from app.desk.desk import Desk
 from app.desk.offsets.dialogue import CHARACTERS
 from app.desk.words import tr
 from app.desk.zero_offsets.book import ZeroBook
-from app.desk.zero_offsets.figures import entered, shown, told
+from app.desk.zero_offsets.figures import entered, shown, touched
+from app.desk.zero_offsets.ledger import ZeroLedger
 from core.executor.snapshot import Snapshot, State
-from core.store.errors import StoreError
-from core.store.zero import CODES, FIELDS, ZeroChange, ZeroRow
+from core.store.zero import CODES, FIELDS, ZeroRow
 
 KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
 _STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
-_LOOKED_AT = 200  # changes
 
 
 @dataclass(slots=True)
@@ -29,12 +29,10 @@ class ZeroDesk:
     column: int = 0
     text: str = ""
     clearing: bool = False
-    last: tuple[ZeroChange, ...] = ()
-    looking_back: tuple[ZeroChange, ...] | None = None  # the history while it is shown
-    _seen: int = 0
+    ledger: ZeroLedger = field(init=False)
 
     def __post_init__(self) -> None:
-        self._seen = self.book.changes
+        self.ledger = ZeroLedger(self.desk)
 
     @property
     def book(self) -> ZeroBook:
@@ -66,7 +64,7 @@ class ZeroDesk:
         why = self.barred(snapshot)
         if why:
             return why
-        if self.looking_back is not None:
+        if self.ledger.looking_back is not None:
             return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
         return tr("TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL")
 
@@ -86,23 +84,7 @@ class ZeroDesk:
             except EntryError:
                 return ""  # half a sum is no mistake yet
             return f"G{self.code} {self.name.upper()}   {shown(old)}  →  {shown(new)}"
-        if len(self.last) == 1:
-            _at, which, change, _why = told(self.last[0])
-            return f"{which}   {change}"
-        return tr("{count} offsets changed: F5 shows them").format(count=len(self.last)) if self.last else ""
-
-    def look(self) -> None:
-        """Once a frame: see what has been saved, and say it."""
-        if self.book.changes == self._seen:
-            return
-        self._seen = self.book.changes
-        changes = self._history()
-        self.last = tuple(change for change in changes if change.step == changes[0].step)
-        if self.looking_back is not None:
-            self.looking_back = changes
-        names = " ".join(f"G{change.code}" for change in reversed(self.last))
-        back = bool(self.last) and self.last[0].undoes is not None
-        self.desk.say((tr("{names} TAKEN BACK") if back else tr("{names} SAVED")).format(names=names))
+        return self.ledger.last_told
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -139,25 +121,42 @@ class ZeroDesk:
         if not self.text.strip():
             self.move(0, 1)
             return
+        self._save(lambda: entered(self.code, self.name, self.text), self.text.strip())
+
+    def here(self) -> None:
+        """The machine stands where the program shall read what was typed, or 0: the offset follows."""
+        snapshot = self.desk.snapshot()
+        axis = self.name.upper()
+        if axis not in snapshot.axes:
+            self.desk.say(tr("THIS MACHINE HAS NO AXIS {axis}").format(axis=axis))
+            return
+        place = snapshot.axes.index(axis)
+        if not snapshot.homed[place]:
+            self.desk.say(tr("{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST").format(axis=axis))
+            return
+        at, read = snapshot.actual[place], self.text.strip() or "0"
+        self._save(
+            lambda: touched(self.code, self.name, at, self.text), tr("reads {value}").format(value=read)
+        )
+
+    def _save(self, value: Callable[[], float], typed: str) -> None:
+        """Save the chosen cell, unless something is wrong with it; that is said, and the text stays."""
         why = self.barred(self.desk.snapshot())
         if why:
             self.desk.say(why)
             return
         try:
-            value = entered(self.code, self.name, self.text)
+            new = value()
         except EntryError as error:
             self.desk.say(tr("REFUSED: {why}").format(why=error))
             return
         row = self.book.rows.get(self.code)
-        if row is not None and getattr(row, self.name) == value:
+        if row is not None and getattr(row, self.name) == new:
             self.desk.say(tr("G{code} IS AS IT WAS").format(code=self.code))
-            self.text = ""
-            return
-        why = self.book.change(self.code, {self.name: value}, f"{self.name.upper()} {self.text.strip()}")
-        if why:
+        elif why := self.book.change(self.code, {self.name: new}, f"{self.name.upper()} {typed}"):
             self.desk.say(why)
-        else:
-            self.text = ""
+            return
+        self.text = ""
 
     def _clear(self) -> None:
         why = self.barred(self.desk.snapshot())
@@ -177,14 +176,10 @@ class ZeroDesk:
         self.desk.clear()
         self._answer(self.barred(self.desk.snapshot()) or self.book.undo())
 
-    def toggle_history(self) -> None:
-        """The history instead of the table, or the table again."""
-        self.looking_back = None if self.looking_back is not None else self._history()
-
     def escape(self) -> bool:
         """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
-        if self.looking_back is not None:
-            self.looking_back = None
+        if self.ledger.looking_back is not None:
+            self.ledger.looking_back = None
         elif self.clearing:
             self.clearing = False
             self.desk.clear()
@@ -194,22 +189,11 @@ class ZeroDesk:
             return False
         return True
 
-    def opened(self) -> None:
-        """The page comes up: what was changed elsewhere is no news here."""
-        self._seen, self.last = self.book.changes, ()
-
     def leave(self) -> None:
         """The page goes: nothing stays half entered."""
-        self.clearing, self.text, self.looking_back = False, "", None
+        self.clearing, self.text, self.ledger.looking_back = False, "", None
         self.desk.clear()
 
     def _answer(self, why: str) -> None:
         if why:
             self.desk.say(why)
-
-    def _history(self) -> tuple[ZeroChange, ...]:
-        try:
-            return self.book.history(_LOOKED_AT)
-        except StoreError as error:
-            self.desk.say(str(error))
-            return ()

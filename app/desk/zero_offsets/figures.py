@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from math import remainder
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import fixed
@@ -14,7 +15,21 @@ PLACES = 3
 
 def entered(code: int, name: str, text: str) -> float:
     """What a field becomes by a typed text: mm, degrees for ``c``. Raises EntryError with the reason."""
-    value, most = value_of(text), reach(name)
+    return checked(code, name, value_of(text))
+
+
+def touched(code: int, name: str, at: float, text: str) -> float:
+    """What a field becomes so that the machine position ``at`` reads as was typed, 0 where nothing was.
+
+    Whole turns of C say nothing and are left out. Raises EntryError.
+    """
+    value = at - (value_of(text) if text.strip() else 0.0)
+    return checked(code, name, remainder(value, 360.0) if name == "c" else value)
+
+
+def checked(code: int, name: str, value: float) -> float:
+    """The value, where it is one that is kept. Raises EntryError."""
+    most = reach(name)
     if abs(value) <= most:
         return round(value, 10)
     unit = tr("degrees") if name == "c" else tr("mm")

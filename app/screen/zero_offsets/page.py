@@ -26,7 +26,7 @@ class ZeroPage(Page):
     """The model decides, this only shows it and hands the keys on."""
 
     NAME = pages.ZERO
-    LABELS = ("MENU", "", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
+    LABELS = ("MENU", "HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
@@ -37,8 +37,9 @@ class ZeroPage(Page):
         self.pad = KeyPad(self.look, self._touched, own=("C", "C"), parent=self)
 
     def doings(self) -> Doings:
-        """Undo, history, and the other tables."""
+        """The position of the machine, undo, history, and the other tables."""
         return {
+            "F2": self.model.here,
             "F4": self.model.undo,
             "F5": self._toggle,
             "F8": lambda: self._go(pages.TOOLS),
@@ -49,7 +50,7 @@ class ZeroPage(Page):
         self.host.go(name)
 
     def _toggle(self) -> None:
-        self.model.toggle_history()
+        self.model.ledger.toggle_history()
         self.history.look_at(0)
 
     def typed(self, key: str) -> bool:
@@ -75,7 +76,7 @@ class ZeroPage(Page):
 
     def opened(self) -> None:
         """What was changed elsewhere is no news here."""
-        self.model.opened()
+        self.model.ledger.opened()
 
     def leave(self) -> bool:
         """Nothing stays half entered."""
@@ -91,14 +92,16 @@ class ZeroPage(Page):
     def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
         """The table as the store has it, and the entry."""
         model = self.model
-        model.look()
-        changes = model.looking_back
+        model.ledger.look()
+        changes = model.ledger.looking_back
         self.history.setVisible(changes is not None)
         self.table.setVisible(changes is None)
         if changes is not None:
             self.history.show_entries(tuple(told(change) for change in changes))
         self.table.show_rows(model.book.rows, (model.row, model.column), snapshot.modal.settable)
-        foot = f"{tr('Press Esc to exit')}        {tr('Press C to clear G54 to G59')}"
+        foot = tr(
+            "F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit"
+        )
         self.asked.show_asked(Asked("", model.question, model.text, model.old_to_new, foot))
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
