@@ -103,7 +103,7 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
     """The speed of the path in its own unit; of a rapid what the slowest axis allows."""
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None
-    unit = "deg" if block.travel.way is not None or not block.travel.slides else "mm"
+    unit = "deg" if block.swivels else "mm"
     return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
 
 

@@ -49,6 +49,7 @@ def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
         (setup.begin.key if setup.begin else "", part_of),
+        setup.kinematics,
         [(each.name, each.text) for each in source.subprograms],
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))

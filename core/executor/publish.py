@@ -50,7 +50,7 @@ class Publisher:
             velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
             feed=_feed(block, modal),
             rapid=block.rapid if block else modal.rapid,
-            turns=block is not None and block.kind is Kind.ROTATE and not modal.c_locked,
+            turns=_turns(block, modal),
             rpm_command=bench.spindle.command,
             rpm_actual=bench.spindle.measured,
             spindle_asked=bench.spindle.asked_rpm,
@@ -96,6 +96,13 @@ def _interrupted(conductor: Conductor) -> int:
     """The line at which the loaded program was given up."""
     job, (name, line) = conductor.standing.job, conductor.standing.interrupted
     return line if job is not None and job.source.name == name else 0
+
+
+def _turns(block: Block | None, modal: Modal) -> bool:
+    """Whether the programmed feed is degrees instead of mm."""
+    if block is None:
+        return False
+    return (block.swivels and not block.rapid) or (block.kind is Kind.ROTATE and not modal.c_locked)
 
 
 def _feed(block: Block | None, modal: Modal) -> float:

@@ -71,7 +71,7 @@ class Snapshot:
     velocity: float = 0.0  # along the path, mm/s, actual
     feed: float = 0.0  # programmed: mm/s or mm/rev by modal
     rapid: bool = False
-    turns: bool = False  # the feed is that of C alone: degrees instead of mm
+    turns: bool = False  # the feed is that of rotary axes alone: degrees instead of mm
     rpm_command: float = 0.0
     rpm_actual: float = 0.0
     spindle_asked: float = 0.0  # signed rpm that program or MDI want, before pot, switch and limit of F10

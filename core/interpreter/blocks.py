@@ -114,6 +114,12 @@ class Block:
         return self.kind is Kind.RAPID or (self.kind is Kind.PLANE and self.modal.rapid)
 
     @property
+    def swivels(self) -> bool:
+        """Whether a mill's block counts degrees: its rotary axes turn alone, or lead the slides."""
+        travel = self.travel
+        return travel is not None and self.moves and (travel.way is not None or not travel.slides)
+
+    @property
     def moves(self) -> bool:
         """Whether the slides or the C axis move in this block."""
         return self.action is None

@@ -31,11 +31,6 @@ class Span:
         return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
 
 
-def _swivels(block: Block) -> bool:
-    """Whether a mill's block counts degrees: its rotary axes turn alone, or lead the slides."""
-    return block.travel is not None and (block.travel.way is not None or not block.travel.slides)
-
-
 class Tally:
     """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
 
@@ -59,7 +54,7 @@ class Tally:
         length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
         for index, block in enumerate(blocks):
             if block.travel is not None:
-                length[index] = 0.0 if _swivels(block) else block.travel.length
+                length[index] = 0.0 if block.swivels else block.travel.length
                 self._see_axes(block)
             elif block.kind is Kind.ARC:
                 length[index] = self._arc(block)
@@ -69,7 +64,7 @@ class Tally:
         self.cutting_length += float(length[~rapid].sum())
         for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
             span.see(float(table[:, column].min()), float(table[:, column].max()))
-        turned = np.array([b.kind is Kind.ROTATE or _swivels(b) for b in blocks])
+        turned = np.array([b.kind is Kind.ROTATE or b.swivels for b in blocks])
         by_c = turned | np.array([b.modal.c_locked for b in blocks])
         in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
         if not in_degrees.all():

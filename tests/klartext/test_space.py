@@ -232,3 +232,11 @@ def test_a_long_path_is_thinned_out() -> None:
     made, _ = drawn(long, Instant(dict.fromkeys(NAMES, 0.0), None))
     assert sum(len(stroke.points) for stroke in made.strokes) < 3 * 20_000
     assert AC.names == NAMES
+
+
+@pytest.mark.parametrize(("feed", "shown"), [("F1200", ("1200.0", "°/min")), ("FMAX", ("RAPID", ""))])
+def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> None:
+    (block,) = run(f"PLANE AXIAL A+30 TURN {feed}").planes
+    snapshot = snapshot_at(block, feed=block.feed, rapid=block.rapid, turns=block.swivels and not block.rapid)
+    made = view_of(snapshot, Readout.POSITION, with_c=False).feed
+    assert (made.value, made.unit) == shown

@@ -37,8 +37,9 @@ def _take_feed(state: State, line: int, node: Move) -> float | None:
     """The feed of the block, None for rapid, which holds for this block alone."""
     column = node.axes[0].column if node.axes else 1
     feed = words.feed_word(state, line, node.feed, column)
-    if feed is not None:
+    if feed is not None and feed != state.feed:
         state.feed = feed
+        state.modal = state.modal._replace(feed=state.path_feed(feed))
     return feed
 
 
