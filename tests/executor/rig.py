@@ -98,6 +98,8 @@ class Rig:
 
     def load(self, text: str, tools: Mapping[int, ToolOffset] | None = None, **changes: object) -> Job:
         """Load a program with a proof that has nothing against it."""
+        if self.made is not None:
+            changes.setdefault("metric", self.shot.modal.metric)  # what stands in for a program needs no unit
         setup = Setup(
             tools=dict(tools or {}),
             limits=control_limits(self.machine),
