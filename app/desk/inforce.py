@@ -28,6 +28,9 @@ def rows_of(point: Checkpoint) -> tuple[InForce, ...]:
         *_geometry(modal),
         *_feeds(point),
         *_spindle(modal),
+        InForce(
+            "c", tr("C AXIS"), f"{tr('LOCKED')} {formats.angle(point.c)}" if modal.c_locked else tr("FREE")
+        ),
         *_frame(modal),
         *_functions(modal),
     )
@@ -75,7 +78,6 @@ def _spindle(modal: Modal) -> tuple[InForce, ...]:
         InForce("spindle", tr("SPINDLE"), run),
         InForce("speed", tr("SPEED"), speed),
         InForce("clamps", tr("G76 … G77"), limits if least or most is not None else NONE),
-        InForce("c", tr("C AXIS"), tr("LOCKED") if modal.c_locked else tr("FREE")),
     )
 
 

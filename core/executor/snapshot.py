@@ -112,6 +112,7 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    kind: str  # state, alarm, start, end, part, stop, refused, override, switch, force, load, offsets
+    # state, alarm, start, restart, mdi, end, part, stop, refused, override, switch, force, load, offsets
+    kind: str
     text: str
     line: int = 0

@@ -94,6 +94,8 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     operator.window.refresh()
     assert operator.frame.page is operator.frame.automatic
     assert operator.shot.state in {State.RUN, State.WAIT}
+    operator.pause(0.1)
+    assert operator.prompt() == "PRESS H FOR FEED HOLD"  # nothing was refused on the way
     operator.until(lambda: operator.shot.line == 26, 60.0)
     assert operator.shot.modal.diameter
     assert operator.shot.modal.secondary == 1

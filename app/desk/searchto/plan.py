@@ -59,9 +59,13 @@ def plan_of(found: Found, snapshot: Snapshot, choices: Choices) -> Plan:
 
 def _rows(point: Checkpoint, snapshot: Snapshot) -> tuple[Beside, ...]:
     wanted = (*_places(point, *point.machine), *rows_of(point))
-    now = (*_places(point, *snapshot.demand[:2]), *rows_of(Checkpoint(snapshot.modal)))
+    now = (*_places(point, *snapshot.demand[:2]), *rows_of(_now(snapshot)))
     both = zip(wanted, now, strict=True)
     return tuple(Beside(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
+
+
+def _now(snapshot: Snapshot) -> Checkpoint:
+    return Checkpoint(snapshot.modal, c=snapshot.demand[2] - snapshot.modal.offset_c)
 
 
 def _places(point: Checkpoint, x: float, z: float) -> tuple[InForce, ...]:

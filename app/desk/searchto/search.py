@@ -157,7 +157,8 @@ class SearchDesk(SearchOpening):
     def _see_start(self, snapshot: Snapshot) -> None:
         waits = self._job is not None and snapshot.prepared == self._job.digest
         if self._accepted and not waits:
-            self.started = snapshot.state in CYCLE
+            self.started = snapshot.starts is Starts.PROGRAM  # a restart that is begun counts once
+            self.open = not self.started
             self._withdraw()
         self._accepted = waits
 

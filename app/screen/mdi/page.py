@@ -87,7 +87,8 @@ class MdiPage(Page):
         text = snapshot.block_text if running and not typing.text else typing.text
         self.line.show_line(text, len(text) if running else typing.at, model.found, model.ready is not None)
         self.history.show_history(typing.history, typing.back)
-        self.inforce.show_rows(rows_of(Checkpoint(snapshot.modal)))
+        angle = snapshot.demand[2] - snapshot.modal.offset_c
+        self.inforce.show_rows(rows_of(Checkpoint(snapshot.modal, c=angle)))
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line over the history, what is in force at their right."""
