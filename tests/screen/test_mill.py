@@ -65,6 +65,18 @@ class Mill:
         self.window.refresh()
         return self.desk.snapshot()
 
+    def held(self, key: Key, until: Callable[[Snapshot], bool]) -> Snapshot:
+        """Hold a key while the machine goes on and the screen looks at it, then let it go."""
+        QTest.keyPress(QApplication.focusWidget() or self.window, key)
+        end = self._clock.now() + LONG
+        while not until(self.desk.snapshot()):
+            assert self._clock.now() < end, self.desk.snapshot()
+            self._executor.tick()
+            self.window.refresh()
+            self._clock.sleep_until(self._clock.now() + TICK)
+        QTest.keyRelease(QApplication.focusWidget() or self.window, key)
+        return self.goes_on(lambda s: s.state is State.IDLE)
+
     def choose(self, name: str) -> None:
         self.key(Key.Key_F2)
         self.type(name)
@@ -162,3 +174,36 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     assert page.field.line == plane
     wanted = f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000"
     qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=20_000)
+
+
+@pytest.mark.parametrize(
+    ("key", "axis", "sign"),
+    [
+        (Key.Key_Right, 0, 1),
+        (Key.Key_Up, 1, 1),
+        (Key.Key_Down, 1, -1),
+        (Key.Key_PageDown, 2, -1),
+        (Key.Key_Insert, 3, 1),
+        (Key.Key_Delete, 3, -1),
+        (Key.Key_BracketRight, 4, 1),
+    ],
+)
+def test_every_axis_is_jogged_while_its_key_is_held(mill: Mill, key: Key, axis: int, sign: int) -> None:
+    mill.goes_on(lambda s: s.state is State.DISABLED)
+    mill.key(Key.Key_D)
+    mill.goes_on(lambda s: s.state is State.IDLE)
+    mill.key(Key.Key_F1)
+    mill.key(Key.Key_F5)
+    before = mill.desk.snapshot().actual
+    after = mill.held(key, lambda s: abs(s.actual[axis] - before[axis]) > 0.5).actual
+    assert sign * (after[axis] - before[axis]) > 0.5
+    assert all(abs(after[other] - before[other]) < 0.01 for other in range(5) if other != axis)
+
+
+def test_touching_off_is_refused_on_a_mill(mill: Mill) -> None:
+    mill.key(Key.Key_F1)
+    mill.key(Key.Key_F5)
+    mill.key(Key.Key_F6)
+    mill.window.refresh()
+    assert mill.window.frame is not None
+    assert "LENGTH OF THE TOOL" in mill.window.frame.prompt.text

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from app.desk import prompts
 from app.desk.desk import Desk
 from app.desk.jogging.asked import TOOL
+from app.desk.jogging.directions import Direction, directions_of
 from app.desk.jogging.hold import JogHold
 from app.desk.jogging.home import HomeAsk
 from app.desk.jogging.speeds import CONTINUOUS, Speeds
 from app.desk.jogging.tool import ToolSetting
-from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
+from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES
 from app.desk.words import tr
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
@@ -41,11 +42,13 @@ class JogDesk:
     hold: JogHold = field(init=False)
     home: HomeAsk = field(init=False)
     tool: ToolSetting = field(init=False)
+    directions: tuple[Direction, ...] = ()
     armed: bool = False  # the next finger that holds goes rapid
 
     def __post_init__(self) -> None:
         desk = self.desk
         self.speeds = Speeds(self.machine)
+        self.directions = directions_of(self.machine)
         self.hold = JogHold(
             self.speeds,
             min(self.machine.timing.lease, LEASE),
@@ -60,11 +63,6 @@ class JogDesk:
 
     def _now(self) -> float:
         return self.desk.hands.clock()
-
-    @property
-    def with_c(self) -> bool:
-        """Whether C can be jogged."""
-        return self.machine.c_enabled
 
     def barred(self) -> str:
         """Why nothing is moved by hand now; empty when it may be."""
@@ -112,6 +110,10 @@ class JogDesk:
     def ask(self, what: str) -> None:
         """A question of the tool; what is held ends."""
         self.hold.other_key()
+        if self.machine.kind == "mill" and what in TOUCHES:
+            # A touched position is no length: a mill's tool would be taken for metres too short or too long.
+            self.desk.say(tr("ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8"))
+            return
         self.tool.ask(what)
 
     def choose_master(self) -> None:
@@ -174,7 +176,7 @@ class JogDesk:
         if key in {"m", "M"}:
             self.tool.master()
         elif key.lower() in LETTERS:
-            self.tool.ask(LETTERS[key.lower()])
+            self.ask(LETTERS[key.lower()])
         else:
             return False
         return True

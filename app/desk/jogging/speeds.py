@@ -37,21 +37,26 @@ class Speeds:
         """Faster, and from the fastest to the slowest."""
         self.speed = (self.speed + 1) % len(INCH_SPEEDS)
 
+    def _turns(self, axis: str) -> bool:
+        return self.machine.axis(axis).rotary
+
     def distance(self, axis: str, mode: Mode) -> float:
         """Length of a step, mm or degrees; one of X changes the figure shown, Ø or R, by its length."""
-        if axis == "C":
+        if self._turns(axis):
             return DEGREE_STEPS[self.step]
         length = MM_STEPS[self.step] if mode.metric else INCH_STEPS[self.step] * MM_PER_INCH
         return length / 2 if axis == "X" and mode.diameter else length
 
     def step_speed(self, axis: str) -> float:
         """How fast a step goes, mm/s or degrees/s."""
-        return STEP_SPEED_C if axis == "C" else min(STEP_SPEED, self.machine.manual_rapid)
+        if self._turns(axis):
+            return min(STEP_SPEED_C, self.machine.axis(axis).vmax)
+        return min(STEP_SPEED, self.machine.manual_rapid)
 
     def velocity(self, axis: str, mode: Mode, *, rapid: bool) -> float:
         """How fast a held jog goes, mm/s or degrees/s."""
-        if axis == "C":
-            return C_RAPID if rapid else DEGREE_SPEEDS[self.speed]
+        if self._turns(axis):
+            return min(C_RAPID if rapid else DEGREE_SPEEDS[self.speed], self.machine.axis(axis).vmax)
         if rapid:
             return self.machine.manual_rapid
         slow = MM_SPEEDS[self.speed] if mode.metric else INCH_SPEEDS[self.speed] * MM_PER_INCH

@@ -10,6 +10,7 @@ from PySide6.QtGui import QPainter, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.jogging.desk import JogDesk
+from app.desk.jogging.directions import Direction
 from app.desk.jogging.home import Known
 from app.desk.jogging.speeds import CONTINUOUS, rapid_word, speed_words, step_words
 from app.desk.offsets.figures import Mode
@@ -19,15 +20,6 @@ from app.screen.jog.tiles import Tiles, draw_tiles
 from app.screen.look import CENTRE, LEFT, Look, put
 from core.executor.snapshot import Snapshot
 
-# Axis, sign, column and row of the cross, and where its arrow points (right, down) as the operator sees it.
-TARGETS = (
-    ("X", -1, 1, 0, (0, -1)),
-    ("Z", -1, 0, 1, (-1, 0)),
-    ("Z", 1, 2, 1, (1, 0)),
-    ("X", 1, 1, 2, (0, 1)),
-)
-C_TARGETS = (("C", -1, 0, 2, (0, 0)), ("C", 1, 2, 2, (0, 0)))
-KEYS = {("X", -1): "↑", ("X", 1): "↓", ("Z", -1): "←", ("Z", 1): "→", ("C", -1): "PgDn", ("C", 1): "PgUp"}
 ROW = 5.6  # units: a row of tiles
 
 
@@ -115,16 +107,18 @@ class JogPad(FingerPanel):
 
     def _cross(self, painter: QPainter, room: QRectF) -> None:
         u = self.look.u
-        wide, high = room.width() / 3, room.height() / 3
-        targets = TARGETS + (C_TARGETS if self._model.with_c else ())
-        for axis, sign, column, row, arrow in targets:
-            box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.8 * u, high - 0.6 * u)
-            self._target(painter, box, axis, sign, arrow)
+        directions = self._model.directions
+        columns = 1 + max(2, *(each.column for each in directions))
+        wide, high = room.width() / columns, room.height() / 3
+        for each in directions:
+            x, y = room.x() + each.column * wide, room.y() + each.row * high
+            self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
         middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
         self._middle(painter, middle)
 
-    def _target(self, painter: QPainter, box: QRectF, axis: str, sign: int, arrow: tuple[int, int]) -> None:
+    def _target(self, painter: QPainter, box: QRectF, way: Direction) -> None:
         look, u, held = self.look, self.look.u, self._model.hold.held
+        axis, sign, arrow = way.axis, way.sign, way.arrow
         moving = held is not None and held.axis == axis and held.velocity * sign > 0
         painter.setPen(look.pen("run" if moving else "accent", 0.24))
         painter.setBrush(look.colour("run" if moving else "key"))
@@ -142,7 +136,7 @@ class JogPad(FingerPanel):
         put(painter, offset, CENTRE, f"{axis}{'+' if sign > 0 else '−'}")
         painter.setPen(look.colour("on_state" if moving else "soft"))
         painter.setFont(look.font(1.5, bold=True))
-        put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, KEYS[axis, sign])
+        put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, way.label)
         self.controls.append(self._holder(box, axis, sign))
 
     def _arrow(self, painter: QPainter, box: QRectF, to: tuple[int, int], colour: str) -> None:

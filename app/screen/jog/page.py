@@ -22,15 +22,6 @@ from core.executor.snapshot import Snapshot
 from core.machine.model import Machine
 
 Key = Qt.Key
-# Key → axis and sign; X+ is towards the operator.
-ARROWS = {
-    Key.Key_Left: ("Z", -1),
-    Key.Key_Right: ("Z", 1),
-    Key.Key_Down: ("X", 1),
-    Key.Key_Up: ("X", -1),
-    Key.Key_PageUp: ("C", 1),
-    Key.Key_PageDown: ("C", -1),
-}
 CHORDS = (
     Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
 )
@@ -57,6 +48,9 @@ class JogPage(Page):
     def __init__(self, host: Host, machine: Machine, parent: QWidget) -> None:
         super().__init__(host, parent)
         self.model = JogDesk(host.desk, machine)
+        self._arrows = {
+            Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in self.model.directions
+        }
         self.pad = JogPad(self.look, self.model, self)
         self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
         self.tool = ToolPanel(self.look, self.model, self)
@@ -68,7 +62,7 @@ class JogPage(Page):
     def key_down(self, event: QKeyEvent) -> bool:
         """The arrows are this page's; any other key ends what is held and then means what it means."""
         key, model = Key(event.key()), self.model
-        if key not in ARROWS or (key in {Key.Key_PageUp, Key.Key_PageDown} and not model.with_c):
+        if key not in self._arrows:
             if not event.isAutoRepeat():
                 model.hold.other_key()
             return self._home(event)
@@ -77,7 +71,7 @@ class JogPage(Page):
         elif event.modifiers() & CHORDS:
             model.hold.other_key()
         else:
-            axis, sign = ARROWS[key]
+            axis, sign = self._arrows[key]
             rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
             model.hold.press(key.name, axis, sign, rapid=rapid)
         return True
@@ -93,7 +87,7 @@ class JogPage(Page):
         if event.isAutoRepeat():
             return
         key = Key(event.key())
-        if key in ARROWS:
+        if key in self._arrows:
             self.model.hold.release(key.name)
         elif key == Key.Key_Shift:
             self.model.hold.shift_released()
@@ -114,8 +108,8 @@ class JogPage(Page):
             "F2": model.next_step,
             "F3": model.next_speed,
             "F4": self.desk.next_readout,
-            "F5": lambda: model.tool.ask(TOUCH_X),
-            "F6": lambda: model.tool.ask(TOUCH_Z),
+            "F5": lambda: model.ask(TOUCH_X),
+            "F6": lambda: model.ask(TOUCH_Z),
             "F8": lambda: self._go(pages.TOOLS),
             "F9": lambda: self._go(pages.SECCMP),
             "F10": model.tool.undo,
