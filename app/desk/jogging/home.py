@@ -45,7 +45,11 @@ class HomeAsk:
     @property
     def axes(self) -> tuple[Axis, ...]:
         """What there is to home, C only where the spindle is an axis."""
-        return tuple(a for a in self.machine.axes if a.name != "C" or self.machine.c_enabled)
+        return tuple(
+            a
+            for a in self.machine.axes
+            if a.name != "C" or self.machine.c_enabled or self.machine.kind != "lathe"
+        )
 
     def known(self, snapshot: Snapshot) -> dict[str, Known]:
         """How it stands with every axis."""
