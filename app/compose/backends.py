@@ -11,9 +11,10 @@ from app.compose.simulated import simulated
 from app.desk.station import StationPanel
 from core.machine.model import Machine
 from core.ports import Clock, DriverError, MachinePorts
-from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.client import Line
 from drivers.feeder.hands import FeederHands
 from drivers.feeder.links import LoopLink
+from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.simulated import RealClock
 

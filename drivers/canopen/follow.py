@@ -1,26 +1,15 @@
-"""How setpoints reach the drives: through the queue in each drive (PVT), or one at a time (CSP)."""
+"""How setpoints reach the drives: the common shape, and one at a time (CSP), experimental."""
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Sequence
-from enum import Enum
 from typing import Protocol
 
 from core.ports import Segments
 from drivers.canopen.config import AxisConfig
 from drivers.canopen.drive import Drive402
-from drivers.canopen.pvt import packed, span
-from drivers.canopen.states import BIT_12, CSP, IP, NEW
+from drivers.canopen.states import CSP
 from drivers.setpoint_queue import SetpointQueue
-
-_log = logging.getLogger(__name__)
-
-LOW_WATER = 2  # records; with fewer a drive faults
-RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
-_LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
-_BEGIN = 0.3  # s in which a drive must have begun
-_PREFILL = 2  # records of rest before the queues are let go
 
 
 class Fed(Protocol):
@@ -42,7 +31,9 @@ class Follower(Protocol):
         """Refuse, by DriverError, what these drives cannot follow."""
         ...
 
-    def spliced(self) -> None: ...
+    def braked(self, at: float) -> None:
+        """The queue brakes from ``at`` on, without anything spliced."""
+        ...
 
     def feed(self, now: float) -> None:
         """Once a tick, before the commands go out."""
@@ -55,124 +46,6 @@ class Follower(Protocol):
     def abort(self) -> None:
         """The drives stop by themselves: nothing is fed any more."""
         ...
-
-
-class _Phase(Enum):
-    REST = "the drives' queues are empty"
-    PLAYING = "they play"
-    ENDING = "the last point is in them"
-
-
-class PvtFollower:
-    """Records of whole milliseconds, all axes at the same points, a fixed time ahead and never empty."""
-
-    mode = IP
-
-    def __init__(
-        self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue, ahead: float, record: float
-    ) -> None:
-        self._axes = axes
-        self._indices = indices  # of these axes in the queue
-        self._queue = queue
-        self._ahead = ahead - RESTART
-        self._longest = round(1000 * record)
-        self._counts = [axis.config.count for axis in axes]
-        self._phase = _Phase.REST
-        self.front = 0.0  # time of the next point
-        self._begun = 0.0
-        self.trouble = ""
-        self.urgent = False
-        self.off_path = 0.0
-        self.lowest = float("inf")  # s, the least that was ever queued in the drives
-
-    @property
-    def playing(self) -> bool:
-        """The drives' queues are running."""
-        return self._phase is not _Phase.REST
-
-    def check(self, segments: Segments) -> None:
-        """Any path will do."""
-
-    def spliced(self) -> None:
-        """Taken up by the next feed."""
-
-    def prepare(self) -> None:
-        """Empty queues, so that nothing old is played."""
-        for axis in self._axes:
-            for clear in (0, 1):
-                axis.drive.setup.write(0x60C4, 6, clear)
-        self.abort()
-
-    def abort(self) -> None:
-        """Nothing is fed any more."""
-        self._phase, self.trouble = _Phase.REST, ""
-        for axis in self._axes:
-            axis.drive.extra &= ~NEW
-
-    def feed(self, now: float) -> None:
-        """Begin, go on or end."""
-        if self._phase is _Phase.REST and self._queue.horizon(now) > now:
-            self._begin(now)
-        elif self._phase is _Phase.PLAYING:
-            self._watch(now)
-            self._top_up(now)
-        elif self._phase is _Phase.ENDING and now > self.front and not self._active(any):
-            self.abort()
-            self.urgent = True  # bit 4 must be seen to fall before it rises again
-
-    def _begin(self, now: float) -> None:
-        """Points of rest, then all drives at one SYNC: the first point is where the slides stand."""
-        if any(self._queue.demand_at(now)[1]):
-            self.trouble = "the drives were late to begin; the path has begun without them"
-            return
-        self.front = self._begun = now
-        for _ in range(_PREFILL):
-            self._push(self._longest)
-        for axis in self._axes:
-            axis.drive.extra |= NEW
-        self._phase, self.urgent = _Phase.PLAYING, True  # the time of that SYNC is the first point's
-        self._top_up(now)
-
-    def _watch(self, now: float) -> None:
-        left = self.front - now
-        if left < LOW_WATER * 0.001 * self._longest and left < self.lowest:
-            _log.warning("the drives' queues are low: %.0f ms left", 1000 * left)
-        self.lowest = min(self.lowest, left)
-        if left <= 0.0:
-            self.trouble = self.trouble or "the drives' queues ran dry: this computer was away for too long"
-        if now - self._begun > _BEGIN and not self._active(all):
-            names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
-            self.trouble = self.trouble or f"{', '.join(names)}: the drive's queue has stopped playing"
-
-    def _top_up(self, now: float) -> None:
-        at_rest = self._queue.horizon(now) <= min(self.front, now)
-        if at_rest and now - self._queue.horizon(-1e9) > _LINGER:
-            self._push(0)
-            self._phase = _Phase.ENDING
-            return
-        while True:
-            stretch = span(self._demand, self.front, self._longest, self._counts)
-            if self.front + 0.001 * stretch.ms > now + self._ahead:
-                return
-            self.off_path = max(self.off_path, stretch.off)
-            self._push(stretch.ms)
-
-    def _push(self, ms: int) -> None:
-        positions, velocities = self._demand(self.front)
-        for axis, p, v in zip(self._axes, positions, velocities, strict=True):
-            speed = v / axis.config.count
-            if axis.config.counts_per_rev:
-                speed *= 60.0 / axis.config.counts_per_rev
-            axis.drive.push(packed(ms, speed, p / axis.config.count))
-        self.front += 0.001 * ms
-
-    def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        p, v = self._queue.demand_at(t)
-        return tuple([p[i] for i in self._indices]), tuple([v[i] for i in self._indices])
-
-    def _active(self, some: object) -> bool:
-        active = [bool(axis.drive.status & BIT_12) for axis in self._axes]
-        return all(active) if some is all else any(active)
 
 
 class CspFollower:
@@ -194,7 +67,7 @@ class CspFollower:
     def check(self, segments: Segments) -> None:
         """Any path will do."""
 
-    def spliced(self) -> None:
+    def braked(self, at: float) -> None:
         """Taken up by the next feed."""
 
     def prepare(self) -> None:

@@ -25,7 +25,7 @@ class CanopenMachine:
         try:
             self.axes = CanopenAxes(config, self.bus)
             self.spindle = CanopenSpindle(config.spindle, self.bus) if config.spindle else None
-            drives = {axis.config.name: axis.drive for axis in self.axes.driven}
+            drives = {axis.config.name: axis.drive for axis in self.axes.drives.axes}
             self.io = CanopenIO(config, self.bus, drives)
             self.axes.clearing = [self.io.clear_fault]
             if self.spindle is not None:
@@ -80,7 +80,7 @@ class CanopenMachine:
         if self.spindle is not None:
             self.spindle.connect()
         self.io.connect()
-        self.axes.operational()
+        self.axes.drives.operational()
         if self.spindle is not None:
             self.spindle.drive.operational()
         self.io.operational()
@@ -89,14 +89,14 @@ class CanopenMachine:
         self.bus.wait(self._answered, _FIRST)
 
     def _answered(self) -> bool:
-        drives = [axis.drive for axis in self.axes.driven]
+        drives = [axis.drive for axis in self.axes.drives.axes]
         if self.spindle is not None:
             drives.append(self.spindle.drive)
         silent = [drive.missing for drive in drives] + [m.missing for m in self.io.modules.values()]
         return not any(silent)
 
     def _exchange(self) -> None:
-        self.axes.command()
+        self.axes.drives.command()
         if self.spindle is not None:
             self.spindle.drive.command()
         for module in self.io.modules.values():

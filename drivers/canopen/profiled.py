@@ -27,7 +27,7 @@ class ProfiledFollower:
         self._axes = axes
         self._indices = indices
         self._queue = queue
-        self._pending: tuple[float, Segments] | None = None
+        self._pending: tuple[float, Segments | None] | None = None
         self._told = -1.0
         self.trouble = ""
         self.urgent = False
@@ -49,8 +49,9 @@ class ProfiledFollower:
             )
         self._pending = (float(segments.t[0]), segments)
 
-    def spliced(self) -> None:
-        """Taken up by the next feed."""
+    def braked(self, at: float) -> None:
+        """The end of the queue is another now, and is reached by braking as hard as the axes may."""
+        self._pending = (at, None)
 
     def prepare(self) -> None:
         """The drives begin where they stand."""
@@ -73,14 +74,16 @@ class ProfiledFollower:
             self._pending, self._told = None, now
             self._hand_over(segments)
 
-    def _hand_over(self, segments: Segments) -> None:
+    def _hand_over(self, segments: Segments | None) -> None:
         rest, _ = self._queue.demand_at(float("inf"))
         self.urgent = True
         for axis, i in zip(self._axes, self._indices, strict=True):
             count, drive = axis.config.count, axis.drive
-            speed = max(float(np.abs(segments.v[:, i]).max()) / count, 1.0)
-            accel = max(float(np.abs(segments.a[:, i]).max()) / count, 1.0)
-            drive.setup.write(od.PROFILE_SPEED, 0, round(speed))
+            accel = axis.config.amax / count
+            if segments is not None:
+                speed = max(float(np.abs(segments.v[:, i]).max()) / count, 1.0)
+                accel = max(float(np.abs(segments.a[:, i]).max()) / count, 1.0)
+                drive.setup.write(od.PROFILE_SPEED, 0, round(speed))
             drive.setup.write(od.PROFILE_ACCEL, 0, round(accel))
             drive.setup.write(od.PROFILE_DECEL, 0, round(accel))
             drive.target = round(rest[i] / count)

@@ -7,6 +7,7 @@ from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import SpindleConfig
 from drivers.canopen.drive import Drive402
+from drivers.canopen.standing import stopping
 from drivers.canopen.states import MODE_BITS, PV, DriveState
 
 _STANDS = 2.0  # rpm
@@ -22,16 +23,12 @@ class CanopenSpindle:
 
     def connect(self) -> None:
         """Configure it. Raises DriverError."""
-        config, beat = self._config, self._bus.config.heartbeat
+        config = self._config
         standing = (
-            (od.ABORT_OPTION, 0, 3),
-            (od.QUICK_OPTION, 0, 2),
-            (od.FAULT_OPTION, 0, 2),
+            *stopping(self._bus.config),
             (od.PROFILE_ACCEL, 0, round(config.accel)),
             (od.PROFILE_DECEL, 0, round(config.decel)),
             (od.QUICK_DECEL, 0, round(config.decel)),
-            (od.HEARTBEAT, 0, round(1000 * beat)),
-            (od.WATCHED, 1, self._bus.config.host_id << 16 | round(3000 * beat)),
         )
         self.drive.connect((), MODE_BITS[PV], (*standing, *config.objects))
         self.drive.mode, self.drive.target = PV, 0

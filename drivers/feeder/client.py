@@ -1,4 +1,4 @@
-"""The control's side of the feeder: the ports, each call a message. A feeder that is gone is a fault."""
+"""The control's side of the feeder: requests in words. A feeder that is gone is a fault, and no hang."""
 
 from __future__ import annotations
 
@@ -7,18 +7,8 @@ import queue
 from collections.abc import Mapping
 from typing import Protocol
 
-from core.ports import (
-    AxisSample,
-    Cam,
-    Clock,
-    DriverError,
-    Geared,
-    MachinePorts,
-    Segments,
-    StationState,
-    Stop,
-)
-from drivers.feeder.wire import NOTHING, Message, cam_message, floats, number, rows, text
+from core.ports import Clock, DriverError
+from drivers.feeder.wire import NOTHING, Message, text, texts
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
@@ -78,180 +68,10 @@ class Line:
             except DriverError as error:
                 self.lost = self.lost or str(error)
             self._at = now
-            for note in _texts(self._state.get("notes")):
+            for note in texts(self._state.get("notes")):
                 _log.warning("feeder: %s", note)
         return self._state
 
     def close(self) -> None:
         """End it."""
         self._link.close()
-
-
-class FeederAxes:
-    """``core.ports.AxisSink``."""
-
-    def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
-        self._line = line
-        self.axes = tuple(_texts(hello.get("axes")))
-        self.commit = number(hello, "commit")
-
-    def now(self) -> float:
-        """The machine's clock: the same in both processes."""
-        return self._line.clock.now()
-
-    def horizon(self) -> float:
-        """End of what is queued."""
-        return number(self._line.ask(Message({"do": "horizon"}, NOTHING)).head, "value")
-
-    def splice(self, segments: Segments) -> None:
-        """Queue setpoints. Raises DriverError as the port says."""
-        self._line.ask(Message({"do": "splice"}, rows(segments)))
-
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``."""
-        numbers = self._line.ask(Message({"do": "demand", "t": t}, NOTHING)).numbers.tolist()
-        half = len(self.axes)
-        return tuple(numbers[:half]), tuple(numbers[half:])
-
-    def sample(self) -> AxisSample:
-        """The axes now. A feeder that is gone is a fault of all of them."""
-        raw = self._line.look(anew=True).get("sample")
-        shown = raw if isinstance(raw, dict) else {}
-        none = (0.0,) * len(self.axes)
-        return AxisSample(
-            t=number(shown, "t") if shown else self.now(),
-            demand=floats(shown.get("demand", none)),
-            actual=floats(shown.get("actual", none)),
-            following_error=floats(shown.get("following_error", none)),
-            enabled=shown.get("enabled") is True and not self._line.lost,
-            homed=tuple(one is True for one in _list(shown.get("homed"))) or (False,) * len(self.axes),
-            moving=shown.get("moving") is True and not self._line.lost,
-            fault=self._line.lost or text(shown, "fault"),
-        )
-
-    def enable(self, on: bool) -> None:
-        """Drives on or off."""
-        self._line.order("enable", on=on)
-
-    def stop(self, how: Stop) -> None:
-        """The drives' own stop."""
-        self._line.order("stop", how=how.value)
-
-    def home(self, axis: str) -> None:
-        """Start homing."""
-        self._line.order("home", name=axis)
-
-    def clear_fault(self) -> None:
-        """Forget the fault."""
-        self._line.order("clear_fault")
-
-
-class FeederGear:
-    """``core.ports.Gear``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
-
-    def mesh(self, cam: Cam) -> None:
-        """Follow the spindle. Raises DriverError."""
-        self._line.ask(cam_message(cam))
-
-    def geared(self) -> Geared | None:
-        """Where on its cam the feeder's driver is."""
-        shown = self._line.look(anew=True).get("geared")
-        return None if shown is None or self._line.lost else Geared(*floats(shown))
-
-
-class FeederSpindle:
-    """``core.ports.Spindle``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
-
-    def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed."""
-        self._line.order("run", rpm=rpm)
-
-    def coast(self) -> None:
-        """No torque."""
-        self._line.order("coast")
-
-    def speed(self) -> float:
-        """Measured rpm; what is not known counts as standing."""
-        shown = self._line.look()
-        return number(shown, "speed") if shown else 0.0
-
-    def angle(self) -> tuple[float, float] | None:
-        """(time, turns) from the encoder, or None without one."""
-        shown = self._line.look().get("angle")
-        if shown is None:
-            return None
-        t, turns = floats(shown)
-        return t, turns
-
-    def fault(self) -> str:
-        """What is wrong with it."""
-        return self._line.lost or text(self._line.look(), "spindle")
-
-
-class FeederIO:
-    """``core.ports.DigitalIO``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
-
-    def inputs(self) -> Mapping[str, bool]:
-        """All inputs by name."""
-        return _flags(self._line.look().get("inputs"))
-
-    def outputs(self) -> Mapping[str, bool]:
-        """All outputs as last written."""
-        return _flags(self._line.look().get("outputs"))
-
-    def write(self, name: str, on: bool) -> None:
-        """Switch one output."""
-        self._line.order("write", name=name, on=on)
-
-    def safe(self) -> None:
-        """Every output to its safe state."""
-        self._line.order("safe")
-
-
-class FeederStation:
-    """``core.ports.Station``."""
-
-    def __init__(self, line: Line) -> None:
-        self._line = line
-
-    def snapshot(self) -> StationState:
-        """The station now; without the feeder nothing is pressed, and it has been silent for ever."""
-        shown = self._line.look().get("station")
-        if self._line.lost or not isinstance(shown, dict):
-            return StationState(age=float("inf"))
-        return StationState(**shown)
-
-
-def feeder_ports(line: Line) -> MachinePorts:
-    """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
-    hello = line.ask(Message({"do": "hello"}, NOTHING)).head
-    return MachinePorts(
-        clock=line.clock,
-        axes=FeederAxes(line, hello),
-        spindle=FeederSpindle(line),
-        io=FeederIO(line),
-        station=FeederStation(line),
-        warnings=tuple(_texts(hello.get("warnings"))),
-        gear=FeederGear(line) if hello.get("gear") is True else None,
-    )
-
-
-def _list(value: object) -> list[object]:
-    return value if isinstance(value, list) else []
-
-
-def _texts(value: object) -> list[str]:
-    return [one for one in _list(value) if isinstance(one, str)]
-
-
-def _flags(value: object) -> dict[str, bool]:
-    return {name: on is True for name, on in value.items()} if isinstance(value, dict) else {}

@@ -118,3 +118,13 @@ def floats(values: object) -> tuple[float, ...]:
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
         raise DriverError("the feeder answered no numbers")
     return tuple(float(v) for v in values)
+
+
+def items(value: object) -> list[object]:
+    """A list as it comes out of JSON; an empty one for anything else."""
+    return value if isinstance(value, list) else []
+
+
+def texts(value: object) -> list[str]:
+    """The texts of a list."""
+    return [one for one in items(value) if isinstance(one, str)]

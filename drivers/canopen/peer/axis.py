@@ -132,7 +132,7 @@ class AxisDrive:
             if rising:
                 self._homing, self.homed, self._settled = True, False, 0.0
             elif not word & NEW:
-                self._homing = False
+                self._homing, self.v = False, 0.0
         elif self.mode == PP:
             if rising:
                 self._going = True

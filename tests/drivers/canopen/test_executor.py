@@ -107,7 +107,8 @@ def test_a_drive_fault_stops_all_axes_and_spindle(rig: BusRig) -> None:
 def test_a_drive_that_restarts_has_lost_its_home() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     rig.ready()
-    rig.bench.machine.axes.driven[0].homed = rig.bench.machine.axes.driven[1].homed = True
+    for axis in rig.bench.machine.axes.drives.axes:
+        axis.homed = True
     rig.run(0.1)
     rig.bench.peers.nodes["X"].boot()
     rig.until(State.FAULT)

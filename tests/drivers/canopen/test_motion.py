@@ -167,9 +167,20 @@ def test_a_homing_that_is_stopped_leaves_the_axis_unhomed(lost: CanBench) -> Non
     axes.home("Z")
     lost.run(0.5)
     axes.stop(Stop.RAMP_HOLD)
+    assert axes.sample().moving
+    with pytest.raises(DriverError, match="homing"):
+        axes.splice(ramp(lost.clock.now() + 0.2, ZERO, 60.0, 0.1))
     lost.run(0.5)
-    assert not axes.sample().homed[1]
-    assert not axes.sample().moving
+    sample = axes.sample()
+    assert not sample.homed[1]
+    assert not sample.moving
+    # the path goes on from where the drive has stopped, not from where the homing began
+    assert sample.actual[1] > 5.0
+    assert sample.demand == pytest.approx(sample.actual)
+    axes.splice(ramp(lost.clock.now() + 0.15, (0.0, sample.demand[1], 0.0), 60.0, 0.1))
+    lost.run(1.0)
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[1] == pytest.approx(sample.actual[1], abs=0.002)
 
 
 def profiled() -> CanBench:
@@ -184,6 +195,21 @@ def test_profile_position_goes_where_the_queue_ends() -> None:
     bench.run(1.5)
     assert axes.sample().fault == ""
     assert axes.sample().actual[0] == pytest.approx(60.0 * 0.52, abs=0.003)
+    bench.close()
+
+
+def test_profile_position_brakes_where_the_queue_does() -> None:
+    bench = profiled()
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.8))
+    bench.run(0.5)
+    axes.stop(Stop.RAMP_HOLD)
+    bench.run(0.6)
+    sample = axes.sample()
+    assert not sample.moving
+    assert sample.actual[0] < 35.0  # 60 mm/s for half a second, and the ramps; not the 49 of the whole move
+    assert sample.actual[0] == pytest.approx(sample.demand[0], abs=0.003)
     bench.close()
 
 

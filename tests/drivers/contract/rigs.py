@@ -9,8 +9,9 @@ from app.compose.simulated import simulated
 from core.machine.load import load_machine
 from core.machine.model import Machine
 from core.ports import DriverError, MachinePorts
-from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.client import Line
 from drivers.feeder.links import LoopLink
+from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.feeder.wire import Message
 from drivers.simulated import SimMachine, StepClock

@@ -11,7 +11,7 @@ import numpy as np
 from app.compose.feeder import FeederProcess
 from core.machine.load import load_machine
 from core.ports import Segments
-from drivers.feeder.client import feeder_ports
+from drivers.feeder.ports import feeder_ports
 from drivers.simulated import RealClock
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z

@@ -7,8 +7,9 @@ import pytest
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from core.interpreter.setup import ToolOffset
-from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.client import Line
 from drivers.feeder.links import LoopLink
+from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.simulated import Simulation
 from tests.drivers.contract.rigs import SimDriven

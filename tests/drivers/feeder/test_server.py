@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, MachinePorts
-from drivers.feeder.client import Line, feeder_ports
+from drivers.feeder.client import Line
 from drivers.feeder.hands import FeederHands
 from drivers.feeder.links import LoopLink, SocketLink
 from drivers.feeder.loop import serve
+from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
 from drivers.simulated import RealClock, Simulation, StepClock, build_simulation
