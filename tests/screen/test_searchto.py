@@ -186,6 +186,7 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     operator.key(Key.Key_F5)
     page = page_of(operator)
     assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
+    assert page.starts.trouble == ""
     operator.key(Key.Key_F4)
     page = page_of(operator)
     assert page.starts.choices == ("F4: OUTSIDE, X LAST", "F5: WITHOUT COOLANT")
@@ -282,3 +283,13 @@ def test_another_tool_at_the_part_has_to_be_jogged_clear_first(operator: Operato
     assert page.starts.trouble.startswith("T1 STANDS AT THE PART AND THE LINE WORKS WITH T2")
     operator.key(Key.Key_F10)
     assert model_of(operator).stage is Stage.SHOWN
+
+
+def test_a_way_into_the_bar_is_told(operator: Operator) -> None:
+    loaded(operator)
+    operator.key(Key.Key_F6)
+    operator.type("39")  # the boring bar, at the bottom of the bore: X.5, a radius of .25
+    page = found(operator)
+    assert page.starts.trouble == ""
+    operator.key(Key.Key_F4)  # X last would be through the bar, which has been cut from X1.1
+    assert page_of(operator).starts.trouble.startswith("LOOK: 2 Z COMES IN AT R0.25000, AND")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from app.desk import formats
 from app.desk.drawing.approach import Leg as Drawn
@@ -15,6 +16,7 @@ from core.interpreter.restart.approach import Choices, Now, begin_at, starting
 from core.interpreter.restart.rebuild import Found
 
 _CLEAR = 0.5  # mm short of where the program was clear of the part
+_DEEP = 0.1  # mm below the bar's surface
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,18 +43,21 @@ class Plan:
     starts: tuple[str, ...]  # what will turn, flow or switch on
     legs: tuple[Drawn, ...]
     trouble: str = ""  # why it cannot be started as the machine stands
+    warning: str = ""  # where the way may meet the part
 
 
 def plan_of(found: Found, snapshot: Snapshot, choices: Choices) -> Plan:
     """The plan from where the machine stands now."""
     now = Now(snapshot.demand, snapshot.modal)
     begin = begin_at(found, now, choices)
+    legs = _drawn(begin, snapshot)
     return Plan(
         found=found,
         begin=begin,
         rows=_rows(begin.checkpoint, snapshot),
         starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
-        legs=_drawn(begin, snapshot),
+        legs=legs,
+        warning="" if choices.inside else _through_stock(found, legs),
         trouble=_collet(found.checkpoint, snapshot) or _tool(found, snapshot),
     )
 
@@ -116,6 +121,17 @@ def _tool(found: Found, snapshot: Snapshot) -> str:
         return ""
     words = tr("T{now} STANDS AT THE PART AND THE LINE WORKS WITH T{wanted}: JOG Z CLEAR OF THE PART FIRST")
     return words.format(now=now, wanted=wanted)
+
+
+def _through_stock(found: Found, legs: tuple[Drawn, ...]) -> str:
+    """A leg towards the spindle at a smaller radius than the program has fed at; in a bore every one is."""
+    modal = found.checkpoint.modal
+    for start, end in pairwise(legs):
+        if end.z < start.z - _CLEAR and abs(end.x) < found.clear.stock - _DEEP:
+            at, bar = (formats.length(r, modal.metric) for r in (abs(end.x), found.clear.stock))
+            words = tr("LOOK: {leg} COMES IN AT R{at}, AND THE PROGRAM HAS CUT AT R{bar}")
+            return words.format(leg=end.label, at=at, bar=bar)
+    return ""
 
 
 def _collet(point: Checkpoint, snapshot: Snapshot) -> str:

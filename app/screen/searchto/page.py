@@ -163,7 +163,8 @@ class SearchPage(Page):
         choices = [inside]
         if plan.found.checkpoint.modal.coolant:
             choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
-        self.starts.show_starts(plan.starts, choices, plan.trouble, confirmed=model.stage is Stage.READY)
+        trouble = plan.trouble or plan.warning
+        self.starts.show_starts(plan.starts, choices, trouble, confirmed=model.stage is Stage.READY)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Program, state, and the way over what will start."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter
@@ -13,10 +14,11 @@ from app.screen.look import LEFT, Look, put
 from app.screen.panel import Panel
 
 ROW = 2.7  # units
+ACROSS = 40  # characters of a line of trouble
 
 
 class StartsPanel(Panel):
-    """``choices`` are told with their keys; ``trouble`` keeps it from starting."""
+    """``choices`` are told with their keys; ``trouble`` keeps it from starting, or has to be looked at."""
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -42,8 +44,7 @@ class StartsPanel(Panel):
         if self.choices and not self.starts:
             lines.append((tr("NOTHING BUT THE SLIDES"), "text", True))
         lines += [(text, "soft", False) for text in self.choices]
-        if self.trouble:
-            lines.append((self.trouble, "alarm", True))
+        lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
         high = min(ROW * u, room.height() / max(1, len(lines)))
         for number, (text, colour, bold) in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)

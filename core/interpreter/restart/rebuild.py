@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.begin import Begin, Checkpoint
-from core.interpreter.blocks import Block
+from core.interpreter.blocks import Block, Kind
 from core.interpreter.program import Program, read_program
 from core.interpreter.restart.good import Lines
 from core.interpreter.restart.side import works_inside
@@ -33,9 +33,13 @@ _UP, _DOWN = 3, 500  # lines tried
 
 @dataclass(frozen=True, slots=True)
 class Clear:
-    """How far off the part the program itself has been, machine mm; ``x`` by tool: least and greatest."""
+    """How far off the part the program itself has been, machine mm; ``x`` by tool: least and greatest.
+
+    ``stock`` is the largest radius, mm from the centre line, at which it has fed: the bar is hardly larger.
+    """
 
     z: float = -math.inf
+    stock: float = 0.0
     x: Mapping[int, tuple[float, float]] = field(default_factory=dict)
 
 
@@ -84,7 +88,7 @@ class Rebuild:
         point = self._walk.checkpoint
         ahead = Walk(self._program, replace(self._setup, begin=Begin(point, line)))
         inside = works_inside(point.machine[0] - point.modal.tool_x, ahead.blocks(to_first_error=True))
-        return Found(line, point, Clear(self._z, dict(self._x)), inside)
+        return Found(line, point, Clear(self._z, self._stock, dict(self._x)), inside)
 
     def _good(self, line: int, way: int) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
@@ -96,7 +100,7 @@ class Rebuild:
 
     def _begin_anew(self) -> None:
         self._at, self._count = 1, 0
-        self._z = -math.inf
+        self._z, self._stock = -math.inf, 0.0
         self._x: dict[int, tuple[float, float]] = {}
         self._ended = 0
         self._asked = 0  # line whose input the second pass answers differently
@@ -148,6 +152,9 @@ class Rebuild:
         self._z = max(self._z, z)
         low, high = self._x.get(tool, (x, x))
         self._x[tool] = (min(low, x), max(high, x))
+        if block.kind is not Kind.RAPID:
+            centre = block.modal.tool_x
+            self._stock = max(self._stock, abs(x - centre), abs(block.x0 + block.offset_x - centre))
 
     def _ask(self) -> None:
         """From here on the second pass is the one in which the input of this line answers otherwise."""

@@ -15,7 +15,9 @@ from core.language.source import Source
 from tests.interpreter.programs import setup
 
 AT = Checkpoint(Modal(tool=1, tool_x=-10.0, tool_z=-50.0, spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
-FOUND = Found(9, AT, Clear(-48.0, {1: (-2.0, 5.0)}))  # the tool was 15 mm off the centre, Z 2 mm off the face
+FOUND = Found(
+    9, AT, Clear(-48.0, 14.0, {1: (-2.0, 5.0)})
+)  # the tool was 15 mm off the centre, Z 2 mm off the face
 STANDS = Now((-3.0, -60.0, 0.0), Modal(tool=1, tool_x=-10.0, tool_z=-50.0))
 
 
@@ -45,7 +47,7 @@ def test_inside_a_bore_z_goes_out_first_and_comes_in_last() -> None:
 
 def test_on_the_far_side_of_the_centre_line_out_is_x_minus() -> None:
     point = replace_point(AT, x=-8.0)
-    found = Found(9, point, Clear(-48.0, {1: (-40.0, -15.0)}))
+    found = Found(9, point, Clear(-48.0, 14.0, {1: (-40.0, -15.0)}))
     now = Now((-17.0, -60.0, 0.0), STANDS.modal)
     assert legs(way(found, now, Choices())) == [(-40.0, None), (None, -48.0), (None, -62.0), (-18.0, None)]
 

@@ -31,6 +31,7 @@ def test_everything_that_a_line_inherits() -> None:
     assert (modal.diameter, modal.tool, modal.spindle, modal.rpm, modal.coolant) == (True, 1, 1, 900.0, True)
     assert (modal.per_rev, modal.feed) == (True, pytest.approx(0.005 * INCH))
     assert point.first_feed == pytest.approx(300 * INCH / 60)  # it goes on to count as a rapid
+    assert found.clear.stock == pytest.approx(0.5 * INCH)  # it has fed at X1, a diameter
     assert found.clear.z == pytest.approx(-20.0 + 0.1 * INCH)
     assert found.clear.x[1] == pytest.approx((-10.0 + 0.5 * INCH, -10.0 + 0.5 * INCH))
 
