@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from app.desk.mdi.findings import never_set, prompt
 from app.desk.mdi.typing import Typing
+from app.desk.pages import STOPPING
 from app.desk.session import Proved, Watch
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare, SpindleStop
@@ -15,9 +16,6 @@ from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.language.diagnostics import Diagnostic, Severity
-
-ALWAYS_KEYS = frozenset("EeHh ")
-"""E-stop and feed hold: no word of the language begins so, and they keep their meaning while typing."""
 
 
 class AbandonedError(Exception):
@@ -86,7 +84,7 @@ class MdiDesk:
         """Whether a character is text now: at rest, and not one that must always stop the machine."""
         if len(key) != 1 or self.snapshot().state is not State.IDLE:
             return False
-        return key not in ALWAYS_KEYS or self.typing.in_comment
+        return key not in STOPPING or self.typing.in_comment
 
     def typed(self, key: str) -> bool:
         """A key that was pressed; False leaves it to the window."""

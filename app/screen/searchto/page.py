@@ -23,7 +23,6 @@ from app.screen.searchto.starts import StartsPanel
 from core.executor.snapshot import Snapshot
 
 LIST, STATE, ASKED, STARTS = 0.3, 0.4, 4.6, 19.0  # shares of the width; units of height
-ALWAYS_KEYS = frozenset("EeHh ")
 
 
 class SearchPage(Page):
@@ -72,7 +71,7 @@ class SearchPage(Page):
 
     def takes(self, key: str) -> bool:
         """Characters are the question's; E and H stop the machine as long as nothing is typed."""
-        return len(key) == 1 and (bool(self.model.cursor.text) or key not in ALWAYS_KEYS)
+        return len(key) == 1 and (bool(self.model.cursor.text) or key not in pages.STOPPING)
 
     def typed(self, key: str) -> bool:
         """Arrows choose a line, everything else is typed."""
