@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import struct
 import time
 from collections.abc import Callable
 from typing import Any, NoReturn
@@ -15,6 +17,9 @@ from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 from core.ports import Clock, DriverError
 from drivers.canopen.config import BusConfig
 
+_log = logging.getLogger(__name__)
+
+_GARBLED = 3  # frames of a wrong shape
 _BUS_OFF = 0x40  # class of an error frame: the controller has switched itself off
 _OPERATIONAL = 5
 _ROUNDS = 400  # looks at a bus whose clock stands, before nobody answers
@@ -29,6 +34,7 @@ class Bus(canopen.Network):
         super().__init__(opened(config))
         self.config = config
         self.clock = clock
+        self.garbled = 0
         self.trouble = ""  # why the bus cannot be trusted; stays until it is opened anew
         self._idle = idle
         self._next_beat = clock.now()
@@ -114,7 +120,19 @@ class Bus(canopen.Network):
             if message.arbitration_id & _BUS_OFF:
                 self.lost("bus-off: the CAN controller has switched itself off; check cable and termination")
         elif not message.is_remote_frame and not message.is_extended_id:
+            self._deliver(message)
+
+    def _deliver(self, message: can.Message) -> None:
+        """To whoever listens; a few frames of a wrong shape are dropped, more of them end the trust."""
+        try:
             self.notify(message.arbitration_id, bytearray(message.data), self.clock.now())
+        except (struct.error, IndexError, ValueError) as error:
+            self.garbled += 1
+            _log.warning("CAN frame %03X makes no sense: %s", message.arbitration_id, error)
+            if self.garbled >= _GARBLED:
+                self.lost(
+                    f"frames that make no sense, the last {message.arbitration_id:03X}: check node numbers"
+                )
 
     def _another_master(self, can_id: int, _data: bytearray, _timestamp: float) -> None:
         what = {_SYNC: "SYNC", _NMT: "NMT commands"}.get(can_id, "our heartbeat")
@@ -128,6 +146,12 @@ class WaitingSdo(SdoClient):
 
     def __init__(self, rx_cobid: int, tx_cobid: int, dictionary: canopen.ObjectDictionary) -> None:
         SdoClient.__init__(self, rx_cobid, tx_cobid, dictionary)
+
+    def on_response(self, can_id: int, data: bytes, timestamp: float) -> None:
+        """An answer has eight bytes; anything else is none. Raises ValueError."""
+        if len(data) != 8:
+            raise ValueError(f"an SDO answer of {len(data)} bytes")
+        SdoClient.on_response(self, can_id, data, timestamp)
 
     def read_response(self) -> bytes:
         """The answer. Raises SdoCommunicationError without one, SdoAbortedError when the node refuses."""

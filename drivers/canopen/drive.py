@@ -129,13 +129,11 @@ class Drive402:
         self.trouble = self.trouble or what
 
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
-        if len(map_.data) == _SHOWN.size:
-            self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
-            self.missing, self.answered = 0, self.asked
+        self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
+        self.missing, self.answered = 0, self.asked
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
-        if len(map_.data) == _MORE.size:
-            self.more, self.inputs = _MORE.unpack(map_.data)
+        self.more, self.inputs = _MORE.unpack(map_.data)
 
     def _heartbeat(self, state: int) -> None:
         self.heard = self.bus.clock.now()
