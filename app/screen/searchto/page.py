@@ -15,7 +15,7 @@ from app.desk.view import View
 from app.desk.words import tr
 from app.screen.listing import Listing
 from app.screen.pages import Doings, Host, Page
-from app.screen.path.aspects import tip_of
+from app.screen.path.aspects import Tip, tip_of
 from app.screen.pathview import PathView
 from app.screen.searchto.asked import AskedPanel
 from app.screen.searchto.beside import Near, StatePanel, StateShown
@@ -128,8 +128,13 @@ class SearchPage(Page):
         self.listing.show_run(model.cursor.line, "", "")
         self.state.show_state(self._shown())
         self._show_plan()
-        self.path.show_tip(tip_of(snapshot)._replace(block=0))
+        self.path.show_tip(self._tip(snapshot))
         self.path.advance()
+
+    def _tip(self, snapshot: Snapshot) -> Tip:
+        """With a plan, the tip of the tool that the line works with: the way begins there."""
+        legs = self.model.plan.legs if self.model.plan is not None else ()
+        return Tip(0, legs[0].z, legs[0].x) if legs else tip_of(snapshot)._replace(block=0)
 
     def _shown(self) -> StateShown:
         model, line = self.model, self.model.cursor.line
