@@ -293,3 +293,20 @@ def test_a_way_into_the_bar_is_told(operator: Operator) -> None:
     assert page.starts.trouble == ""
     operator.key(Key.Key_F4)  # X last would be through the bar, which has been cut from X1.1
     assert page_of(operator).starts.trouble.startswith("LOOK: 2 Z COMES IN AT R0.25000, AND")
+
+
+def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
+    operator.stage.start()
+    operator.until(lambda: operator.shot.state is State.PROGRAM_STOP or operator.shot.line == 38, 240.0)
+    operator.pause(0.3)
+    estop_and_recover(operator)
+    operator.key(Key.Key_F6)
+    page = found(operator)
+    assert page.state.shown.title == "STATE AT LINE 38"
+    assert [leg.label for leg in page.path.legs] == ["", "1 Z"]  # the bar stands on X.5 already: out along Z
+    confirmed(operator)
+    x = operator.shot.demand[0]
+    operator.palms()
+    operator.until(lambda: operator.shot.line == 38 and operator.shot.rpm_actual > 2000, 30.0)
+    assert operator.shot.demand[0] == pytest.approx(x, abs=0.01)
+    operator.until(lambda: operator.shot.parts == 1, 240.0)
