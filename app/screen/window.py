@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.prompts import UNDER_WAY
 from app.screen.frame import Frame
 from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
-from app.screen.language import speak_in
+from app.screen.language import speak_in, spoken
 from app.screen.layout import LEAST
 from app.screen.look import Look, dress
 from app.screen.theme import PALETTES
@@ -33,7 +33,6 @@ class MainWindow(QWidget):
         self._closed = closed
         self.look = look
         self.frame: Frame | None = None
-        self._language = "en"
         self._keys: dict[str, Callable[[], None]] = {}
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
@@ -96,8 +95,7 @@ class MainWindow(QWidget):
     def _wear(self, frame: Frame) -> None:
         """The colours and the language that are chosen now."""
         settings = frame.desk.settings.now
-        if settings.language != self._language:
-            self._language = settings.language
+        if settings.language != spoken():
             speak_in(settings.language)
             frame.dress()
         if settings.theme != self.look.palette.name:

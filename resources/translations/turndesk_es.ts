@@ -1145,6 +1145,11 @@
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
+      <source>ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8</source>
+      <translation>EN UNA FRESADORA LA COMPENSACIÓN ES EL LARGO DE LA HERRAMIENTA: MÍDALO, Y ESCRÍBALO EN F8</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
       <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
       <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
     </message>
@@ -1389,6 +1394,36 @@
       <translation>PLANO INCLINADO</translation>
     </message>
     <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>PROVING THE LINE</source>
+      <translation>COMPROBANDO LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>Set it with F8.</source>
+      <translation>Póngala con F8.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
+      <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
+      <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
+      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/findings.py" />
+      <source>Tool {number} was never set.</source>
+      <translation>La herramienta {number} nunca se puso.</translation>
+    </message>
+    <message>
       <location filename="app/desk/mdi/mdi.py" />
       <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
       <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
@@ -1405,28 +1440,8 @@
     </message>
     <message>
       <location filename="app/desk/mdi/mdi.py" />
-      <source>PROVING THE LINE</source>
-      <translation>COMPROBANDO LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/mdi/mdi.py" />
-      <source>Set it with F8.</source>
-      <translation>Póngala con F8.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/mdi/mdi.py" />
       <source>THE LINE CANNOT BE PROVED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/mdi/mdi.py" />
-      <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
-      <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/mdi/mdi.py" />
-      <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
-      <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
     </message>
     <message>
       <location filename="app/desk/mdi/mdi.py" />
@@ -1434,19 +1449,14 @@
       <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
-      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
-      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/mdi/mdi.py" />
-      <source>Tool {number} was never set.</source>
-      <translation>La herramienta {number} nunca se puso.</translation>
-    </message>
-    <message>
       <location filename="app/desk/offsets/allowed.py" />
       <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
       <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/allowed.py" />
+      <source>A CORRECTION SWITCHES CYCLE REPEAT OFF: IT COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>UNA CORRECCIÓN APAGA REPETIR CICLO: CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
@@ -1462,11 +1472,6 @@
       <location filename="app/desk/offsets/allowed.py" />
       <source>A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY</source>
       <translation>HAY UN PROGRAMA EN CURSO: LAS COMPENSACIONES DE HERRAMIENTA SÓLO CAMBIAN ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/offsets/allowed.py" />
-      <source>CYCLE REPEAT GOES ON WITH THE OLD OFFSETS: SWITCH IT OFF, A CHANGE COUNTS AFTER THIS CYCLE</source>
-      <translation>REPETIR CICLO SIGUE CON LAS COMPENSACIONES ANTERIORES: APÁGUELO, EL CAMBIO CUENTA TRAS ESTE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
@@ -2064,6 +2069,31 @@
       <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
     </message>
     <message>
+      <location filename="app/desk/searchto/opening.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/opening.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2)</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/opening.py" />
+      <source>SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE</source>
+      <translation>BUSCAR A LEE SÓLO PROGRAMAS OMNITURN; ÉSTE ARRANCA DESDE SU PRIMERA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/opening.py" />
+      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
+      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>LOOK: {leg} COMES IN AT R{at}, AND THE PROGRAM HAS CUT AT R{bar}</source>
+      <translation>OJO: {leg} ENTRA EN R{at}, Y EL PROGRAMA CORTÓ EN R{bar}</translation>
+    </message>
+    <message>
       <location filename="app/desk/searchto/plan.py" />
       <source>SPINDLE FORWARD</source>
       <translation>HUSILLO ADELANTE</translation>
@@ -2135,28 +2165,13 @@
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
-    </message>
-    <message>
-      <location filename="app/desk/searchto/search.py" />
       <source>CHOOSE A GOOD LINE FIRST</source>
       <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2)</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/searchto/search.py" />
       <source>NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)</source>
       <translation>NO ARRANCA: BUSQUE PRIMERO UNA LÍNEA Y CONFÍRMELA (F10)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/searchto/search.py" />
-      <source>SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE</source>
-      <translation>BUSCAR A LEE SÓLO PROGRAMAS OMNITURN; ÉSTE ARRANCA DESDE SU PRIMERA LÍNEA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
@@ -2167,11 +2182,6 @@
       <location filename="app/desk/searchto/search.py" />
       <source>THE LINE CANNOT BE SEARCHED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/searchto/search.py" />
-      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
-      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
@@ -2275,8 +2285,8 @@
     </message>
     <message>
       <location filename="app/desk/special/drives.py" />
-      <source>DRIVE STATUS  ·  %1  ·  X IS A RADIUS FROM HOME</source>
-      <translation>ESTADO DE SERVOS  ·  %1  ·  X ES RADIO DESDE LA REFERENCIA</translation>
+      <source>DRIVE STATUS  ·  %1  ·  %2</source>
+      <translation>ESTADO DE SERVOS  ·  %1  ·  %2</translation>
     </message>
     <message>
       <location filename="app/desk/special/drives.py" />
@@ -2317,6 +2327,11 @@
       <location filename="app/desk/special/drives.py" />
       <source>Setpoint queue ran low: %1 times</source>
       <translation>La cola de consignas quedó corta: %1 veces</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/drives.py" />
+      <source>X IS A RADIUS FROM HOME</source>
+      <translation>X ES RADIO DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/desk/special/drives.py" />
@@ -2940,6 +2955,11 @@
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
+      <source>THIS MACHINE HAS NO AXIS {axis}</source>
+      <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
       <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
       <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
     </message>
@@ -2955,11 +2975,21 @@
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
+      <source>reads {value}</source>
+      <translation>lee {value}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/desk.py" />
+      <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
+      <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/figures.py" />
       <source>degrees</source>
       <translation>grados</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/desk/zero_offsets/figures.py" />
       <source>mm</source>
       <translation>mm</translation>
     </message>
@@ -3245,8 +3275,8 @@
     </message>
     <message>
       <location filename="app/screen/fileprompt.py" />
-      <source>RETURN takes the marked program   ESC keeps the present one</source>
-      <translation>RETURN toma el programa marcado   ESC conserva el actual</translation>
+      <source>RETURN takes the marked program   ESC keeps the present one   F2 shows the list</source>
+      <translation>RETURN toma el programa marcado   ESC conserva el actual   F2 muestra la lista</translation>
     </message>
     <message>
       <location filename="app/screen/files/page.py" />
@@ -3462,11 +3492,6 @@
       <location filename="app/screen/menu.py" />
       <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
       <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/menu.py" />
-      <source>comes with a later version</source>
-      <translation>llega en una versión posterior</translation>
     </message>
     <message>
       <location filename="app/screen/offsets/grid.py" />
@@ -3729,6 +3754,11 @@
       <translation>ARRANCARÁ</translation>
     </message>
     <message>
+      <location filename="app/screen/special/letters.py" />
+      <source>SPACE</source>
+      <translation>ESPACIO</translation>
+    </message>
+    <message>
       <location filename="app/screen/swivel/view.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
@@ -3740,13 +3770,13 @@
     </message>
     <message>
       <location filename="app/screen/zero_offsets/page.py" />
-      <source>Press C to clear G54 to G59</source>
-      <translation>Oprima C para borrar G54 a G59</translation>
+      <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
+      <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
     </message>
     <message>
       <location filename="app/screen/zero_offsets/page.py" />
-      <source>Press Esc to exit</source>
-      <translation>Oprima Esc para salir</translation>
+      <source>HERE</source>
+      <translation>AQUÍ</translation>
     </message>
     <message>
       <location filename="app/screen/zero_offsets/table.py" />
@@ -4019,6 +4049,16 @@
       <translation>apertura de boquilla rechazada</translation>
     </message>
     <message>
+      <location filename="core/executor/blockwise/pieces.py" />
+      <source>line %1 has no feed</source>
+      <translation>la línea %1 no tiene avance</translation>
+    </message>
+    <message>
+      <location filename="core/executor/blockwise/pieces.py" />
+      <source>this controller moves X and Z only</source>
+      <translation>este controlador mueve sólo X y Z</translation>
+    </message>
+    <message>
       <location filename="core/executor/by_hand.py" />
       <source>%1 %2 by hand</source>
       <translation>%1 %2 a mano</translation>
@@ -4085,6 +4125,11 @@
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
+      <source>THE CONTROLLER HOLDS</source>
+      <translation>EL CONTROLADOR RETIENE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
       <source>feed hold</source>
       <translation>retención de avance</translation>
     </message>
@@ -4147,6 +4192,11 @@
       <location filename="core/executor/gate.py" />
       <source>feed hold is pressed</source>
       <translation>la retención de avance está oprimida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>line %1: this controller cannot do %2</source>
+      <translation>línea %1: este controlador no puede hacer %2</translation>
     </message>
     <message>
       <location filename="core/executor/gate.py" />
@@ -4290,26 +4340,31 @@
     </message>
     <message>
       <location filename="core/executor/mover.py" />
-      <source>at rest because the override is 0</source>
-      <translation>en reposo porque la perilla está en 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/mover.py" />
-      <source>at rest where single block wants it</source>
-      <translation>en reposo donde lo pide bloque a bloque</translation>
-    </message>
-    <message>
-      <location filename="core/executor/mover.py" />
-      <source>it moves</source>
-      <translation>se mueve</translation>
-    </message>
-    <message>
-      <location filename="core/executor/mover.py" />
       <source>the spindle changed its speed faster than the slides could follow</source>
       <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir</translation>
     </message>
     <message>
-      <location filename="core/executor/mover.py" />
+      <location filename="core/executor/moving.py" />
+      <source>at rest because something outside the control holds it</source>
+      <translation>en reposo porque algo fuera del control lo retiene</translation>
+    </message>
+    <message>
+      <location filename="core/executor/moving.py" />
+      <source>at rest because the override is 0</source>
+      <translation>en reposo porque la perilla está en 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/moving.py" />
+      <source>at rest where single block wants it</source>
+      <translation>en reposo donde lo pide bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/executor/moving.py" />
+      <source>it moves</source>
+      <translation>se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/moving.py" />
       <source>there is none, or it has come to its end</source>
       <translation>no hay ninguno, o llegó a su final</translation>
     </message>
@@ -4550,6 +4605,16 @@
     </message>
     <message>
       <location filename="core/geometry/corner.py" />
+      <source>no arc of that radius touches both between their ends</source>
+      <translation>ningún arco de ese radio toca los dos entre sus extremos</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>of one of them %1</source>
+      <translation>de uno de ellos %1</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
       <source>the %1 is too short</source>
       <translation>el %1 es demasiado corto</translation>
     </message>
@@ -4562,6 +4627,11 @@
       <location filename="core/geometry/corner.py" />
       <source>the next line runs straight back</source>
       <translation>la línea siguiente regresa sobre sí misma</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/corner.py" />
+      <source>they go on in one direction</source>
+      <translation>siguen en una misma dirección</translation>
     </message>
     <message>
       <location filename="core/geometry/frames.py" />
@@ -5889,6 +5959,31 @@
       <translation>la T de la línea %1</translation>
     </message>
     <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>a thread that pulls out in step with the spindle; end it in a groove</source>
+      <translation>una rosca que sale en paso con el husillo; termínela en una ranura</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>constant surface speed; program the spindle in rpm with G97</source>
+      <translation>velocidad superficial constante; programe el husillo en rpm con G97</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>milling in a switched plane</source>
+      <translation>fresado en un plano cambiado</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>more axes than X and Z</source>
+      <translation>más ejes que X y Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>the C axis</source>
+      <translation>el eje C</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/nose.py" />
       <source>%1 stands while G%2 is on.</source>
       <translation>%1 está con G%2 activo.</translation>
@@ -6625,8 +6720,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>Put it behind a G1.</source>
-      <translation>Póngalo tras un G1.</translation>
+      <source>RND takes G1, G2 and G3; CHF and CHR take G1.</source>
+      <translation>RND lleva G1, G2 y G3; CHF y CHR llevan G1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
@@ -6640,18 +6735,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>line or arc</source>
+      <translation>recta o arco</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
       <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
       <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>the block is no straight move at feed</source>
-      <translation>el bloque no es una recta con avance</translation>
+      <source>straight line</source>
+      <translation>recta</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>the next move, on line %1, is no straight move of X and Z</source>
-      <translation>el movimiento siguiente, en la línea %1, no es una recta de X y Z</translation>
+      <source>the block is no %1</source>
+      <translation>el bloque no es %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/corners.py" />
+      <source>the next move, on line %1, is no %2 of X and Z</source>
+      <translation>el movimiento siguiente, en la línea %1, no es %2 de X y Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />

@@ -10,9 +10,12 @@ import pytest
 from PySide6.QtCore import QTranslator
 from PySide6.QtGui import QRawFont
 
-from app.desk.words import speak
+from app.desk.words import tr
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
 from core.executor.snapshot import Alarm
 from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
@@ -26,7 +29,7 @@ def spanish(hands: Hands) -> Iterator[Hands]:
     hands.desk.settings.choose("language", "es")
     hands.window.refresh()
     yield hands
-    speak(None)
+    speak_in("en")
 
 
 def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -101,6 +104,14 @@ def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
 @pytest.mark.parametrize("text", [text for text, told in written("es").items() if told and HOLE.search(text)])
 def test_no_value_is_lost(text: str) -> None:
     assert sorted(HOLE.findall(written("es")[text])) == sorted(HOLE.findall(text))
+
+
+def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
+    spanish.desk.settings.choose("language", "en")
+    other = MainWindow(Look(DARK))
+    other.open_desk(spanish.desk)
+    assert tr("READY") == "READY"
+    other.put_away()
 
 
 def test_an_unknown_language_has_no_catalogue() -> None:
