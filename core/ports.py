@@ -176,6 +176,7 @@ class StationState:
     spindle_auto: bool = True
     spindle_pot: float = 1.0  # 0…1
     feed_pot: float = 1.0  # 0…1.5 where the machine has one
+    handwheel: int = 0  # counts since power-up, where the machine has one
     age: float = 0.0  # seconds since the station last spoke
 
 

@@ -65,7 +65,7 @@ def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
         process = FeederProcess(machine, clock)
         return process.line, process.close
     owned = driven(machine, clock)
-    return Line(LoopLink(Feeder(owned)), clock), owned.close
+    return Line(LoopLink(Feeder(owned, refresh=machine.hardware.refresh)), clock), owned.close
 
 
 def _virtual(machine: Machine) -> bool:

@@ -77,7 +77,7 @@ def main(arguments: list[str]) -> int:
         sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
         return 1
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
-    serve(sock, machine_driven, warnings)
+    serve(sock, machine_driven, warnings, machine.hardware.refresh)
     return 0
 
 

@@ -147,7 +147,7 @@ class WaitingSdo(SdoClient):
     def __init__(self, rx_cobid: int, tx_cobid: int, dictionary: canopen.ObjectDictionary) -> None:
         SdoClient.__init__(self, rx_cobid, tx_cobid, dictionary)
 
-    def on_response(self, can_id: int, data: bytes, timestamp: float) -> None:
+    def on_response(self, can_id: int, data: bytearray, timestamp: float) -> None:
         """An answer has eight bytes; anything else is none. Raises ValueError."""
         if len(data) != 8:
             raise ValueError(f"an SDO answer of {len(data)} bytes")

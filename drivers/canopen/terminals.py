@@ -22,6 +22,7 @@ class CanopenIO:
         self._drives = drives
         self.modules = {module.name: Module401(module, bus) for module in config.modules}
         self._written: dict[str, bool] = {}
+        self._wheel: tuple[int, int] | None = None  # its counter at the last look, and what was counted
 
     def connect(self) -> None:
         """Configure every module with the safe states of its outputs. Raises DriverError."""
@@ -104,8 +105,22 @@ class CanopenIO:
             spindle_auto=inputs.get("spindle_auto", auto),
             spindle_pot=self._pot("spindle_pot"),
             feed_pot=self._pot("feed_pot"),
+            handwheel=self._turned(),
             age=age,
         )
+
+    def _turned(self) -> int:
+        """The wheel's counter goes round after 16 bits; nobody turns half of that between two looks."""
+        wheel = self._config.pots.get("handwheel")
+        if wheel is None:
+            return 0
+        raw = self._module(wheel.terminal).analog[wheel.terminal.sub - 1]
+        if self._wheel is None:
+            self._wheel = (raw, 0)
+        last, count = self._wheel
+        count += (raw - last + 0x8000) % 0x10000 - 0x8000
+        self._wheel = (raw, count)
+        return count
 
     def _pot(self, name: str) -> float:
         pot = self._config.pots.get(name)

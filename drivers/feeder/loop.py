@@ -7,6 +7,7 @@ import gc
 import os
 import select
 import socket
+from collections.abc import Mapping
 
 from core.ports import DriverError
 from drivers.feeder.server import Driven, Feeder
@@ -37,9 +38,11 @@ def real_time() -> list[str]:
     return refused
 
 
-def serve(sock: socket.socket, driven: Driven, warnings: list[str]) -> None:
+def serve(
+    sock: socket.socket, driven: Driven, warnings: list[str], refresh: Mapping[str, float] | None = None
+) -> None:
     """Until the control has gone and the slides are at rest."""
-    feeder, inbox, clock = Feeder(driven, warnings), Inbox(), driven.ports.clock
+    feeder, inbox, clock = Feeder(driven, warnings, refresh), Inbox(), driven.ports.clock
     sock.setblocking(False)
     due = clock.now()
     gone = 0.0

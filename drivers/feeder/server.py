@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -38,10 +39,14 @@ class Feeder:
     outputs go to their safe states. ``orphaned``: it will never speak again; at rest the drives go off too.
     """
 
-    def __init__(self, driven: Driven, warnings: Sequence[str] = ()) -> None:
+    def __init__(
+        self, driven: Driven, warnings: Sequence[str] = (), refresh: Mapping[str, float] | None = None
+    ) -> None:
+        """``refresh``: outputs that fall after so many seconds without a word of the control."""
         self._driven = driven
         self._ports = driven.ports
         self._warnings = list(warnings)
+        self._refresh = dict(refresh or {})
         self._heard = self._ports.clock.now()
         self._parted = False
         self._notes: list[str] = []
@@ -74,7 +79,9 @@ class Feeder:
     def tick(self) -> None:
         """Drivers first, then whether the control still speaks."""
         self._driven.tick()
-        if self.orphaned or self._ports.clock.now() - self._heard > SILENT:
+        silent = self._ports.clock.now() - self._heard
+        self._let_fall(silent)
+        if self.orphaned or silent > SILENT:
             self._without_control()
 
     def _hear(self) -> None:
@@ -83,6 +90,13 @@ class Feeder:
             self._note(f"the control was silent for {now - self._heard:.2f} s")
         self._heard = now
         self._parted = False
+
+    def _let_fall(self, silent: float) -> None:
+        """Outputs that nobody renews do not wait for the slides to rest."""
+        for name, longest in self._refresh.items():
+            if silent > longest and self._ports.io.outputs().get(name):
+                self._note(f"{name} off: the control has been silent for {silent:.2f} s")
+                self._carefully(partial(self._ports.io.write, name, False))
 
     def _without_control(self) -> None:
         """The queue ends at rest by itself; what does not, is stopped once it is over."""

@@ -126,6 +126,8 @@ def test_addresses_of_terminals() -> None:
         ('at = "401.6401.1"', 'at = "401.6401.1.3"', "io.analog.feed_pot.at", '"401.6401.1"'),
         ('at = "401.6401.1"', 'at = "401.6401.2"', "io.analog.spindle_pot.at", "feed_pot is here"),
         ('switch = "spindle_auto"', 'switch = "auto"', "io.analog.spindle_pot.switch", "[io.in]"),
+        ('safe = "keep"', 'safe = "keep", refresh_ms = 300', "io.out.collet.refresh_ms", "safe = false"),
+        ('1.0", safe = false', '1.0", safe = false, refresh_ms = 3', "io.out.coolant.refresh_ms", "50"),
         ("range = [0, 1.5]", "range = [0, 3]", "io.analog.feed_pot.range", "0…1.5"),
         ("spindle_pot = {", "pot = {", "io.analog.pot", "unknown key"),
         ("method = 1,", "", "axis.X.home.method", "limit switch"),

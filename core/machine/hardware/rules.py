@@ -22,6 +22,7 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, s
     yield from _spindle(reading)
     yield from _pots(reading, signals)
     yield from _faults(reading, axes)
+    yield from _renewed(reading.values, signals)
     if "canopen" in reading.tables:
         yield from _bus_times(reading.values)
         yield from _nodes(reading, axes)
@@ -87,6 +88,14 @@ def _faults(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding
             )
         if what not in AXIS_FAULTS and axis:
             yield Finding(f"{path}.axis", written(axis), f"{what} happens to no axis; take it out")
+
+
+def _renewed(values: Values, signals: dict[str, str]) -> Iterator[Finding]:
+    for path in signals.values():
+        wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
+        if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
+            expected = "an output that falls when nobody renews it needs safe = false"
+            yield Finding(f"{path}.refresh_ms", f"{1000 * values.number(f'{path}.refresh_ms'):g}", expected)
 
 
 def _bus_times(values: Values) -> Iterator[Finding]:

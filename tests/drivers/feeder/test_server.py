@@ -233,3 +233,15 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
     bench.ports.axes.enable(True)
     bench.feeder.tick()
     assert bench.ports.io.outputs()["coolant"]
+
+
+def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
+    feeder = Feeder(SimDriven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
+    bench.feeder = feeder
+    working(bench)
+    feeder.handle(Message({"do": "look"}, NOTHING))
+    bench.alone(0.29)
+    assert bench.sim.ports.io.outputs()["coolant"]
+    bench.alone(0.05)
+    assert not bench.sim.ports.io.outputs()["coolant"]
+    assert bench.sim.ports.axes.sample().moving

@@ -1,0 +1,71 @@
+"""Terminals and operator station on the bus: levels, pots, handwheel, and what stays when nothing answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from core.ports import DriverError
+from tests.drivers.canopen.bench import CanBench, can_machine
+
+
+@pytest.fixture
+def wheeled() -> Iterator[CanBench]:
+    """A machine with a handwheel on the third analog word."""
+    text = ("spindle_pot = {", 'handwheel = { at = "401.6401.3" }\nspindle_pot = {')
+    found = CanBench(can_machine(text))
+    yield found
+    found.close()
+
+
+def turn(bench: CanBench, to: int) -> int:
+    """The counter of the module stands at ``to``; what the station has counted."""
+    bench.machine.io.modules["io"].analog[2] = to
+    return bench.machine.io.snapshot().handwheel
+
+
+def test_a_handwheel_counts_on_when_its_counter_goes_round(wheeled: CanBench) -> None:
+    assert turn(wheeled, 32000) == 0  # where it stands at the start is nothing
+    assert turn(wheeled, 32700) == 700
+    assert turn(wheeled, -32736) == 800  # 32767 and 32 further: 32768 is -32768
+    assert turn(wheeled, 32700) == 700
+
+
+def test_without_a_handwheel_nothing_turns(bench: CanBench) -> None:
+    assert bench.machine.io.snapshot().handwheel == 0
+
+
+def test_a_broken_estop_wire_is_a_pressed_estop(bench: CanBench) -> None:
+    bench.run(0.05)
+    assert not bench.machine.io.snapshot().estop
+    bench.machine.io.modules["io"].inputs[0] &= 0xFE  # low: no voltage on the wire
+    assert bench.machine.io.snapshot().estop
+
+
+def test_pots_at_both_ends_and_beyond(bench: CanBench) -> None:
+    analog = bench.machine.io.modules["io"].analog
+    for raw, feed, spindle in ((0, 0.0, 0.0), (32767, 1.5, 1.0), (-5, 0.0, 0.0)):
+        analog[0] = analog[1] = raw
+        station = bench.machine.io.snapshot()
+        assert (station.feed_pot, station.spindle_pot) == (feed, spindle)
+
+
+def test_a_module_that_falls_silent_ages_the_station(bench: CanBench) -> None:
+    bench.run(0.05)
+    bench.peers.nodes["io"].silent = True
+    bench.run(0.3)
+    assert bench.machine.io.snapshot().age > 0.25
+
+
+def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: CanBench) -> None:
+    io = bench.machine.io
+    io.write("coolant", True)
+    bench.run(0.1)
+    bench.peers.nodes["io"].silent = True
+    bench.run(0.5)
+    with pytest.raises(DriverError, match="output catcher stays off: io"):
+        io.write("catcher", True)
+    io.safe()
+    assert not io.outputs()["coolant"]
+    assert io.outputs()["collet"]
