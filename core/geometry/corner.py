@@ -1,11 +1,13 @@
-"""Corners between two lines: chamfer and tangent fillet."""
+"""Corners between two lines: chamfer and tangent fillet; roundings between lines and arcs."""
 
 from __future__ import annotations
 
 from math import pi, tan
 
-from core.geometry.contour import Arc, Line, left_of, turn
+from core.geometry.contour import Arc, Element, Line, left_of, turn
 from core.geometry.extent import SAME_POINT
+from core.geometry.meet import meetings
+from core.geometry.offset import GougeError, offset_element
 
 # Lines that turn by less than this go on in one direction, or straight back: a corner of any size that
 # fits a machine would be smaller, or farther off, than the last place of its numbers. rad.
@@ -70,3 +72,34 @@ def _shortened(before: Line, after: Line, set_back: float) -> tuple[Line, Line]:
     first = before.point(max(before.length - set_back, 0.0))
     last = after.point(min(set_back, after.length))
     return Line(before.start, first), Line(last, after.end)
+
+
+def rounding(before: Element, after: Element, radius: float) -> tuple[Element, Arc, Element]:
+    """As ``fillet``, between lines and arcs: the centre is where both, moved aside by ``radius``, meet.
+
+    Raises NoCornerError, CornerTooLargeError (between two lines), or CornerError where no such arc touches
+    both between their ends.
+    """
+    if isinstance(before, Line) and isinstance(after, Line):
+        return fillet(before, after, radius)
+    angle = turn(before.end_direction, after.start_direction)
+    if abs(angle) < STRAIGHT:
+        raise NoCornerError("they go on in one direction")
+    side = radius if angle > 0 else -radius
+    try:
+        aside = offset_element(before, side), offset_element(after, side)
+    except GougeError as problem:
+        raise CornerError(f"of one of them {problem}") from None
+    touched = [(before.along(centre), after.along(centre), centre) for centre in meetings(*aside)]
+    fitting = [
+        (before.length - end + start, end, start, centre)
+        for end, start, centre in touched
+        if -SAME_POINT <= end <= before.length + SAME_POINT
+        and -SAME_POINT <= start <= after.length + SAME_POINT
+    ]
+    if not fitting:
+        raise CornerError("no arc of that radius touches both between their ends")
+    _, end, start, centre = min(fitting)
+    first = before.part(before.start, before.point(end))
+    last = after.part(after.point(start), after.end)
+    return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last

@@ -86,9 +86,10 @@ def test_lines_in_one_direction_have_no_corner() -> None:
         ("G1 Z-20 F100 CHF=4", "corner-next"),
         ("G1 Z-20 F100 CHF=4\nM30", "corner-next"),
         ("G1 Z-20 F100 CHF=4\nC=IC(5)", "corner-next"),
-        ("G1 Z-20 F100 RND=4\nG3 X40 Z-30 CR=10", "corner-next"),
+        ("G1 Z-20 F100 CHF=4\nG3 X40 Z-30 CR=10", "corner-next"),
+        ("G1 Z-20 F100 RND=60\nG3 X40 Z-30 CR=10", "corner-next"),
         ("G0 Z-20 CHF=4\nX60", "corner-next"),
-        ("F100 G3 X40 Z-10 CR=10 RND=1\nG1 Z-30", "corner-next"),
+        ("F100 G3 X40 Z-10 CR=10 CHR=1\nG1 Z-30", "corner-next"),
         ("G1 Z-20 F100 RND=25\nX60", "corner-too-large"),
         ("G1 Z-20 F100 RND=4\nX22", "corner-too-large"),
         ("G1 Z-20 F100 RND=4 CHF=1\nX22", "corner-both"),
@@ -99,3 +100,23 @@ def test_lines_in_one_direction_have_no_corner() -> None:
 )
 def test_refusals(text: str, code: str) -> None:
     assert refused(text, AT).code == code
+
+
+def test_a_rounding_beside_an_arc() -> None:
+    """From the cylinder of radius 10 out into a quarter of 10: r 2, and C ends with the first block."""
+    text = "G1 Z-20 C90 F100 RND=2\nG3 X40 Z-30 CR=10 C=IC(30)\nG1 Z-40"
+    first, arc, quarter, last = good(text, AT)
+    assert (arc.kind, quarter.kind) == (Kind.ARC, Kind.ARC)
+    assert dist((arc.x0, arc.z0), (arc.cx, arc.cz)) == pytest.approx(2.0)
+    assert dist((quarter.x0, quarter.z0), (quarter.cx, quarter.cz)) == pytest.approx(10.0)
+    assert [b.c - b.c0 for b in (first, arc, quarter, last)] == pytest.approx([90, 0, 30, 0])
+    for before, after in pairwise((first, arc, quarter, last)):
+        assert (before.x, before.z) == pytest.approx((after.x0, after.z0))
+
+
+def test_a_rounding_behind_an_arc_over_a_change_of_offsets() -> None:
+    text = "F100 G3 X30 Z-5 CR=5 RND=1\nTRANS Z-3 X2\nG1 X50 Z-2"
+    quarter, arc, last = good(text, AT)
+    assert quarter.kind is arc.kind is Kind.ARC
+    assert (arc.mx, arc.mz) == pytest.approx((last.x0 + 2, last.z0 - 3))
+    assert (last.mx, last.mz) == pytest.approx((27, -5))

@@ -1,4 +1,4 @@
-"""CHF, CHR and RND: a chamfer or a rounding where two straight moves meet. C ends with the first of them."""
+"""CHF, CHR and RND: a chamfer between two lines, a rounding between lines and arcs. C ends with the first."""
 
 from __future__ import annotations
 
@@ -7,16 +7,19 @@ from dataclasses import dataclass, field, replace
 from math import cos
 
 from core.geometry.contour import Element, Line, turn
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, rounding
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log
-from core.interpreter.remade import stand
+from core.interpreter.remade import element_of, stand
 from core.interpreter.sinumerik.state import State, positive
 from core.interpreter.sinumerik.statement import Statement
 from core.interpreter.sinumerik.travel import Way
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.words import Word
+
+_STRAIGHT = frozenset({Kind.FEED, Kind.RAPID})
+_ROUNDED = _STRAIGHT | {Kind.ARC}
 
 
 @dataclass(slots=True)
@@ -26,6 +29,16 @@ class Corner:
     made: Statement
     word: Word
     size: float
+
+    @property
+    def kinds(self) -> frozenset[Kind]:
+        """What may meet in it."""
+        return _ROUNDED if self.word.name == "RND" else _STRAIGHT
+
+    @property
+    def between(self) -> str:
+        """The same in words."""
+        return "line or arc" if self.word.name == "RND" else "straight line"
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
@@ -38,8 +51,9 @@ def corner_of(state: State, made: Statement, block: Block) -> Corner | None:
     if word is None:
         return None
     corner = Corner(made, word, positive(made, word, state.length(made, word), "the size of a corner"))
-    if block.kind is not Kind.FEED or not _moves(block):
-        raise corner.refuse("corner-next", "the block is no straight move at feed", "Put it behind a G1.")
+    if block.kind not in corner.kinds - {Kind.RAPID} or not _moves(block):
+        hint = "RND takes G1, G2 and G3; CHF and CHR take G1."
+        raise corner.refuse("corner-next", f"the block is no {corner.between}", hint)
     if state.plane != 18:
         raise corner.refuse("corner-plane", "corners of X and Z need G18", "Write G18 before it.")
     return corner
@@ -84,12 +98,11 @@ class Corners:
             raise held.corner.refuse("corner-next", "no move follows", "A corner needs two moves in a row.")
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
-        if after.kind not in {Kind.FEED, Kind.RAPID} or not _moves(after):
-            why = f"the next move, on line {after.line}, is no straight move of X and Z"
-            raise held.corner.refuse("corner-next", why, "A corner needs two straight moves in a row.")
-        block, (x, z) = held.block, _meeting(held.block, after)
-        first = Line((block.x0, block.z0), (block.x, block.z))
-        last = Line((x, z), (after.x + x - after.x0, after.z + z - after.z0))
+        if after.kind not in held.corner.kinds or not _moves(after):
+            why = f"the next move, on line {after.line}, is no {held.corner.between} of X and Z"
+            raise held.corner.refuse("corner-next", why, "A corner needs two moves in a row.")
+        block, (dx, dz) = held.block, _shift(held.block, after)
+        first, last = element_of(block), element_of(_moved(after, dx, dz))
         try:
             cut, between, rest = self._elements(held.corner, first, last)
         except NoCornerError:
@@ -109,35 +122,34 @@ class Corners:
         yield self._inserted(block, between)
         for each in held.between:
             yield stand(each, between.end, self._state.setup.limits.max_rpm)
-        moved = rest.start[0] - x + after.x0, rest.start[1] - z + after.z0
-        yield from self.take(self._along(after, Line(moved, (after.x, after.z))), corner)
+        there = _moved(self._along(_moved(after, dx, dz), rest), -dx, -dz)
+        yield from self.take(there, corner)
 
-    def _elements(self, corner: Corner, first: Line, last: Line) -> tuple[Line, Element, Line]:
-        if corner.word.name == "RND":
-            return fillet(first, last, corner.size)
+    def _elements(self, corner: Corner, first: Element, last: Element) -> tuple[Element, Element, Element]:
+        if not isinstance(first, Line) or not isinstance(last, Line) or corner.word.name == "RND":
+            return rounding(first, last, corner.size)
         leg = corner.size
         if corner.word.name == "CHF" and first.length and last.length:
             # The chamfer and its two legs are a triangle of two equal sides: chf = 2 leg cos(turn / 2).
             leg /= 2.0 * max(abs(cos(turn(first.end_direction, last.start_direction) / 2)), 1e-9)
         return chamfer(first, last, leg)
 
-    def _along(self, block: Block, line: Line) -> Block:
-        """The block's own move on a part of its line; a rapid takes the time of its slowest axis."""
-        (x0, z0), (x, z) = line.start, line.end
+    def _along(self, block: Block, element: Element) -> Block:
+        """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
+        (x0, z0), (x, z) = element.start, element.end
         way = Way(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
         rapid = block.kind is Kind.RAPID
         feed = way.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
-        return replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))
-
-    def _inserted(self, block: Block, element: Element) -> Block:
-        """The corner: a move of X and Z alone; C has ended with the block before it."""
-        made = replace(
-            self._along(block, Line(element.start, element.end)), c0=block.c, text=f"{block.text} ›"
-        )
+        made = replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))
         if isinstance(element, Line):
             return made
         cx, cz = element.centre
         return replace(made, kind=Kind.ARC, cx=cx, cz=cz, clockwise=element.clockwise)
+
+    def _inserted(self, block: Block, element: Element) -> Block:
+        """The corner: a move of X and Z alone; C has ended with the block before it."""
+        straight = replace(block, kind=Kind.FEED) if isinstance(element, Line) else block
+        return replace(self._along(straight, element), c0=block.c, text=f"{block.text} ›")
 
     def _rpm(self, block: Block, x: float) -> float:
         if block.css is None or not block.modal.spindle:
@@ -155,9 +167,16 @@ def _moves(block: Block) -> bool:
     return (block.x, block.z) != (block.x0, block.z0)
 
 
-def _meeting(block: Block, after: Block) -> tuple[float, float]:
-    """Where both meet, in the frame of the first: an offset may have changed between them."""
-    return (
-        after.x0 + after.offset_x - block.offset_x,
-        after.z0 + after.offset_z - block.offset_z,
-    )
+def _shift(block: Block, after: Block) -> tuple[float, float]:
+    """From the frame of the second to that of the first: an offset may have changed between them."""
+    return after.offset_x - block.offset_x, after.offset_z - block.offset_z
+
+
+def _moved(block: Block, dx: float, dz: float) -> Block:
+    """The same move in another frame."""
+    if not dx and not dz:
+        return block
+    return replace(
+        block, x0=block.x0 + dx, z0=block.z0 + dz, x=block.x + dx, z=block.z + dz,
+        cx=block.cx + dx, cz=block.cz + dz, offset_x=block.offset_x - dx, offset_z=block.offset_z - dz,
+    )  # fmt: skip
