@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from app.desk.desk import Desk
 from app.desk.searchto.search import SearchDesk
+from app.desk.session import Watch
+from core.executor.job import Job
 from core.interpreter.restart.approach import Choices
 from core.machine.model import Machine
 
+if TYPE_CHECKING:
+    from core.interpreter.restart.rebuild import Rebuild
+
 _LAST = 0.2  # of the manual rapid: the leg that comes to the part
+
+
+def rebuilt(job: Job, watch: Watch) -> Rebuild:
+    """What goes through the program of a job; the interpreter is loaded when it is first asked for."""
+    from core.interpreter.restart.rebuild import Rebuild
+
+    return Rebuild(job.source, job.setup, watch)
 
 
 def give_searchto(desk: Desk, machine: Machine) -> None:
     """Give the desk its SEARCHTO; the way back goes at the manual rapid, its last leg slower."""
     rapid = machine.manual_rapid
     choices = Choices(rapid=rapid, last=_LAST * rapid)
-    desk.searchto = SearchDesk(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, choices)
+    desk.searchto = SearchDesk(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices)

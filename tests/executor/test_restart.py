@@ -11,7 +11,8 @@ from core.executor.commands import CycleStart, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.restart.approach import Choices, Now, begin_at
-from core.interpreter.restart.rebuild import Found, Rebuild
+from core.interpreter.restart.found import Found
+from core.interpreter.restart.rebuild import Rebuild
 from core.proving.prove import prove
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from app.desk.session import Proved, Watch
 from core.executor.job import Job
-from core.interpreter.restart.rebuild import Found, NotGood, Rebuild
+from core.interpreter.restart.found import Found, NotGood
+
+if TYPE_CHECKING:
+    from core.interpreter.restart.rebuild import Rebuild
 
 Answer = Found | NotGood | tuple[Job, Proved]
 
@@ -19,8 +23,9 @@ class AbandonedError(Exception):
 
 @dataclass(slots=True)
 class Finder:
-    """``prove`` is called on the worker. A later line goes on from where an earlier one was found."""
+    """``rebuild`` and ``prove`` are called on the worker; a later line goes on from an earlier one."""
 
+    rebuild: Callable[[Job, Watch], Rebuild]
     prove: Callable[[Job, Watch], Proved]
     reached: int = 0  # blocks that the work has come to
     _rebuild: tuple[Job, Rebuild] | None = None  # the worker's alone
@@ -70,7 +75,7 @@ class Finder:
             rebuild = kept[1]
             rebuild.watch = watch
         else:
-            rebuild = Rebuild(job.source, job.setup, watch)
+            rebuild = self.rebuild(job, watch)
         answer = rebuild.find(line)
         self._rebuild = (job, rebuild)
         return answer

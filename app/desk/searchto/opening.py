@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
 from app.desk.searchto.plan import Plan
 from app.desk.searchto.stage import Stage
-from app.desk.session import Loaded, Phase, Proved, Session
+from app.desk.session import Loaded, Phase, Proved, Session, Watch
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts
 from core.executor.states import CYCLE
 from core.interpreter.restart.approach import Choices
-from core.interpreter.restart.rebuild import NotGood
+from core.interpreter.restart.found import NotGood
 from core.language.dialect import Dialect
+
+if TYPE_CHECKING:
+    from core.interpreter.restart.rebuild import Rebuild
 
 
 @dataclass(slots=True)
@@ -29,6 +33,7 @@ class SearchOpening:
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
+    rebuild: Callable[[Job, Watch], Rebuild]  # what goes through a program; called on the worker
     choices: Choices = field(default_factory=Choices)
     cursor: Cursor = field(default_factory=Cursor)
     stage: Stage = Stage.CHOOSE
@@ -43,7 +48,7 @@ class SearchOpening:
     _accepted: bool = False
 
     def __post_init__(self) -> None:
-        self.finder = Finder(self.session.workshop.prove)
+        self.finder = Finder(self.rebuild, self.session.workshop.prove)
 
     def opens(self) -> bool:
         """Whether it may be opened now; says why not."""

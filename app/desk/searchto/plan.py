@@ -13,7 +13,7 @@ from core.executor.snapshot import Snapshot
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
 from core.interpreter.begin import Begin, Checkpoint, Leg, Step
 from core.interpreter.restart.approach import Choices, Now, begin_at, starting
-from core.interpreter.restart.rebuild import Found
+from core.interpreter.restart.found import Found
 
 _CLEAR = 0.5  # mm short of where the program was clear of the part
 _DEEP = 0.1  # mm below the bar's surface

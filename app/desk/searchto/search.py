@@ -17,7 +17,7 @@ from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.interpreter.restart.approach import Choices
-from core.interpreter.restart.rebuild import Found, NotGood
+from core.interpreter.restart.found import Found, NotGood
 
 
 class SearchDesk(SearchOpening):

@@ -13,7 +13,7 @@ from math import copysign
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.begin import Begin, Do, Leg, Step, Turn
 from core.interpreter.modal import Modal
-from core.interpreter.restart.rebuild import Found
+from core.interpreter.restart.found import Found
 
 _SAME = 1e-6  # mm
 _INCH = 25.4

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 from core.interpreter.actions import AskInput, ProgramEnd
-from core.interpreter.begin import Begin, Checkpoint
+from core.interpreter.begin import Begin
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.program import Program, read_program
+from core.interpreter.restart.found import Clear, Found, NotGood
 from core.interpreter.restart.good import Lines
 from core.interpreter.restart.side import works_inside
 from core.interpreter.setup import Setup
@@ -29,38 +30,6 @@ _SAME = 1e-7  # mm
 _WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 _NEAR = 64  # lines looked at one by one for the place from which positions are known
 _UP, _DOWN = 3, 500  # lines tried
-
-
-@dataclass(frozen=True, slots=True)
-class Clear:
-    """How far off the part the program itself has been, machine mm; ``x`` by tool: least and greatest.
-
-    ``stock`` is the largest radius, mm from the centre line, at which it has fed: the bar is hardly larger.
-    """
-
-    z: float = -math.inf
-    stock: float = 0.0
-    x: Mapping[int, tuple[float, float]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """A good line, what it inherits, and how far off the part the program has been by then."""
-
-    line: int
-    checkpoint: Checkpoint
-    clear: Clear
-    inside: bool = False  # the tool works in a bore, so that the way in is along Z
-
-
-@dataclass(frozen=True, slots=True)
-class NotGood:
-    """Why a program cannot go on from a line, and the nearest lines from which it can; 0: there is none."""
-
-    line: int
-    why: str
-    before: int = 0
-    after: int = 0
 
 
 class Rebuild:

@@ -6,11 +6,12 @@ import threading
 
 import pytest
 
+from app.compose.searchto import rebuilt
 from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
 from app.desk.session import Proved
 from core.executor.job import Job, Proof
-from core.interpreter.restart.rebuild import Found, NotGood
+from core.interpreter.restart.found import Found, NotGood
 from core.language.source import Source
 from tests.interpreter.programs import setup
 
@@ -73,7 +74,7 @@ def job(text: str) -> Job:
 
 @pytest.fixture
 def finder() -> Finder:
-    return Finder(lambda job, _watch: Proved(Proof(job.digest, ())))
+    return Finder(rebuilt, lambda job, _watch: Proved(Proof(job.digest, ())))
 
 
 def answer(finder: Finder) -> object:

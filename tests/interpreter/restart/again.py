@@ -9,7 +9,8 @@ from core.interpreter.blocks import Block
 from core.interpreter.dialects import interpretation
 from core.interpreter.modal import Modal
 from core.interpreter.restart.approach import Choices, Now, begin_at
-from core.interpreter.restart.rebuild import Found, NotGood, Rebuild
+from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.rebuild import Rebuild
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source

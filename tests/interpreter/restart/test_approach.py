@@ -10,7 +10,8 @@ from core.interpreter.actions import Coolant, Output, SpindleRun, SpindleStop
 from core.interpreter.begin import Checkpoint, Do, Leg, Step, Turn
 from core.interpreter.modal import Modal
 from core.interpreter.restart.approach import Choices, Now, begin_at, starting, way
-from core.interpreter.restart.rebuild import Clear, Found, Rebuild
+from core.interpreter.restart.found import Clear, Found
+from core.interpreter.restart.rebuild import Rebuild
 from core.language.source import Source
 from tests.interpreter.programs import setup
 

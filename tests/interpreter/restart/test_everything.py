@@ -9,7 +9,7 @@ import pytest
 
 from core.interpreter.actions import AskInput
 from core.interpreter.program import read_program
-from core.interpreter.restart.rebuild import Found
+from core.interpreter.restart.found import Found
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source, load_source

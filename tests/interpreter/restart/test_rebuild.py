@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.restart.rebuild import Found, NotGood, Rebuild
+from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.rebuild import Rebuild
 from core.interpreter.setup import ToolOffset
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
