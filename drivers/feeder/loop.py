@@ -47,6 +47,7 @@ def serve(
     due = clock.now()
     gone = 0.0
     while not feeder.done:
+        feeder.late(clock.now() - due)
         feeder.tick()
         due = max(due + PERIOD, clock.now())
         while (left := due - clock.now()) > 0.0:

@@ -12,6 +12,7 @@ import numpy as np
 from core.ports import DriverError, MachinePorts, Stop
 from drivers.feeder.wire import NOTHING, Message, cam_of, number, segments, text
 
+LATE = 0.02  # s; the drives' queues hold several times this
 SILENT = 0.2  # s without a word after which the control counts as stalled
 _NOTES = 50
 
@@ -49,6 +50,7 @@ class Feeder:
         self._refresh = dict(refresh or {})
         self._heard = self._ports.clock.now()
         self._parted = False
+        self._latest = 0.0  # s, the worst lateness so far
         self._notes: list[str] = []
         self.orphaned = False
         self.done = False  # orphaned, at rest, switched off
@@ -83,6 +85,12 @@ class Feeder:
         self._let_fall(silent)
         if self.orphaned or silent > SILENT:
             self._without_control()
+
+    def late(self, seconds: float) -> None:
+        """How late the loop has woken up; what is worth telling is told, each record once."""
+        if seconds > max(self._latest, LATE):
+            self._latest = seconds
+            self._note(f"the feeder woke up {1000 * seconds:.0f} ms late; has it real-time priority?")
 
     def _hear(self) -> None:
         now = self._ports.clock.now()

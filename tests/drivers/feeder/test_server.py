@@ -245,3 +245,12 @@ def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench:
     bench.alone(0.05)
     assert not bench.sim.ports.io.outputs()["coolant"]
     assert bench.sim.ports.axes.sample().moving
+
+
+def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    for seconds in (0.01, 0.03, 0.025, 0.05):
+        bench.feeder.late(seconds)
+    bench.ports.axes.sample()
+    assert [line.split("woke up ")[1][:5] for line in caplog.messages] == ["30 ms", "50 ms"]

@@ -1,0 +1,94 @@
+"""The peer under a master that is not ours: the canopen library's own CiA 402 profile."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from collections.abc import Iterator
+
+import canopen
+import pytest
+from canopen.profiles.p402 import BaseNode402
+
+from app.compose.canopen import canopen_peers
+from drivers.canopen.objects import drive_objects
+from drivers.canopen.peer.machine import Peers
+from drivers.simulated import RealClock
+from tests.drivers.canopen.bench import can_machine
+
+_numbers = itertools.count()
+PATIENT = (
+    "TIMEOUT_SWITCH_STATE_FINAL",
+    "TIMEOUT_SWITCH_STATE_SINGLE",
+    "TIMEOUT_SWITCH_OP_MODE",
+    "TIMEOUT_CHECK_TPDO",
+)
+
+
+class Patient(BaseNode402):
+    """For a loaded computer."""
+
+    def __init__(self, number: int, objects: canopen.ObjectDictionary) -> None:
+        BaseNode402.__init__(self, number, objects)
+
+
+for name in PATIENT:
+    setattr(Patient, name, 20.0)
+
+
+@pytest.fixture
+def shop() -> Iterator[tuple[Peers, BaseNode402]]:
+    """X of the shipped machine under the library's master, each end with threads of its own."""
+    machine = can_machine()
+    bus = machine.hardware.canopen
+    assert bus is not None
+    peers, ended = canopen_peers(machine, RealClock()), threading.Event()
+
+    def play() -> None:
+        while not ended.is_set():
+            peers.pump(0.001)
+
+    thread = threading.Thread(target=play)
+    thread.start()
+    network = canopen.Network()
+    network.connect(interface="virtual", channel=bus.channel)
+    node = Patient(1, drive_objects())
+    network.add_node(node)
+    node.sdo.RESPONSE_TIMEOUT = 20.0
+    yield peers, node
+    network.sync.stop()
+    network.disconnect()
+    ended.set()
+    thread.join(20.0)
+    peers.close()
+
+
+def test_the_librarys_profile_walks_it_up_and_changes_its_mode(
+    shop: tuple[Peers, BaseNode402],
+) -> None:
+    peers, node = shop
+    node.nmt.state = "PRE-OPERATIONAL"
+    node.rpdo[1].clear()
+    for index in (0x6040, 0x6060):
+        node.rpdo[1].add_variable(index)
+    node.tpdo[1].clear()
+    for index in (0x6041, 0x6061):
+        node.tpdo[1].add_variable(index)
+    for pdo, kind in ((node.rpdo[1], 255), (node.tpdo[1], 1)):
+        pdo.cob_id, pdo.trans_type, pdo.enabled = pdo.predefined_cob_id, kind, True
+        pdo.com_record[1].raw = pdo.cob_id
+        pdo.com_record[2].raw = kind
+        for sub, variable in enumerate(pdo.map, 1):
+            pdo.map_array[sub].raw = variable.index << 16 | variable.length
+        pdo.map_array[0].raw = len(pdo.map)
+    node.tpdo[1].subscribe()
+    node.nmt.state = "OPERATIONAL"
+    node.network.sync.start(0.01)
+    node.setup_402_state_machine(read_pdos=False)
+    node.state = "OPERATION ENABLED"
+    assert node.state == "OPERATION ENABLED"
+    assert peers.plant.drives["X"].power.powered
+    node.op_mode = "PROFILED POSITION"
+    assert node.op_mode == "PROFILED POSITION"
+    node.state = "SWITCH ON DISABLED"
+    assert not peers.plant.drives["X"].power.powered
