@@ -250,7 +250,7 @@ def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench:
 def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    for seconds in (0.01, 0.03, 0.025, 0.05):
+    for seconds in (0.01, 0.06, 0.055, 0.08):
         bench.feeder.late(seconds)
     bench.ports.axes.sample()
-    assert [line.split("woke up ")[1][:5] for line in caplog.messages] == ["30 ms", "50 ms"]
+    assert [line.split("woke up ")[1][:5] for line in caplog.messages] == ["60 ms", "80 ms"]
