@@ -89,10 +89,10 @@ def _places(swivel: Swivel) -> Json:
 
 def _plane(swivel: Swivel) -> Json:
     """The plane that a PLANE block has set: its frame by rows, its origin, the targets of the axes."""
-    q120, q121, q122 = (degrees(target) for target in swivel.targets)
+    q120, q121, q122 = (degrees(target) for target in swivel.system.targets)
     return {
-        "frame": [[round(cell, 12) + 0.0 for cell in line] for line in swivel.frame],
-        "datum": [millimetres(value) for value in swivel.datum],
+        "frame": [[round(cell, 12) + 0.0 for cell in line] for line in swivel.system.frame],
+        "datum": [millimetres(value) for value in swivel.system.datum],
         "q120": q120,
         "q121": q121,
         "q122": q122,

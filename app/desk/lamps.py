@@ -50,7 +50,7 @@ def lamps_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
     """Of a mill: whether moves count in a tilted plane, and whether the table stands anywhere but at 0."""
-    tilted = snapshot.swivel is not None and snapshot.swivel.tilted
+    tilted = snapshot.swivel is not None and snapshot.swivel.system.tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
     return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE TURNED", lit=turned)

@@ -12,26 +12,35 @@ Angles = tuple[float | None, float | None, float | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Swivel:
-    """One block in the working plane that is in force at its end. mm, degrees.
+class System:
+    """A working plane's system with a tool in it; blocks share it until one of both changes. mm, degrees.
 
-    ``start end`` are points of that plane's system, ``frame`` (rows) and ``datum`` its axes and origin in the
-    workpiece's system, ``tilted`` whether a PLANE block made it. ``slides`` are machine X Y Z of the end,
-    ``rotary`` A B C as shown (0 to 360 on a modulo axis), None for axes the machine lacks. ``targets`` are
-    Q120, Q121, Q122. ``plane_line`` is the line of the PLANE block in force, 0 for none. ``place`` takes
-    points of the plane's system to machine X Y Z. ``blank``: corners of BLK FORM in the workpiece's system.
+    ``place`` takes points of the system to machine X Y Z. ``frame`` (rows) and ``datum`` are its axes and
+    origin in the workpiece's system, ``tilted`` whether a PLANE block made it, ``line`` that block's line (0:
+    none). ``targets`` are Q120, Q121, Q122. ``blank``: corners of BLK FORM in the workpiece's system.
     """
 
-    start: Vector
-    end: Vector
-    slides: Vector
-    rotary: Angles
     place: Place
     kinematics: Kinematics
     frame: Matrix = IDENTITY
     datum: Vector = (0.0, 0.0, 0.0)
     tilted: bool = False
     targets: Vector = (0.0, 0.0, 0.0)
-    plane_line: int = 0
+    line: int = 0
     tool_length: float = 0.0
     blank: Corners | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Swivel:
+    """One block in the system that is in force at its end.
+
+    ``start end`` are points of that system, ``slides`` machine X Y Z of the end, mm; ``rotary`` A B C shown
+    (0 to 360 on a modulo axis), None for axes the machine lacks.
+    """
+
+    start: Vector
+    end: Vector
+    slides: Vector
+    rotary: Angles
+    system: System

@@ -43,9 +43,9 @@ def test_axial_blocks_add_up_to_one_plane() -> None:
     assert np.allclose(shown(ran), wanted, atol=1e-12)
     fifth = ran.planes[4].swivel
     assert fifth is not None
-    assert np.array(fifth.frame)[:, 2] == pytest.approx((-0.5, 0.0, 0.866025404), abs=1e-9)
+    assert np.array(fifth.system.frame)[:, 2] == pytest.approx((-0.5, 0.0, 0.866025404), abs=1e-9)
     assert ran.planes[5].swivel is not None
-    assert ran.planes[5].swivel.tilted  # A+0 ends no plane
+    assert ran.planes[5].swivel.system.tilted  # A+0 ends no plane
 
 
 def test_axial_without_an_axis_keeps_where_it_stands() -> None:
@@ -53,7 +53,7 @@ def test_axial_without_an_axis_keeps_where_it_stands() -> None:
     assert shown(ran) == [(45.0, 30.0)]
     frame = ((0.866025, -0.353553, 0.353553), (0.5, 0.612372, -0.612372), (0.0, 0.707107, 0.707107))
     assert ran.planes[0].swivel is not None
-    assert np.allclose(ran.planes[0].swivel.frame, frame, atol=1e-6)
+    assert np.allclose(ran.planes[0].swivel.system.frame, frame, atol=1e-6)
 
 
 def test_axial_stay_moves_nothing_and_counts_on_from_its_targets() -> None:
@@ -75,8 +75,8 @@ def test_axial_a_minus_45_c_180_is_not_chamfer_1_with_sym_minus() -> None:
     assert axial is not None
     assert points is not None
     assert axial.rotary == points.rotary
-    assert np.allclose(axial.frame, ((-1, 0, 0), (0, -S, -S), (0, -S, S)), atol=1e-12)
-    assert np.allclose(points.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
+    assert np.allclose(axial.system.frame, ((-1, 0, 0), (0, -S, -S), (0, -S, S)), atol=1e-12)
+    assert np.allclose(points.system.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
 
 
 def test_axial_reads_and_ignores_what_only_other_planes_need() -> None:
@@ -101,7 +101,7 @@ def test_relativ_without_a_plane_turns_the_workpiece_system() -> None:
     spatial = run("PLANE SPATIAL SPA+45 SPB+0 SPC+0 TURN FMAX").planes[0].swivel
     assert relativ is not None
     assert spatial is not None
-    assert np.allclose(relativ.frame, spatial.frame, atol=1e-15)
+    assert np.allclose(relativ.system.frame, spatial.system.frame, atol=1e-15)
 
 
 @pytest.mark.parametrize(("turn", "c"), [(0, 0.0), (90, 90.0), (180, 180.0), (270, 270.0)])
@@ -119,7 +119,7 @@ def test_a_published_program_reaches_its_comment() -> None:
 def test_a_published_test_of_the_tool_axis() -> None:
     swivel = run("PLANE AXIAL A-90 TURN FMAX").planes[0].swivel
     assert swivel is not None
-    frame = np.array(swivel.frame)
+    frame = np.array(swivel.system.frame)
     assert frame[:, 2] == pytest.approx((0.0, 1.0, 0.0), abs=1e-15)
     assert frame[:, 1] == pytest.approx((0.0, 0.0, -1.0), abs=1e-15)
 
@@ -232,7 +232,7 @@ def test_reset_drives_the_axes_home_the_short_way_and_stay_leaves_them() -> None
     stay = run("PLANE AXIAL A+45 C+270 TURN FMAX\nPLANE RESET STAY")
     assert shown(stay)[1] == (45.0, 270.0)
     assert stay.planes[1].swivel is not None
-    assert not stay.planes[1].swivel.tilted
+    assert not stay.planes[1].swivel.system.tilted
     bare = run("PLANE AXIAL A+45 TURN FMAX\nPLANE RESET")
     assert shown(bare)[1] == (45.0, 0.0)
 
@@ -304,7 +304,7 @@ def test_points_follow_the_basic_rotation_and_axial_does_not() -> None:
     assert shown(points)[0] == pytest.approx((45.0, 10.0))
     assert shown(axial)[0] == pytest.approx((45.0, 0.0))
     assert points.planes[0].swivel is not None
-    assert np.allclose(points.planes[0].swivel.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
+    assert np.allclose(points.planes[0].swivel.system.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
 
 
 # --- ranges ----------------------------------------------------------------------------------------------
@@ -325,5 +325,5 @@ def test_b_on_a_b_c_table() -> None:
     assert not ran.errors
     swivel = ran.planes[0].swivel
     assert swivel is not None
-    assert (swivel.rotary, swivel.targets) == ((None, 45.0, 90.0), (0.0, 45.0, 90.0))
-    assert np.array(swivel.frame)[:, 2] == pytest.approx((0.0, S, S), abs=1e-12)
+    assert (swivel.rotary, swivel.system.targets) == ((None, 45.0, 90.0), (0.0, 45.0, 90.0))
+    assert np.array(swivel.system.frame)[:, 2] == pytest.approx((0.0, S, S), abs=1e-12)

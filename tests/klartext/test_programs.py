@@ -39,7 +39,7 @@ def cuts(ran: Ran) -> list[tuple[np.ndarray, np.ndarray]]:
     found = []
     for block in ran.blocks:
         if block.kind is Kind.FEED and block.swivel is not None:
-            r, o = np.array(block.swivel.frame), np.array(block.swivel.datum)
+            r, o = np.array(block.swivel.system.frame), np.array(block.swivel.system.datum)
             found.append((o + r @ np.array(block.swivel.start), o + r @ np.array(block.swivel.end)))
     return found
 

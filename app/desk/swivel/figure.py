@@ -109,9 +109,9 @@ class _Picture:
     def plane(self) -> list[tuple[float, Face]]:
         """A square of the working plane round its datum."""
         swivel = self._instant.swivel
-        if swivel is None or not swivel.tilted:
+        if swivel is None or not swivel.system.tilted:
             return []
-        r, o = np.array(swivel.frame), np.array(swivel.datum)
+        r, o = np.array(swivel.system.frame), np.array(swivel.system.datum)
         half = _SHARE * _diagonal(self._scene)
         square = np.array([(half, half, 0), (-half, half, 0), (-half, -half, 0), (half, -half, 0)])
         return [self._face("plane", _moved(self._part, o + square @ r.T))]
@@ -119,7 +119,7 @@ class _Picture:
     def tool(self) -> list[tuple[float, Face]]:
         """A cutter on its tip, along the tool axis of this instant."""
         chain, axes = self._scene.kinematics, self._instant.axes
-        length = self._instant.swivel.tool_length if self._instant.swivel is not None else 0.0
+        length = self._instant.swivel.system.tool_length if self._instant.swivel is not None else 0.0
         slides = axes["X"], axes["Y"], axes["Z"]
         tip = np.array(chain.tip(self._angles, slides, length))
         along = np.array(chain.tool_axis(self._angles))
@@ -152,9 +152,9 @@ class _Picture:
     def axes(self) -> list[Stroke]:
         """X' Y' Z' of the working plane at its datum; those of the workpiece where none is tilted."""
         swivel = self._instant.swivel
-        r = np.array(swivel.frame) if swivel is not None else np.eye(3)
-        o = np.array(swivel.datum) if swivel is not None else np.zeros(3)
-        mark = "'" if swivel is not None and swivel.tilted else ""
+        r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
+        o = np.array(swivel.system.datum) if swivel is not None else np.zeros(3)
+        mark = "'" if swivel is not None and swivel.system.tilted else ""
         length = _SHARE * _diagonal(self._scene)
         found = []
         for number, name in enumerate("xyz"):

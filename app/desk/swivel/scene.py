@@ -89,11 +89,11 @@ class SceneSketch:
         if self._last is None:
             return None
         return Scene(
-            kinematics=self._last.kinematics,
+            kinematics=self._last.system.kinematics,
             points=np.array(self._points).reshape(-1, 3),
             ink=np.array(self._ink, dtype=np.int8),
             block=np.array(self._block, dtype=np.int64),
-            corners=self._last.blank or _EMPTY,
+            corners=self._last.system.blank or _EMPTY,
             by_line=self._by_line,
             lines=tuple(sorted(self._by_line)),
             planes=frozenset(self._planes),
@@ -107,4 +107,4 @@ class SceneSketch:
 
 def _on_part(swivel: Swivel, q: Vector) -> Vector:
     """A point of the working plane's system in the workpiece's."""
-    return plus(swivel.datum, applied(swivel.frame, q))
+    return plus(swivel.system.datum, applied(swivel.system.frame, q))

@@ -38,8 +38,8 @@ def at_line(scene: Scene, line: int) -> Instant:
     if swivel is None:
         return Instant(dict.fromkeys(scene.kinematics.names, 0.0), None)
     axes = dict(zip("XYZ", swivel.slides, strict=True))
-    shown = zip(_AXES, swivel.rotary, swivel.targets, strict=True)
-    tilted = line in scene.planes and swivel.tilted
+    shown = zip(_AXES, swivel.rotary, swivel.system.targets, strict=True)
+    tilted = line in scene.planes and swivel.system.tilted
     axes |= {name: (target if tilted else at) for name, at, target in shown if at is not None}
     return Instant(axes, swivel)
 
@@ -49,12 +49,12 @@ def plane_words(swivel: Swivel | None) -> str:
     if swivel is None:
         return ""
     words = system_words(swivel)
-    if not swivel.tilted:
+    if not swivel.system.tilted:
         return words
     asked = "  ".join(
         f"{name}{'+' if target >= 0 else ''}{angle(target)}"
-        for name, at, target in zip(_AXES, swivel.rotary, swivel.targets, strict=True)
+        for name, at, target in zip(_AXES, swivel.rotary, swivel.system.targets, strict=True)
         if at is not None
     )
-    x, y, z = (angle(row[2]) for row in swivel.frame)
+    x, y, z = (angle(row[2]) for row in swivel.system.frame)
     return f"{words}:  {asked}   Z' {x}  {y}  {z}"

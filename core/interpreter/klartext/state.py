@@ -14,7 +14,7 @@ from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
-from core.interpreter.swivel import Corners, Swivel
+from core.interpreter.swivel import Angles, Corners, Swivel, System
 from core.interpreter.units import MM_PER_INCH
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
@@ -38,7 +38,8 @@ class State:
 
     ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
     the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
-    system, ``place`` takes points of the working plane to machine positions of the slides.
+    system, ``place`` takes its points to machine positions of the slides; ``point`` is where the tip stands
+    in it, mm.
     """
 
     def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
@@ -61,7 +62,14 @@ class State:
         self.told: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
         self.frame, self.origin = IDENTITY, ORIGIN
+        self._names = kinematics.names
+        self._rotary_names = tuple(axis.name for axis in kinematics.rotaries)
+        self._c = self._names.index("C") if "C" in self.at else -1
+        self._there = tuple(setup.start)  # all axes in the machine's order
+        self._shown: Angles | None = None  # worked out again when a rotary axis has turned
+        self._shared: System | None = None
         self.place = self._place()
+        self.point = self.place.point(self.slides)
 
     # --- where things stand -------------------------------------------------------------------------------
 
@@ -74,11 +82,6 @@ class State:
     def rotary(self) -> dict[str, float]:
         """Rotary axes by name, degrees, counted on."""
         return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
-
-    @property
-    def point(self) -> Vector:
-        """Where the tip stands in the working plane's system, mm."""
-        return self.place.point(self.slides)
 
     @property
     def targets(self) -> dict[str, float]:
@@ -94,6 +97,8 @@ class State:
             self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
         self.origin = plus(self.datum, applied(self.frame, self.shift))
         self.place = self._place()
+        self.point = self.place.point(self.slides)
+        self._shared = None
 
     def set_plane(self, plane: WorkingPlane | None) -> None:
         """Another plane, or none. The datum's point on the workpiece stays where it is."""
@@ -128,25 +133,30 @@ class State:
 
         The feed counts mm of the slides, or degrees where only rotary axes turn or lead (``way``).
         """
-        start, goal = self.at, self.at | dict(end)
-        slides = math.dist([start[n] for n in SLIDES], [goal[n] for n in SLIDES])
-        turn = math.hypot(*(goal[a.name] - start[a.name] for a in self.kinematics.rotaries))
-        linear = slides > SAME_POINT and way is None
-        length = slides if linear else (turn if turn > SAME_POINT else 0.0)
+        before, start, goal = self.point, self.at, {**self.at, **end}
+        away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
+        linear = away > SAME_POINT and way is None
+        length = away
+        if not linear:
+            turn = math.hypot(*(goal[name] - start[name] for name in self._rotary_names))
+            length = turn if turn > SAME_POINT else 0.0
         rate = feed if feed is not None else self._rapid(start, goal, length, slides=linear)
-        before = self.point
-        names = self.kinematics.names
-        travel = Travel(
-            tuple(start[n] for n in names), tuple(goal[n] for n in names), length, way, slides > SAME_POINT
+        from_here, to = self._there, tuple([goal[name] for name in self._names])
+        if any(goal[name] != start[name] for name in self._rotary_names):
+            self._shown = None
+        self.at, self._there = goal, to
+        self.point = self.place.point(self.slides)
+        if self.modal.rapid != (feed is None):
+            self.modal = self.modal._replace(rapid=feed is None)
+        return self._block(
+            line, text, kind, before, Travel(from_here, to, length, way, away > SAME_POINT), rate
         )
-        self.at = goal
-        return self._block(line, text, kind, before, travel, rate, rapid=feed is None)
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
-        at = tuple(self.at[n] for n in self.kinematics.names)
+        here = Travel(self._there, self._there, 0.0, slides=False)
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
-        return self._block(line, text, kind, self.point, Travel(at, at, 0.0, slides=False), 0.0, action)
+        return self._block(line, text, kind, self.point, here, 0.0, action)
 
     def _block(
         self,
@@ -157,48 +167,46 @@ class State:
         travel: Travel,
         feed: float,
         action: Action | None = None,
-        *,
-        rapid: bool = False,
     ) -> Block:
         self.blocks += 1
-        end, slides = self.point, self.slides
-        if action is None and self.modal.rapid != rapid:
-            self.modal = self.modal._replace(rapid=rapid)
-        c = self.kinematics.names.index("C") if "C" in self.at else None
+        end, slides, c = self.point, self.slides, self._c
         return Block(
             n=self.blocks,
             line=line,
             kind=kind,
             text=text,
-            x0=before[0], z0=before[2], c0=travel.start[c] if c is not None else 0.0,
-            x=end[0], z=end[2], c=travel.end[c] if c is not None else 0.0,
+            x0=before[0], z0=before[2], c0=travel.start[c] if c >= 0 else 0.0,
+            x=end[0], z=end[2], c=travel.end[c] if c >= 0 else 0.0,
             offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
             modal=self.modal,
             feed=feed,
             rpm=self.modal.rpm * self.modal.spindle,
             action=action,
             travel=travel,
-            swivel=self._swivel(before, end, slides),
+            swivel=Swivel(before, end, slides, self._rotary_shown(), self._system()),
         )  # fmt: skip
 
-    def _swivel(self, before: Vector, end: Vector, slides: Vector) -> Swivel:
-        axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
-        q120, q121, q122 = (self.q.get(q, 0.0) for q in Q_TARGETS)
-        return Swivel(
-            start=before,
-            end=end,
-            slides=slides,
-            rotary=(axes.get("A"), axes.get("B"), axes.get("C")),
-            place=self.place,
-            kinematics=self.kinematics,
-            frame=self.frame,
-            datum=self.origin,
-            tilted=self.plane is not None,
-            targets=(q120, q121, q122),
-            plane_line=self.plane.line if self.plane is not None else 0,
-            tool_length=self.tool_length,
-            blank=self.blank,
-        )
+    def _rotary_shown(self) -> Angles:
+        if self._shown is None:
+            axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+            self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
+        return self._shown
+
+    def _system(self) -> System:
+        if self._shared is None:
+            q120, q121, q122 = (self.q.get(q, 0.0) for q in Q_TARGETS)
+            self._shared = System(
+                place=self.place,
+                kinematics=self.kinematics,
+                frame=self.frame,
+                datum=self.origin,
+                tilted=self.plane is not None,
+                targets=(q120, q121, q122),
+                line=self.plane.line if self.plane is not None else 0,
+                tool_length=self.tool_length,
+                blank=self.blank,
+            )
+        return self._shared
 
     def _rapid(
         self, start: Mapping[str, float], goal: Mapping[str, float], length: float, *, slides: bool

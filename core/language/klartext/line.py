@@ -9,6 +9,7 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext import faults, headers, moves, others, planes
 from core.language.klartext.cursor import Cursor
 from core.language.klartext.nodes import Heading, KlartextLine, Node, Stop
+from core.language.klartext.plain import read_plain
 
 LONGEST_LINE = 8192
 _HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
@@ -31,6 +32,8 @@ _OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-
 
 def read_line(number: int, text: str) -> KlartextLine:
     """What line ``number`` says. Never raises: an error is in the line."""
+    if (plain := read_plain(number, text)) is not None:
+        return plain
     if len(text) > LONGEST_LINE:
         problem = faults.syntax(number, 1, f"The line has {len(text)} characters.", "Break it into lines.")
         return KlartextLine(number, error=problem.diagnostic)
