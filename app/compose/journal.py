@@ -98,8 +98,6 @@ class Journal:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
         return self._opened().save_program(name, text, why).result()
 
-    # --- what the screen keeps (``app.desk.keep``) ---------------------------------------------------
-
     def setting(self, key: str) -> object:
         """A setting; None: not set, or nothing is kept."""
         store = self._store

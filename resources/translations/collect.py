@@ -11,8 +11,9 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
 from pathlib import Path
+
+from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
 HOUSE = HERE.parents[1]
@@ -30,9 +31,6 @@ APART = frozenset(
 ALSO = ("M03 FWD", "M04 REV", "M05 OFF", "done", "rapid", "none", "in/min", "in/rev", "%1 · SIMULATED")
 LOUD = ("app", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
-_MISTAKES = frozenset(
-    {"ValueError", "RuntimeError", "TypeError", "TimeoutError", "KeyError", "AssertionError"}
-)
 _NO_TEXT = re.compile(
     r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
     r"|^F\d+$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
@@ -55,19 +53,10 @@ def texts() -> dict[str, str]:
         for path in sorted((HOUSE / room).rglob("*.py")):
             if path.name not in APART:
                 tree = ast.parse(path.read_text(encoding="utf-8"))
-                read = {text for text in _texts_of(tree) if _is_read(text, loud)}
-                for text in sorted(read | set(_marked(tree))):
+                read = {text for text in texts_of(tree) if _is_read(text, loud)}
+                for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
     return {**dict.fromkeys(ALSO, ""), **found}
-
-
-def _marked(tree: ast.Module) -> Iterator[str]:
-    """What stands in ``tr("…")``: whatever it looks like, it is read."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and _name(node.func) == "tr" and node.args:
-            for part in ast.walk(node.args[0]):
-                if isinstance(part, ast.Constant) and isinstance(part.value, str):
-                    yield part.value
 
 
 def _is_read(text: str, loud: bool) -> bool:
@@ -79,82 +68,6 @@ def _is_read(text: str, loud: bool) -> bool:
     if bare != text and " " in bare and re.search(r"[^\W\d_]{3}", bare):
         return True
     return bool(_WORDS.search(text)) or (loud and bool(_CAPITALS.match(text)))
-
-
-def _texts_of(tree: ast.Module) -> Iterator[str]:
-    skipped = _skipped(tree)
-    inner: set[int] = set()
-    for node in ast.walk(tree):
-        if id(node) in skipped:
-            continue
-        if isinstance(node, ast.JoinedStr | ast.BinOp) and id(node) not in inner:
-            pieces = _pieces(node)
-            if pieces is not None:
-                inner.update(id(part) for part in _own_parts(node))
-                yield _with_holes(pieces)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inner:
-            yield node.value
-
-
-def _skipped(tree: ast.Module) -> set[int]:
-    """Docstrings, mistakes of the programmer, patterns and logs; with all that is in them."""
-    found: set[int] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
-            found.add(id(node.value))
-        elif isinstance(node, ast.Call) and _is_silent(node.func):
-            found.update(id(part) for part in ast.walk(node))
-    return found
-
-
-def _is_silent(called: ast.expr) -> bool:
-    if isinstance(called, ast.Attribute) and _name(called.value) == "_log":
-        return True
-    return _name(called) in _MISTAKES | {"compile", "execute", "executescript"}
-
-
-def _name(node: ast.expr) -> str:
-    if isinstance(node, ast.Attribute):
-        return node.attr
-    return node.id if isinstance(node, ast.Name) else ""
-
-
-def _pieces(node: ast.expr) -> list[str | None] | None:
-    """The text of a composed string, None for each hole; None when it is no string at all."""
-    if isinstance(node, ast.Constant):
-        return [node.value] if isinstance(node.value, str) else None
-    if isinstance(node, ast.JoinedStr):
-        return [str(v.value) if isinstance(v, ast.Constant) else None for v in node.values]
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        left, right = _pieces(node.left), _pieces(node.right)
-        if left is None and right is None:
-            return None
-        return (left or [None]) + (right or [None])
-    return None
-
-
-def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
-    """The parts that became pieces; expressions in holes are looked at by themselves."""
-    yield node
-    if isinstance(node, ast.JoinedStr):
-        yield from (value for value in node.values if isinstance(value, ast.Constant))
-        for value in node.values:
-            if isinstance(value, ast.FormattedValue) and value.format_spec is not None:
-                yield from ast.walk(value.format_spec)
-    elif isinstance(node, ast.BinOp):
-        yield from _own_parts(node.left)
-        yield from _own_parts(node.right)
-
-
-def _with_holes(pieces: list[str | None]) -> str:
-    number, text = 0, ""
-    for piece in pieces:
-        if piece is None:
-            number += 1
-            text += f"%{number}"
-        else:
-            text += piece
-    return text
 
 
 def catalogue(language: str) -> dict[str, str]:

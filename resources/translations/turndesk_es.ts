@@ -534,14 +534,59 @@
       <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
     </message>
     <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
+      <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>ITS NAME IS {name} NOW</source>
+      <translation>AHORA SE LLAMA {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>NAME OF THE COPY?</source>
+      <translation>¿NOMBRE DE LA COPIA?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>NEW NAME?</source>
+      <translation>¿NOMBRE NUEVO?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>NO PROGRAM IS MARKED</source>
+      <translation>NO HAY PROGRAMA MARCADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
+      <translation>OPRIMA F6 OTRA VEZ PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
+      <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
+      <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>{name} IS THERE NOW</source>
+      <translation>YA ESTÁ {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>{name} IS UNDER WAY: LET IT END FIRST</source>
+      <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
+    </message>
+    <message>
       <location filename="app/desk/files/chooser.py" />
       <source>THIS CONTROL</source>
       <translation>ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
-      <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
     </message>
     <message>
       <location filename="app/desk/files/files.py" />
@@ -565,33 +610,8 @@
     </message>
     <message>
       <location filename="app/desk/files/files.py" />
-      <source>ITS NAME IS {name} NOW</source>
-      <translation>AHORA SE LLAMA {name}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
       <source>NAME</source>
       <translation>NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>NAME OF THE COPY?</source>
-      <translation>¿NOMBRE DE LA COPIA?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>NEW NAME?</source>
-      <translation>¿NOMBRE NUEVO?</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>NO PROGRAM IS MARKED</source>
-      <translation>NO HAY PROGRAMA MARCADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>OPRIMA F6 OTRA VEZ PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/desk/files/files.py" />
@@ -610,11 +630,6 @@
     </message>
     <message>
       <location filename="app/desk/files/files.py" />
-      <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
-      <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
       <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
       <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
     </message>
@@ -622,21 +637,6 @@
       <location filename="app/desk/files/files.py" />
       <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
       <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
-      <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>{name} IS THERE NOW</source>
-      <translation>YA ESTÁ {name}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/files.py" />
-      <source>{name} IS UNDER WAY: LET IT END FIRST</source>
-      <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
     </message>
     <message>
       <location filename="app/desk/files/preview.py" />
@@ -4047,6 +4047,11 @@
       <location filename="core/executor/alarms.py" />
       <source>unclamping refused</source>
       <translation>apertura de boquilla rechazada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/blockwise/jogger.py" />
+      <source>the controller is still moving</source>
+      <translation>el controlador todavía se mueve</translation>
     </message>
     <message>
       <location filename="core/executor/blockwise/pieces.py" />
@@ -8865,8 +8870,8 @@
     </message>
     <message>
       <location filename="core/proving/interlock.py" />
-      <source>stop it with M5 first; a machine whose C has its own drive says so by axis.C.own_drive</source>
-      <translation>párelo primero con M5; una máquina cuyo C tiene servo propio lo dice con axis.C.own_drive</translation>
+      <source>stop it with M5 first, or choose a lathe whose C has its own drive: --machine sinumerik-modulo</source>
+      <translation>párelo primero con M5, o elija un torno cuyo C tenga servo propio: --machine sinumerik-modulo</translation>
     </message>
     <message>
       <location filename="core/proving/timeline.py" />

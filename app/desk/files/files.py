@@ -5,45 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
-from app.desk import prompts
 from app.desk.editing.worker import Worker
-from app.desk.files import changes
+from app.desk.files.changing import COPY, NONE, RENAME, Changer, FilesHost
 from app.desk.files.preview import Preview
 from app.desk.files.rows import ORDERS, Program, programs, sorted_by
 from app.desk.files.shown import sheet_of
 from app.desk.files.traffic import Traffic
 from app.desk.keep import Keep
 from app.desk.session import Loaded
-from app.desk.shelf import Shelf
 from app.desk.special.entry import Entry
 from app.desk.special.sheet import Key, Sheet
-from app.desk.words import tr
-from core.executor.snapshot import Snapshot, State
-
-UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
-SAMPLE = "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
-NONE = "NO PROGRAM IS MARKED"
-BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
-COPY, RENAME = "NAME OF THE COPY?", "NEW NAME?"
-
-
-class FilesHost(Protocol):
-    """What the list needs of the desk."""
-
-    notice: str
-    shelf: Shelf
-
-    def say(self, text: str) -> None: ...
-
-    def clear(self) -> None: ...
-
-    def snapshot(self) -> Snapshot: ...
-
-    def choose(self, typed: str) -> bool: ...
-
-    def may_choose(self) -> bool: ...
+from core.executor.snapshot import State
 
 
 @dataclass(slots=True)
@@ -60,14 +33,26 @@ class FilesDesk:
     order: str = "NAME"
     marked: int = 0
     find: Entry = field(default_factory=lambda: Entry(words=True))
-    entry: Entry = field(default_factory=lambda: Entry(words=True))
-    question: str = ""
     all: tuple[Program, ...] = ()
     shown: tuple[Program, ...] = ()
+    changer: Changer = field(init=False)
     _after: str = ""  # the name to mark when the list has been read again
 
     def __post_init__(self) -> None:
         self.traffic.finished = self.look_again
+        self.changer = Changer(
+            self.desk, self.own, self.keep, self.worker, self.loaded, lambda: self.here, self._changed
+        )
+
+    @property
+    def question(self) -> str:
+        """What is asked about a name; empty: nothing."""
+        return self.changer.question
+
+    @property
+    def entry(self) -> Entry:
+        """The name that is being typed."""
+        return self.changer.entry
 
     # --- what is shown -------------------------------------------------------------------------------
 
@@ -116,9 +101,9 @@ class FilesDesk:
             return self.traffic.keys()
         return {
             "F2": Key("SORT", self.sort),
-            "F4": Key("COPY", lambda: self._ask(COPY)),
-            "F5": Key("RENAME", lambda: self._ask(RENAME)),
-            "F6": Key("DELETE", self.delete),
+            "F4": Key("COPY", lambda: self.changer.ask(COPY)),
+            "F5": Key("RENAME", lambda: self.changer.ask(RENAME)),
+            "F6": Key("DELETE", self.changer.delete),
             "F8": Key("IMPORT", lambda: self._transfer(out=False)),
             "F9": Key("EXPORT", lambda: self._transfer(out=True)),
         }
@@ -140,7 +125,7 @@ class FilesDesk:
         if key in steps and not self.question:
             self.choose(self.marked + steps[key])
         elif key == "Enter":
-            self._answer() if self.question else self.load()
+            self.changer.answer() if self.question else self.load()
         elif self.may_type and (self.entry if self.question else self.find).type(key):
             self.desk.clear()
             if not self.question:
@@ -162,7 +147,7 @@ class FilesDesk:
         elif self.traffic.open:
             self.traffic.escape()
         elif self.question:
-            self.question = ""
+            self.changer.question = ""
         elif self.find.text:
             self.find.text = ""
             self._narrow(self.here.name if self.here else "")
@@ -172,7 +157,7 @@ class FilesDesk:
 
     def leave(self) -> None:
         """The page goes: nothing stays half asked."""
-        self.question, self.find.text = "", ""
+        self.changer.question = self.find.text = ""
         self.traffic.shut()
         self.preview.of(None)
         self._narrow(self.here.name if self.here else "")
@@ -190,62 +175,9 @@ class FilesDesk:
             return False
         return self.desk.may_choose() and self.desk.choose(str(self.here.path))
 
-    def _ask(self, question: str) -> None:
-        here = self.here
-        if here is None:
-            self.desk.say(NONE)
-        elif question == RENAME and self._fixed(here):
-            self.desk.say(self._fixed(here))
-        else:
-            self.desk.clear()
-            self.question, self.entry.text = question, here.name
-
-    def _fixed(self, program: Program) -> str:
-        """Why a program stays as it is; empty when it may be changed."""
-        if program.sample:
-            return SAMPLE
-        state = self.desk.snapshot().state
-        if state in UNDER_WAY and self.loaded().path == program.path:
-            return tr("{name} IS UNDER WAY: LET IT END FIRST").format(name=program.name)
-        return ""
-
-    def _answer(self) -> None:
-        here, name, question = self.here, self.entry.text, self.question
-        if here is None:
-            self.question = ""
-        elif question == COPY:
-            self._change(lambda: changes.copied(here.path, self.own, name), "{name} IS THERE NOW")
-        else:
-            self._change(lambda: changes.renamed(here.path, name, self.keep), "ITS NAME IS {name} NOW")
-
-    def delete(self) -> None:
-        """The marked program, after asking; its text stays among the versions."""
-        here = self.here
-        if here is None or self._fixed(here):
-            self.desk.say(self._fixed(here) if here else NONE)
-            return
-        asked = tr("PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
-        question = asked.format(name=here.name)
-        if self.desk.notice != question:
-            self.desk.say(question)
-            return
-        self.desk.clear()
-        self._change(
-            lambda: changes.deleted(here.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
-        )
-
-    def _change(self, work: Callable[[], str], words: str) -> None:
-        if self.worker.busy:
-            self.desk.say(BUSY)
-            return
-
-        def done(name: str) -> None:
-            self.question = ""
-            self.desk.say(tr(words).format(name=name))
-            self._after = name
-            self.look_again()
-
-        self.worker.ask(work, done, self._failed)
+    def _changed(self, name: str) -> None:
+        self._after = name
+        self.look_again()
 
     def _transfer(self, *, out: bool) -> None:
         if out and self.here is None:
