@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import FeedHold
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Reset
 from core.executor.snapshot import State
 from core.interpreter.setup import ToolOffset
 from drivers.feeder.client import Line
-from drivers.feeder.links import LoopLink
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.simulated import Simulation
-from tests.drivers.contract.rigs import SimDriven
+from tests.drivers.contract.rigs import BrokenLink, SimDriven
 from tests.executor.rig import Rig
 from tests.executor.test_threads import EXTERNAL
 
@@ -26,8 +25,9 @@ class FedRig(Rig):
     def __post_init__(self) -> None:
         super().__post_init__()
         plain = self.sim
-        feeder = Feeder(SimDriven(plain.ports, plain.machine))
-        ports = feeder_ports(Line(LoopLink(feeder), self.clock))
+        self.feeder = Feeder(SimDriven(plain.ports, plain.machine))
+        self.link = BrokenLink(self.feeder)
+        ports = feeder_ports(Line(self.link, self.clock))
         self.sim = Simulation(ports, plain.machine)
         self.events.clear()
         self.executor = type(self.executor)(self.machine, ports, self.events.append, self._passes)
@@ -69,3 +69,30 @@ def test_estop_takes_the_same_way() -> None:
         rig.sim.machine.release_estop()
         rig.run(0.5)
         assert rig.state is State.DISABLED
+
+
+def test_a_feeder_that_dies_is_one_alarm_and_the_control_lives_on() -> None:
+    rig = FedRig()
+    rig.start("G90G94F300\nM03S500\nM08\nG01F300\nX3Z-4\nX0Z0\nM30\n")
+    rig.run(1.5)
+    rig.link.why = "the feeder process has ended; start the control again"
+    rig.until(State.FAULT, limit=0.05)
+    assert "feeder process has ended" in rig.shot.alarms[0].cause
+    rig.run(1.0)
+    assert not any(alarm.code == "internal" for alarm in rig.shot.alarms)
+    rig.post(Reset())
+    rig.run(0.2)
+    assert rig.state is State.FAULT  # nothing leads out of it but a new start
+    rig.post(EnableDrives(), CycleStart())
+    rig.run(0.2)
+    assert rig.state is State.FAULT
+
+
+def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None:
+    rig = FedRig()
+    rig.ready()
+    rig.link.why = "the feeder process has ended"
+    rig.run(0.1)
+    assert not rig.sim.ports.axes.sample().enabled
+    assert rig.sim.ports.station.snapshot().age == float("inf")
+    assert rig.sim.ports.spindle.fault() == "the feeder process has ended"
