@@ -93,8 +93,8 @@ class Sketch:
     def add(self, block: Block, end: float) -> None:
         """Append one block that ends ``end`` seconds into the program."""
         if block.swivel is not None:
-            self._scene.add(block, block.swivel)
-        if block.moves:
+            self._scene.add(block, block.swivel)  # what a lathe's picture would show of it means nothing
+        elif block.moves:
             if block.modal.c_locked:
                 self._locked(block)
             elif block.kind is not Kind.ROTATE:
@@ -105,7 +105,7 @@ class Sketch:
         self._ends.append(end)
         self._line.append(block.line)
         self._metric = block.modal.metric
-        self._chord.append(math.hypot(block.x - block.x0, block.z - block.z0) if block.moves else 0.0)
+        self._chord.append(_chord(block) if block.moves else 0.0)
 
     def picture(self) -> Picture:
         """The picture of what was added."""
@@ -180,6 +180,13 @@ def sketched(blocks: Iterable[Timed], watch: Callable[[int], None]) -> Picture:
         if count % WATCHED == 0:
             watch(count)
     return sketch.picture()
+
+
+def _chord(block: Block) -> float:
+    """From start to end in the machine's first two axes, of which the way left is told, mm."""
+    if block.travel is not None:
+        return math.dist(block.travel.start[:2], block.travel.end[:2])
+    return math.hypot(block.x - block.x0, block.z - block.z0)
 
 
 def _stroke(block: Block) -> Stroke:

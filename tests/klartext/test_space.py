@@ -240,3 +240,10 @@ def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> N
     snapshot = snapshot_at(block, feed=block.feed, rapid=block.rapid, turns=block.swivels and not block.rapid)
     made = view_of(snapshot, Readout.POSITION, with_c=False).feed
     assert (made.value, made.unit) == shown
+
+
+def test_a_mills_program_draws_nothing_on_a_lathes_picture(chamfers: tuple[Scene, list[Block]]) -> None:
+    picture = sketched(((block, 0.0, float(n)) for n, block in enumerate(chamfers[1])), lambda _count: None)
+    assert len(picture.z) == 0
+    cut = cut_of(chamfers[1], 2)
+    assert picture.chord[cut.n - 1] == pytest.approx(130.0)  # chamfer 2 runs along X of the machine
