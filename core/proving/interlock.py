@@ -21,5 +21,5 @@ def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic
                 severity=Severity.ERROR,
                 code="c-is-spindle",
                 message="C moves while the spindle turns, and on this machine the spindle itself is C",
-                hint="stop it with M5 first, or choose a lathe whose C has its own drive: --machine sinumerik-modulo",
+                hint="stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo",
             )
