@@ -101,9 +101,10 @@ def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
         assert (translator.translate(CONTEXT, text) or "") == told
 
 
-@pytest.mark.parametrize("text", [text for text, told in written("es").items() if told and HOLE.search(text)])
-def test_no_value_is_lost(text: str) -> None:
-    assert sorted(HOLE.findall(written("es")[text])) == sorted(HOLE.findall(text))
+def test_no_value_is_lost() -> None:
+    holes = {text: told for text, told in written("es").items() if told and HOLE.search(text)}
+    lost = [text for text, told in holes.items() if sorted(HOLE.findall(told)) != sorted(HOLE.findall(text))]
+    assert lost == []
 
 
 def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
