@@ -13,6 +13,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from core.block_port import BlockSink
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -205,3 +207,4 @@ class MachinePorts:
     station: Station
     warnings: Sequence[str] = ()
     gear: Gear | None = None  # None: threads follow the spindle by setpoints in time
+    blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints

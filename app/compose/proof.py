@@ -14,4 +14,5 @@ def proof_of(job: Job, report: Report) -> Proof:
         blocks=report.elementary,
         cycle_time=report.times.cycle,
         tools=report.tools,
+        needs=report.needs,
     )

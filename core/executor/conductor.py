@@ -7,12 +7,12 @@ from collections.abc import Callable
 from core.executor import gate
 from core.executor.alarms import Reaction, TroubleError, alarm_of
 from core.executor.bench import Bench
+from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.homing import Homing
 from core.executor.inherited import at_power_up
 from core.executor.job import Job
-from core.executor.jog import Jogger
 from core.executor.rounds import Rounds
 from core.executor.snapshot import Event, State
 from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
@@ -31,7 +31,7 @@ class Conductor:
         self.standing.modal = at_power_up(bench)
         self.counters = self.rounds.counters
         self.supervisor = Supervisor(bench)
-        self.jogger = Jogger(bench)
+        self.jogger = jogger_of(bench)
         self.homing = Homing(bench)
         self._giving_up = False
 
@@ -132,9 +132,9 @@ class Conductor:
 
     def _mind_the_queue(self, cycle: Cycle) -> None:
         """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
-        player = self.rounds.player
-        left = player.starving - self._bench.now
-        if player.active and left < self._bench.machine.timing.low_water:
+        mover = self.rounds.mover
+        left = mover.starving - self._bench.now
+        if mover.active and left < self._bench.machine.timing.low_water:
             self.counters.underruns += 1
             self._bench.say("starved", "setpoints ran low; the slides stop on the path")
             cycle.starve()

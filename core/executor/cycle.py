@@ -8,9 +8,7 @@ from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, Pass, needs_speed
 from core.executor.limits import check_block
-from core.executor.mover import Mover, Progress
-from core.executor.player import Player
-from core.executor.retreat import Retreat
+from core.executor.moving import Moving, Progress
 from core.executor.snapshot import State
 from core.executor.waits import Wait, at_speed, carry_out, in_position
 from core.interpreter.actions import ProgramEnd, ProgramStop
@@ -32,15 +30,14 @@ class Cycle:
     def __init__(
         self,
         bench: Bench,
-        player: Player,
+        mover: Moving,
         source: Pass,
         begins: Modal,
         enter: Callable[[State], None],
         ended: Callable[[ProgramEnd | None], None],
     ) -> None:
         self._bench = bench
-        self._player = player
-        self._mover = Mover(bench, player)
+        self._mover = mover
         self._enter = enter
         self._ended = ended
         self._needs_end = source.left is None
@@ -50,7 +47,7 @@ class Cycle:
         self._settled = True  # in position since the last motion
         self._block_done = False  # for single block: something was executed since the last stop
         self._held_at = 0.0
-        self._retreat: Retreat | None = None
+        self._retreating = False
         self._reason = ""  # why the cycle was held, when not by the button
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
@@ -68,7 +65,7 @@ class Cycle:
     @property
     def next_block(self) -> Block | None:
         """What comes after the block that is being executed."""
-        return self._player.following() or self._feed.next_block
+        return self._mover.following or self._feed.next_block
 
     @property
     def at_rest(self) -> bool:
@@ -84,14 +81,14 @@ class Cycle:
         self._reason, self._held_at = reason, self._bench.now
         self._bench.say("stop", reason or "feed hold")
         if self._mover.moving:
-            self._player.hold(self._mover.wanted())
+            self._mover.hold()
             self._change(State.HOLDING)
         else:
             self._change(State.HOLD)
 
     def starve(self) -> None:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
-        self._player.let_stop()
+        self._mover.let_stop()
         if self._state in _GOING:
             self._reason, self._held_at = "SETPOINTS RAN LOW", self._bench.now
             self._change(State.HOLDING)
@@ -99,16 +96,16 @@ class Cycle:
     def abandon(self) -> None:
         """Come to rest and be given up; the caller waits for ``at_rest``."""
         if self._mover.moving:
-            self._player.brake()
+            self._mover.brake()
         if self._state in _GOING:
             self._change(State.HOLDING)
 
     def why_not_on(self) -> str:
         """Why a stopped cycle cannot go on now; empty when it can."""
         bench, block = self._bench, self.current
-        if not self._player.active or block is None or not needs_speed(block) or block.rpm == 0.0:
+        if not self._mover.active or block is None or not needs_speed(block) or block.rpm == 0.0:
             return ""
-        if self._player.complete() or bench.spindle.at_speed(bench.now):
+        if self._mover.complete or bench.spindle.at_speed(bench.now):
             return ""
         return bench.spindle.why_slow.lower() or "the spindle is not at its speed"
 
@@ -116,7 +113,7 @@ class Cycle:
         """Cycle Start after hold, single block, M00, M01."""
         stopped = self._state
         self._reason = self.message = ""
-        self._block_done = self._player.active and not self._player.complete()
+        self._block_done = self._mover.active and not self._mover.complete
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
         if self._wait is not None:
@@ -143,11 +140,11 @@ class Cycle:
         self._feed.pull(_BLOCKS, _BUFFER * self._bench.machine.timing.lookahead)
 
     def _slow_down(self) -> None:
-        self._player.extend(self._bench.now)
+        self._mover.keep_up()
         if self._mover.moving:
             return
-        if self._retreat is not None:
-            self._retreat.step()
+        if self._retreating:
+            self._mover.retreated()
         else:
             self._change(State.HOLD)
 
@@ -159,6 +156,8 @@ class Cycle:
                 self._change(State.WAIT)
             case Progress.BLOCK_END:
                 self._change(State.BLOCK_END)
+            case Progress.HELD:
+                self.hold("THE CONTROLLER HOLDS")
             case Progress.DONE:
                 self._stand()
 
@@ -231,11 +230,12 @@ class Cycle:
     def _watch_spindle(self, block: Block) -> None:
         """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
         spindle = self._bench.spindle
-        if not needs_speed(block) or self._retreat is not None or not spindle.lost:
+        if not needs_speed(block) or self._retreating or not spindle.lost:
             return
         if block.kind is Kind.THREAD:
             self._bench.say("stop", "spindle lost in a thread")
-            self._retreat = Retreat(self._bench, self._player, block)
+            self._mover.retreat(block)
+            self._retreating = True
             self._change(State.HOLDING)
         elif block.per_rev and not block.modal.c_locked:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")

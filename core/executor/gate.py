@@ -28,6 +28,8 @@ def hindrance(bench: Bench, state: State) -> str:
         return _BUSY[state]
     if busy(bench):
         return busy(bench)
+    if bench.ports.blocks is not None and bench.ports.blocks.state().hindrance:
+        return bench.ports.blocks.state().hindrance
     away = [a.name for a, homed in zip(bench.machine.axes, bench.sample.homed, strict=True) if not homed]
     if away:
         return f"{', '.join(away)} must be homed first"
@@ -36,7 +38,17 @@ def hindrance(bench: Bench, state: State) -> str:
 
 def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) -> str:
     """Why this job may not be started now; empty when it may."""
-    return hindrance(bench, state) or unproved(job, proof)
+    return hindrance(bench, state) or unproved(job, proof) or beyond(bench, proof)
+
+
+def beyond(bench: Bench, proof: Proof | None) -> str:
+    """What the program asks for and a controller that plans by itself cannot do; empty when nothing."""
+    if bench.ports.blocks is None or proof is None:
+        return ""
+    for need in proof.needs:
+        if need.what not in bench.ports.blocks.caps:
+            return f"line {need.line}: this controller cannot do {need.words}"
+    return ""
 
 
 def unproved(job: Job | None, proof: Proof | None) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from core.interpreter.carried import RAPID, UNITS, carried
 from core.interpreter.modal import Modal
+from core.interpreter.needs import Need
 from core.interpreter.setup import Setup
 from core.language.source import Source
 
@@ -33,6 +34,7 @@ class Proof:
     blocks: int = 0
     cycle_time: float = 0.0
     tools: tuple[int, ...] = ()  # offsets the program asks for
+    needs: tuple[Need, ...] = ()  # what it asks of the machine beyond straight lines
 
 
 def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:

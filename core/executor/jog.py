@@ -14,7 +14,7 @@ from core.machine.model import Axis
 from core.ports import DriverError
 
 _UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
-_LONGEST = 1.0  # s; no lease is longer, whoever asks
+LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
 _LONGEST_STEP = 2.54  # mm (.1 in) or degrees: what is longer is no step
 _ROUNDING = 1e-9
 _MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the clock and queueing
@@ -99,7 +99,7 @@ class Jogger:
         axis = bench.machine.axes[index]
         homed = bench.sample.homed[index]
         speed = math.copysign(min(abs(velocity), self._top(axis, homed)), velocity)
-        until = bench.now + min(lease, _LONGEST)
+        until = bench.now + min(lease, LONGEST_LEASE)
 
         def go(start: float, p: float, v: float) -> list[Piece]:
             way = ride.room(axis, p, speed) if homed else math.inf
@@ -125,10 +125,14 @@ class Jogger:
         horizon = axes.horizon()
         if horizon > axes.now() + 1e-9:
             return False
+        self.ended()
+        return True
+
+    def ended(self) -> None:
+        """It rests; a step that was cut short is said to be so."""
         if self._short:
             self._bench.say("refused", f"{self.axis} was stopped before the end of its step")
         self.forget()
-        return True
 
     def forget(self) -> None:
         """Nothing is jogged any more: it has come to rest, or something else has stopped it."""

@@ -2,26 +2,17 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed
+from core.executor.moving import Progress
 from core.executor.player import Player
+from core.executor.retreat import Retreat
 from core.executor.stretch import Scales
 from core.interpreter.blocks import Block, Kind
 
 
-class Progress(Enum):
-    """How far the present stretch is."""
-
-    DONE = "there is none, or it has come to its end"
-    MOVING = "it moves"
-    BLOCK_END = "at rest where single block wants it"
-    STILL = "at rest because the override is 0"
-
-
 class Mover:
-    """Plans with the overrides and switches of now, and again when they change."""
+    """``Moving`` by setpoints: plans with the overrides and switches of now, and again when they change."""
 
     def __init__(self, bench: Bench, player: Player) -> None:
         self._bench = bench
@@ -29,6 +20,12 @@ class Mover:
         self._scales = Scales()
         self._single = False  # the present plan stops at the end of a block
         self._single_from: int | None = None  # the block from which on it may stop
+        self._retreat: Retreat | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether there is a stretch at all."""
+        return self.player.active
 
     @property
     def moving(self) -> bool:
@@ -40,6 +37,21 @@ class Mover:
         """The block being played."""
         return self.player.block(self._bench.now)
 
+    @property
+    def following(self) -> Block | None:
+        """The block behind it, when it belongs to the stretch."""
+        return self.player.following()
+
+    @property
+    def complete(self) -> bool:
+        """Whether what is queued ends where the stretch does."""
+        return self.player.complete()
+
+    @property
+    def starving(self) -> float:
+        """When the tail begins although the plan goes on."""
+        return self.player.starving
+
     def begin(self, blocks: list[Block]) -> None:
         """A new stretch, from rest; a thread pass is tied to the spindle."""
         self._single_from = None
@@ -50,7 +62,7 @@ class Mover:
         self.go()
 
     def go_on(self, behind: Block | None) -> None:
-        """From rest within the stretch; with single block to the end of the block after ``behind``."""
+        """From rest within the stretch; with single block to the end of the block after this one."""
         self._single_from = behind.n + 1 if behind else None
         self.go()
 
@@ -82,6 +94,36 @@ class Mover:
             return Progress.BLOCK_END
         self.go()
         return Progress.MOVING
+
+    def keep_up(self) -> None:
+        """Keep the queue filled while the slides come to rest."""
+        self.player.extend(self._bench.now)
+
+    def hold(self) -> None:
+        """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
+        self.player.hold(self.wanted())
+
+    def brake(self) -> None:
+        """Come to rest at once on the path, thread or not."""
+        self.player.brake()
+
+    def let_stop(self) -> None:
+        """Leave the tail in the queue as it is."""
+        self.player.let_stop()
+
+    def retreat(self, block: Block) -> None:
+        """Begin to leave a thread whose spindle is lost."""
+        self._retreat = Retreat(self._bench, self.player, block)
+
+    def retreated(self) -> None:
+        """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
+        if self._retreat is not None:
+            self._retreat.step()
+
+    def forget(self) -> None:
+        """The stretch is over, or nothing of it holds any more."""
+        self._retreat = None
+        self.player.forget()
 
     def wanted(self) -> Scales:
         """The scales of now. A rapid is never faster than its rate; G95 follows the spindle's pot."""

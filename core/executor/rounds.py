@@ -6,11 +6,14 @@ from collections.abc import Callable
 
 from core.executor import prepared
 from core.executor.bench import Bench
+from core.executor.blockwise.mover import BlockMover
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.inherited import as_it_is, given_up, interrupted
 from core.executor.interpret import circumstances
 from core.executor.job import Job, outdated
+from core.executor.mover import Mover
+from core.executor.moving import Moving
 from core.executor.player import Player
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Counters, Standing
@@ -30,9 +33,7 @@ class Rounds:
         self._bench = bench
         self._passes = passes
         self._enter = enter
-        machine = bench.machine
-        limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
-        self.player = Player(bench.ports.axes, limits, machine.timing.lookahead)
+        self.mover = _mover(bench)
         self.standing = Standing()
         self.counters = Counters()
         self.cycle: Cycle | None = None
@@ -83,7 +84,7 @@ class Rounds:
                 self.standing.interrupted = (self.standing.job.source.name, self._bench.line)
         self.cycle = self._source = None
         self._bench.line = 0
-        self.player.forget()
+        self.mover.forget()
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
         """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
@@ -101,12 +102,12 @@ class Rounds:
         """A pass from where the slides stand now; nothing is kept of an earlier one."""
         at, _ = self._bench.ports.axes.demand_at(self._bench.now)
         setup = circumstances(job.setup, at, self._bench.terminal)
-        self.player.forget()
+        self.mover.forget()
         begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
             begins = setup.begin.checkpoint.modal
         self._source = self._passes(job, setup)
-        self.cycle = Cycle(self._bench, self.player, self._source, begins, self._enter, self._ended)
+        self.cycle = Cycle(self._bench, self.mover, self._source, begins, self._enter, self._ended)
 
     def _ended(self, end: ProgramEnd | None) -> None:
         """M30 and M02, or the end of a line of MDI."""
@@ -150,3 +151,12 @@ class Rounds:
         for name, on in bench.ports.io.outputs().items():
             if on and name != "collet":
                 bench.ports.io.write(name, False)
+
+
+def _mover(bench: Bench) -> Moving:
+    """By setpoints, or block by block where the controller plans by itself."""
+    machine = bench.machine
+    if bench.ports.blocks is not None:
+        return BlockMover(bench, bench.ports.blocks)
+    limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
+    return Mover(bench, Player(bench.ports.axes, limits, machine.timing.lookahead))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from core.interpreter.actions import Dwell
 from core.interpreter.blocks import Block
+from core.interpreter.needs import Need, first_needs, needs_of
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
@@ -50,6 +51,8 @@ class _Proof:
         self._unseen: list[Block] = []
         self._cutting = self._rapid = self._dwell = self._wait = 0.0
         self._beyond: dict[tuple[int, str], Diagnostic] = {}
+        self._needs: tuple[Need, ...] = ()
+        self._before: Block | None = None
         self.last: Block | None = None
         self._last_move: Block | None = None
         self.elementary = 0
@@ -76,9 +79,16 @@ class _Proof:
         """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
         blocks, self._unseen = self._unseen, []
         self._tally.add(blocks)
+        self._need(blocks)
         if len(self._beyond) < MAX_FINDINGS:
             for finding in (*travel_findings(blocks, self._machine), *c_findings(blocks, self._machine)):
                 self._beyond.setdefault((finding.line, finding.message[:1]), finding)
+
+    def _need(self, blocks: list[Block]) -> None:
+        """Only a controller that plans by itself can lack what a program needs."""
+        if blocks and self._machine.backend == "grblhal":
+            self._needs = first_needs((*self._needs, *needs_of(blocks, self._before)))
+            self._before = blocks[-1]
 
     def _rested(self, stretch: Rested) -> None:
         spent = stretch.t1 - stretch.t0
@@ -87,6 +97,7 @@ class _Proof:
             return
         self.elementary += 1
         self.last = stretch.block
+        self._need([stretch.block])
         if isinstance(stretch.block.action, Dwell):
             self._dwell += spent
         else:
@@ -113,6 +124,7 @@ class _Proof:
             final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
             machine_final=end.machine_end if end else timeline.start,
             mill=self._mill(),
+            needs=self._needs,
         )
 
     def _mill(self) -> MillFigures | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.interpreter.needs import Need
 from core.interpreter.swivel import Swivel
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.dialect import Dialect
@@ -67,6 +68,7 @@ class Report:
     final: tuple[float, float, float]  # program frame
     machine_final: tuple[float, ...]
     mill: MillFigures | None = None
+    needs: tuple[Need, ...] = ()
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:

@@ -1,0 +1,232 @@
+"""The moving part of a cycle on a controller that plans by itself: it gets blocks, no more than it must."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+from core.block_port import BlockSink, BlockState, RapidOp
+from core.executor.alarms import TroubleError
+from core.executor.bench import Bench
+from core.executor.blockwise.pieces import Piece, Turning, pieces_of
+from core.executor.feed import BlockFeed
+from core.executor.moving import Progress
+from core.executor.stretch import Scales
+from core.interpreter.blocks import Block, Kind
+
+_CUT = 1.0  # s of motion that lie ready in pieces
+_SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
+_NEAR = 0.01  # mm; the controller reports thousandths
+
+
+class _Sent(NamedTuple):
+    ticket: int
+    piece: Piece
+
+
+class BlockMover:
+    """``Moving`` block by block, on the executor's thread alone.
+
+    Single block acts at the end of the last block that the controller has, ``BlockSink.ahead`` away at most.
+    """
+
+    def __init__(self, bench: Bench, sink: BlockSink) -> None:
+        self._bench = bench
+        self._sink = sink
+        self._waiting: deque[Block] = deque()  # not yet cut
+        self._pieces: deque[Piece] = deque()  # cut, not yet handed over
+        self._sent: deque[_Sent] = deque()  # handed over, not yet done
+        self._seconds = 0.0  # that the sent ones take
+        self._shown: Block | None = None
+        self._scales = Scales()
+        self._last: int | None = None  # single block: nothing behind this block is handed over
+        self._thread = False
+        self._still = False  # held because an override is 0
+        self._lost: tuple[Block, float] | None = None  # thread without its spindle, and where X goes
+        self._active = False
+
+    # --- how it stands ------------------------------------------------------------------------------------
+
+    @property
+    def active(self) -> bool:
+        """Whether there is a stretch at all."""
+        return self._active
+
+    @property
+    def moving(self) -> bool:
+        """Whether anything still moves."""
+        return self._active and self._moves(self._look())
+
+    @property
+    def block(self) -> Block | None:
+        """The block being moved."""
+        self._look()
+        return self._shown
+
+    @property
+    def following(self) -> Block | None:
+        """The block behind it, when it has been read into the stretch."""
+        if self._shown is None:
+            return None
+        cut = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
+        later = next((block for block in cut if block.n > self._shown.n), None)
+        return later or (self._waiting[0] if self._waiting else None)
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing of the stretch is left to be moved."""
+        return not (self._waiting or self._pieces or self._sent)
+
+    @property
+    def starving(self) -> float:
+        """Never: without blocks the controller comes to rest by itself."""
+        return math.inf
+
+    # --- what is asked ------------------------------------------------------------------------------------
+
+    def begin(self, blocks: list[Block]) -> None:
+        """A new stretch, from rest. Raises TroubleError, DriverError."""
+        self.forget()
+        self._active, self._shown = True, blocks[0]
+        self._thread = blocks[0].kind is Kind.THREAD
+        self._waiting.extend(blocks)
+        self._override()
+        self._hand_over()
+
+    def go_on(self, behind: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
+        """From rest within the stretch: the controller goes on, or gets the next block."""
+        self._last = None
+        if not self._still:
+            self._sink.resume()
+        self._hand_over()
+
+    def progress(self, feed: BlockFeed) -> Progress:
+        """Follow switches and overrides, hand over what may be, and say how far it is."""
+        if not self._active:
+            return Progress.DONE
+        self._override()
+        state = self._look()
+        if not self._thread and feed.pending and self._ready() < _CUT:
+            self._waiting.extend(feed.take())
+        self._hand_over()
+        if state.held and not self._still:
+            return Progress.HELD
+        if self._moves(state):
+            return Progress.MOVING
+        return Progress.DONE if self.complete else self._resting()
+
+    def keep_up(self) -> None:
+        """A thread pass that is being held ends: what pulls out of it is handed over."""
+        self._look()
+        if self._thread:
+            self._hand_over()
+
+    def hold(self) -> None:
+        """Come to rest on the path; a thread pass first ends."""
+        if not self._thread:
+            self._sink.hold()
+
+    def brake(self) -> None:
+        """Come to rest at once; what the controller still has is void."""
+        self._empty()
+        self._sink.abort()
+
+    def let_stop(self) -> None:
+        """The controller stops by itself."""
+
+    def retreat(self, block: Block) -> None:
+        """Stop, to draw X back then."""
+        left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
+        self._lost = block, [block, *left, *self._waiting][-1].mx
+        self.brake()
+
+    def retreated(self) -> None:
+        """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
+        assert self._lost is not None
+        block, out = self._lost
+        x, z = self._bench.sample.actual[:2]
+        if abs(x - out) < _NEAR or self._sink.state().hindrance:
+            raise TroubleError("thread-lost", line=block.line)
+        self._pieces.append(Piece(RapidOp(out, z, block.modal.rapid_rate), block, 0.0))
+        self._hand_over()
+
+    def forget(self) -> None:
+        """The stretch is over, or nothing of it holds any more."""
+        self._empty()
+        self._shown = self._last = self._lost = None
+        self._thread = self._active = False
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _empty(self) -> None:
+        self._waiting.clear()
+        self._pieces.clear()
+        self._sent.clear()
+        self._seconds, self._still = 0.0, False
+
+    def _look(self) -> BlockState:
+        """How the controller stands; what is done is forgotten."""
+        state = self._sink.state()
+        while self._sent and self._sent[0].ticket <= state.done:
+            done = self._sent.popleft().piece
+            self._shown, self._seconds = done.block, self._seconds - done.seconds
+        if self._sent:
+            self._shown = self._sent[0].piece.block
+        return state
+
+    def _moves(self, state: BlockState) -> bool:
+        """A controller that is held rests, with all that it still has to move."""
+        return not state.held and (bool(self._sent) or not state.resting)
+
+    def _resting(self) -> Progress:
+        if self._still:
+            return Progress.STILL
+        stepped = self._bench.switches.single_block and self._last is not None
+        return Progress.BLOCK_END if stepped else Progress.MOVING
+
+    def _override(self) -> None:
+        """Feed and rapid override; at 0 the controller is held. Threads know neither."""
+        feed = self._bench.feed_override
+        turn = round(self._bench.spindle.override, 2)
+        self._scales = Scales(feed, min(feed, 1.0), turn)
+        if feed and turn:
+            self._sink.override(feed, min(feed, 1.0))
+            if self._still:
+                self._still = False
+                self._sink.resume()
+        elif not self._still and not self._thread:
+            self._still = True
+            self._sink.hold()
+
+    def _ready(self) -> float:
+        return sum(piece.seconds for piece in self._pieces) + (_CUT if self._waiting else 0.0)
+
+    def _hand_over(self) -> None:
+        turning = Turning(self._scales.turn, self._bench.spindle.highest)
+        while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
+            self._pieces.extend(pieces_of(self._waiting.popleft(), turning))
+        while self._pieces and self._may(self._pieces[0]):
+            ticket = self._sink.submit(self._pieces[0].op)
+            if ticket is None:
+                return
+            piece = self._pieces.popleft()
+            self._sent.append(_Sent(ticket, piece))
+            self._seconds += piece.seconds
+
+    def _may(self, piece: Piece) -> bool:
+        """Whether the controller gets this one now: by single block, and by how far it could run on alone."""
+        if self._still or not self._single(piece.block):
+            return False
+        if self._thread or not self._sent:
+            return True
+        slow = max(min(self._scales.feed, 1.0), _SLOWEST)
+        return (self._seconds - self._sent[0].piece.seconds) / slow < self._sink.ahead
+
+    def _single(self, block: Block) -> bool:
+        if not self._bench.switches.single_block or self._thread:
+            self._last = None
+            return True
+        if self._last is None:
+            self._last = self._sent[-1].piece.block.n if self._sent else block.n
+        return block.n <= self._last
