@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from core.ports import AxisSample, DriverError, Segments, Stop
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
@@ -173,8 +175,17 @@ class CanopenAxes:
             self.homing, self._given_up = None, self.homing
         elif self._given_up is None:
             at = self.now() + self.commit
-            self.queue.brake(at, [axis.amax for axis in self._config.axes])
+            if any(self.queue.demand_at(at)[1]):
+                self.queue.brake(at, [axis.amax for axis in self._config.axes])
+            else:
+                self._end(at)
             self.follower.braked(at)
+
+    def _end(self, at: float) -> None:
+        """Rest from ``at`` on; what is played until then stays."""
+        p, v = self.queue.demand_at(at)
+        row, still = np.array([p]), np.array([v])
+        self.queue.splice(Segments(np.array([at]), np.zeros(1), row, still, still), at - self.commit)
 
     def _go_on(self, now: float) -> None:
         homing = self.homing or self._given_up

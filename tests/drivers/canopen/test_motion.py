@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from core.ports import DriverError, Stop
@@ -62,6 +63,40 @@ def test_hold_from_full_speed_within_a_quarter_second(moving: CanBench) -> None:
     # 140 ms in the drives and 120/3048 s of braking are 0.18 s
     assert moving.clock.now() - asked < 0.25
     assert axes.sample().enabled
+    assert axes.sample().fault == ""
+
+
+@pytest.mark.parametrize("before", [0.02, 0.06, 0.1, 0.139, 0.16, 0.18])
+def test_hold_at_the_end_of_a_move_changes_nothing_in_the_drives(bench: CanBench, before: float) -> None:
+    """What is left is in the drives already, or as good as: no jump, wherever it comes."""
+    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 120.0, 0.3))
+    bench.run(0.14 + 0.38 - before)
+    axes.stop(Stop.RAMP_HOLD)
+    fastest = 0.0
+    for _ in range(400):
+        bench.tick(0.001)
+        fastest = max(fastest, abs(drive.v))
+    assert fastest < 120.5
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[0] == pytest.approx(axes.sample().demand[0], abs=0.002)
+    assert not axes.sample().moving
+
+
+def test_hold_at_a_turning_point_does_not_go_on(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    there = ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.2)
+    end = there.t[-1] + there.dt[-1]
+    back = ramp(end, (60.0 * 0.22, 0.0, 0.0), -60.0, 0.2)
+    both = type(there)(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))
+    axes.splice(both)
+    bench.run(end - 0.14 - bench.clock.now())
+    axes.stop(Stop.RAMP_HOLD)
+    bench.run(1.0)
+    assert axes.sample().actual[0] == pytest.approx(60.0 * 0.22, abs=0.35)  # not back at 0
+    assert not axes.sample().moving
     assert axes.sample().fault == ""
 
 
