@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import re
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,37 @@ def test_run(turndesk: Turndesk, tmp_path: Path, offsets: Path, text: str) -> No
     assert (end["state"], end["alarms"], end["underruns"]) == ("complete", [], 0)
     assert (end["final"]["a"], end["final"]["c"]) == (0.0, 0.0)
     assert end["final"]["mz"] == pytest.approx(-0.001)
+
+
+EVERY_WAY = """TOOL CALL 1 Z S3000 F600
+L X+20 Y+10 Z+80 R0 FMAX M13
+PLANE AXIAL A+30 C+60 MOVE DIST20 MB 10 F3600
+L Z+20 FMAX
+L IX+10 IY+5 IZ-1 F800
+PLANE SPATIAL SPA+20 SPB+10 SPC+0 STAY SEQ+
+L A+Q120 C+Q122 FMAX
+L X+20 Y+10 Z+30 FMAX M140 MB 5
+PLANE RELATIV SPC+15 TURN MB MAX FMAX
+L Z-150 FMAX M91
+PLANE RESET MOVE FMAX
+LBL 4
+L IX+1 F100 M9
+CALL LBL 4 REP 2
+"""
+
+
+@pytest.mark.parametrize("unit", ["MM", "INCH"])
+def test_run_of_every_way_to_position(turndesk: Turndesk, tmp_path: Path, offsets: Path, unit: str) -> None:
+    path = tmp_path / "ways.h"
+    text = EVERY_WAY
+    if unit == "INCH":
+        text = re.sub(r"\b(I?[XYZ][+-])(\d+)", lambda m: f"{m[1]}{int(m[2]) / 25.4:.4f}", text)
+    path.write_text(whole(text, unit))
+    told = turndesk("run", path, *MILL, "--headless", "--offsets", offsets, "--json")
+    assert told.status == 0, told.err
+    end = told.lines[-1]
+    assert (end["state"], end["alarms"], end["underruns"]) == ("complete", [], 0)
+    assert (end["final"]["a"], end["final"]["c"]) == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
 def test_run_waits_for_a_tool_nobody_measured(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
