@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 from core.machine.model import Axis, Machine
 from core.ports import Clock
 from drivers.simulated import (
@@ -42,7 +40,7 @@ def sim_config(machine: Machine) -> SimConfig:
             PlannedFault(f.at, f.what, f.axis, f.value, f.seconds, f.text)
             for f in machine.hardware.sim.faults
         ),
-        seed=cast("int", machine.sim.get("seed", 1)),
+        seed=machine.hardware.sim.seed,
     )
 
 

@@ -101,7 +101,6 @@ class Machine:
     outputs: Mapping[str, OutputModel]
     inputs: Mapping[str, InputModel]
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
-    sim: Mapping[str, object] = field(default_factory=dict)
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in
