@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.compose.canopen import own_process
 from app.compose.driven import driven, has_station
+from app.compose.inverter import has_inverter, with_inverter
 from app.compose.simulated import simulated
 from app.desk.station import StationPanel
 from core.machine.model import Machine
@@ -31,11 +32,8 @@ class Connected:
 
 def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
-    if machine.hardware.spindle_driver == "vfd":
-        raise DriverError(f"{machine.source}: there is no driver for spindle.driver vfd yet")
     if machine.backend == "sim" and not machine.hardware.feeder:
-        simulation = simulated(machine, clock)
-        return Connected(simulation.ports, simulation.machine, simulation.machine.set_input, lambda: None)
+        return _in_process(machine, clock)
     if machine.backend not in {"sim", "canopen"}:
         raise DriverError(f"{machine.source}: there is no driver for backend {machine.backend} yet")
     line, close = _line(machine, clock)
@@ -47,6 +45,21 @@ def connect(machine: Machine, clock: Clock) -> Connected:
     hands = FeederHands(line)
     panel = hands if played(machine) or not has_station(machine) else None
     return Connected(ports, panel, hands.set_input if played(machine) else None, close)
+
+
+def _in_process(machine: Machine, clock: Clock) -> Connected:
+    """The simulated machine, whose spindle may be a real one."""
+    simulation = simulated(machine, clock)
+    ports, hands = simulation.ports, simulation.machine
+    if not has_inverter(machine):
+        return Connected(ports, hands, hands.set_input, lambda: None)
+    ports, close = with_inverter(machine, ports, clock)
+    return Connected(ports, hands, hands.set_input, close)
+
+
+def real_time(machine: Machine) -> bool:
+    """Whether something of it keeps its own time: no clock that is moved by hand will do."""
+    return has_inverter(machine) or not played(machine)
 
 
 def played(machine: Machine) -> bool:

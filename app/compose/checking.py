@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from app.compose.backends import connect, played
+from app.compose.backends import connect, real_time
 from core.machine.model import Machine
-from core.ports import Clock, MachinePorts
+from core.ports import Clock, MachinePorts, Spindle
+from drivers.inverter.spindle import InverterSpindle
 from drivers.simulated import RealClock, StepClock
 
 Row = tuple[str, str, str]  # name, state, detail
@@ -24,12 +25,17 @@ def check_ports(machine: Machine) -> Answers:
 
     Nothing is switched on and nothing moves.
     """
-    clock: Clock = StepClock() if played(machine) else RealClock()
+    clock: Clock = RealClock() if real_time(machine) else StepClock()
     connected = connect(machine, clock)
     try:
         return Answers(_rows(connected.ports), list(connected.ports.warnings))
     finally:
         connected.close()
+
+
+def _turning(spindle: Spindle) -> str:
+    told = f"{spindle.speed():.0f} rpm"
+    return f"{told}, {spindle.status()}" if isinstance(spindle, InverterSpindle) else told
 
 
 def _rows(ports: MachinePorts) -> list[Row]:
@@ -39,7 +45,7 @@ def _rows(ports: MachinePorts) -> list[Row]:
         for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True)
     ]
     fault = ports.spindle.fault()
-    rows.append(("spindle", "fault" if fault else "ok", fault or f"{ports.spindle.speed():.0f} rpm"))
+    rows.append(("spindle", "fault" if fault else "ok", fault or _turning(ports.spindle)))
     station = ports.station.snapshot()
     rows.append(("station", "E-stop" if station.estop else "ok", f"feed pot {station.feed_pot:.0%}"))
     rows += [(f"input {name}", "on" if on else "off", "") for name, on in ports.io.inputs().items()]

@@ -6,6 +6,7 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from app.compose.canopen import canopen_machine, canopen_peers, own_process
+from app.compose.inverter import WithInverter, has_inverter
 from app.compose.simulated import simulated
 from core.machine.model import Machine
 from core.ports import Clock, DriverError, MachinePorts
@@ -19,7 +20,12 @@ STATION = ("start", "hold")  # a machine whose file has neither has no operator 
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:
-    """What the machine file's backend is driven by. Raises DriverError."""
+    """What the machine file's backend and its spindle are driven by. Raises DriverError."""
+    inner = _backend(machine, clock)
+    return WithInverter(inner, machine, clock) if has_inverter(machine) else inner
+
+
+def _backend(machine: Machine, clock: Clock) -> Driven:
     if machine.backend == "sim":
         return SimDriven(machine, clock)
     if machine.backend == "canopen":

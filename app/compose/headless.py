@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import TextIO
 
 from app.cli.errors import CommandError
-from app.compose.backends import Connected, connect, played
+from app.compose.backends import Connected, connect, real_time
 from app.desk.headless import HeadlessRun
 from app.desk.home import home
 from core.executor.executor import Executor
@@ -69,7 +69,7 @@ def headless(
     A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
     and for inputs that it does not have or that are wires and not to be set.
     """
-    paced = realtime or machine.hardware.sim.realtime or not played(machine)
+    paced = realtime or machine.hardware.sim.realtime or real_time(machine)
     clock = RealClock() if paced else StepClock()
     try:
         connected = connect(machine, clock)

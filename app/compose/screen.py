@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 from app.compose.backends import connect, played
 from app.compose.effect import drawer
+from app.compose.inverter import has_inverter
 from app.compose.journal import Journal
 from app.compose.logs import Log
 from app.compose.machine import read_machine, setup_for
@@ -118,7 +119,7 @@ def desk_and_executor(
         with_c=machine.c_enabled,
         lathe=machine,
         effect=Effect(drawer(machine)),
-        machine=f"{machine.name} · {'SIMULATED' if played(machine) else machine.backend.upper()}",
+        machine=f"{machine.name} · {_drives(machine)}",
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),
         editor=_editor(workshop(machine, offsets, zero=zero), journal),
@@ -131,6 +132,13 @@ def desk_and_executor(
     for warning in connected.ports.warnings:
         hear(Event(clock.now(), "warning", warning))
     return desk, executor
+
+
+def _drives(machine: Machine) -> str:
+    """What an operator must never be in doubt about: what of it is real."""
+    if not played(machine):
+        return machine.backend.upper()
+    return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
 
 
 def _editor(work: Workshop, journal: Journal | None) -> Editor:

@@ -7,7 +7,7 @@ from core.machine.units import Unit
 
 BAUDS = 110, 1_000_000
 PARITIES = ("N", "E", "O")
-VFD_FAMILIES = ("delta-vfdb", "huanyang", "huanyang-modbus", "hitachi-wj200", "gs2")
+VFD_FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
 SPINDLE_DRIVERS = ("sim", "cia402", "vfd", "grblhal")
 SIM_FAULTS = (
     "jam",

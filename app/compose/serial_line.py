@@ -1,0 +1,26 @@
+"""Serial ports. Loads pyserial, which a machine without a serial line need not have."""
+
+from __future__ import annotations
+
+from core.ports import DriverError
+from drivers.wire import LineSettings, Wire
+
+MISSING = "serial lines need pyserial: pip install pyserial"
+
+
+def open_wire(settings: LineSettings) -> Wire:
+    """A port for us alone. Raises DriverError; one that names the library where it is missing."""
+    try:
+        from drivers.serial_wire import SerialWire
+    except ImportError as error:
+        raise DriverError(MISSING) from error
+    return SerialWire(settings)
+
+
+def serial_ports() -> list[tuple[str, str]]:
+    """(device, what it is) of each port of this computer. Raises DriverError."""
+    try:
+        from drivers.serial_wire import found_ports
+    except ImportError as error:
+        raise DriverError(MISSING) from error
+    return [(found.device, found.what) for found in found_ports()]

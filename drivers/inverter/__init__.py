@@ -1,0 +1,1 @@
+"""Spindle inverters on a serial line (RS-485)."""

@@ -1,0 +1,115 @@
+"""Hitachi WJ200. Addresses on the line are the manual's numbers less one.
+
+Its "frequency reached" is true in the wrong direction too, so nobody here asks for it. After a reset it
+needs a second before it answers again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from core.ports import Clock
+from drivers.inverter.errors import RefusedError
+from drivers.inverter.family import Look, number
+from drivers.inverter.modbus import Modbus
+from drivers.inverter.settings import Setting, settled
+
+_RUN, _DIRECTION, _RESET = 0x0000, 0x0001, 0x0003  # coils 1, 2 and 4
+_STATUS = 0x000E  # coils 000F…0018: running, direction, ready, … alarm
+_FREQUENCY = 0x0000  # registers 1 and 2: high and low word
+_OUTPUT = 0x1000  # d001: two words, then the current d002
+_TRIP = 0x0011  # register 0012: the factor of the trip, d081
+_TOP = 0x1203  # A004, tenths of a hertz
+_AFTER_RESET = 1.0
+_SOURCES = (
+    Setting(0x1200, 3, "A001", "the frequency comes by Modbus"),
+    Setting(0x1201, 3, "A002", "run and stop come by Modbus"),
+)
+
+
+class HitachiWj200:
+    """Coils for run and direction, one register for the frequency."""
+
+    name = "Hitachi WJ200"
+    warm_up = 1
+
+    def __init__(self, line: Modbus, clock: Clock) -> None:
+        self._line, self._clock = line, clock
+        self._reverse: bool | None = None
+
+    @property
+    def hurry(self) -> Callable[[], bool]:
+        return self._line.hurry
+
+    @hurry.setter
+    def hurry(self, asked: Callable[[], bool]) -> None:
+        self._line.hurry = asked
+
+    @property
+    def good(self) -> int:
+        return self._line.good
+
+    def prepare(self, comm_loss: float, highest: float) -> list[str]:
+        """C076 = 4: it ramps down when nothing has come for C077."""
+        line = self._line
+        self._reverse = None
+        known = settled(
+            line,
+            Setting(0x113C, 4, "C076", "it ramps down when the line is dead"),
+            Setting(0x113D, round(comm_loss * 100.0), "C077", f"after {comm_loss:g} s"),
+        )
+        known += [text for source in _SOURCES if (text := source.differs(line))]
+        try:
+            (top,) = line.registers(_TOP)
+        except RefusedError as error:
+            return [*known, f"A004 cannot be read: {error}"]
+        if top / 10.0 < highest:
+            known.append(
+                f"A004 ends at {top / 10:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
+            )
+        return known
+
+    def stop(self) -> None:
+        """By its ramp."""
+        self._line.write_coil(_RUN, False)
+
+    def command(self, hz: float) -> None:
+        """Frequency and direction first."""
+        self._line.write_registers(_FREQUENCY, (0, number(hz)))
+        for address, on in ((_DIRECTION, hz < 0.0), (_RUN, True)):
+            if self.hurry():
+                return
+            self._line.write_coil(address, on)
+
+    def looks(self) -> Iterator[Look | None]:
+        """Coils of command and state, setpoint, output."""
+        line = self._line
+        run, asked_reverse = line.coils(_RUN, 2)
+        yield None
+        state = line.coils(_STATUS, 10)
+        yield None
+        _high, setpoint = line.registers(_FREQUENCY, 2)
+        yield None
+        high, low, current = line.registers(_OUTPUT, 3)
+        yield None
+        yield Look(
+            output=(high << 16 | low) / 100.0,
+            setpoint=setpoint / 100.0,
+            run=run,
+            reverse=state[1],
+            asked_reverse=asked_reverse,
+            trip=self._trip() if state[9] else "",
+            current=current / 100.0,
+        )
+
+    def _trip(self) -> str:
+        (factor,) = self._line.registers(_TRIP)
+        return f"E{factor:02d} at its keypad"
+
+    def reset(self) -> None:
+        """It is deaf for a second."""
+        self._line.write_coil(_RESET, True)
+        self._clock.sleep_until(self._clock.now() + _AFTER_RESET)
+
+    def close(self) -> None:
+        self._line.wire.close()

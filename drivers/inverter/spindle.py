@@ -1,0 +1,110 @@
+"""The spindle behind an inverter. Nothing here waits for the line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from core.ports import Clock, DriverError
+from drivers.inverter.attendant import LOST, Attendant
+from drivers.inverter.config import InverterConfig
+from drivers.inverter.obedience import PRESS
+
+_DEAD = LOST + 0.5  # s: the attendant itself must have told of a silence by now
+
+
+class Encoder(Protocol):
+    """What measures the spindle itself, where the machine has such a thing."""
+
+    def speed(self) -> float:
+        """rpm, signed."""
+        ...
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) or None."""
+        ...
+
+
+def nobody_presses() -> bool:
+    """A machine whose E-stop is not seen here."""
+    return False
+
+
+def always() -> bool:
+    """Somebody else calls the attendant's rounds."""
+    return True
+
+
+class InverterSpindle:
+    """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
+
+    ``alive`` tells whether somebody still attends the line; ``estop`` whether E-stop is pressed.
+    """
+
+    def __init__(
+        self,
+        config: InverterConfig,
+        attendant: Attendant,
+        clock: Clock,
+        *,
+        encoder: Encoder | None = None,
+        alive: Callable[[], bool] = always,
+        estop: Callable[[], bool] = nobody_presses,
+    ) -> None:
+        self._config, self._attendant, self._clock = config, attendant, clock
+        self._encoder, self._alive, self._estop = encoder, alive, estop
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
+        if rpm:
+            if self._estop():
+                raise DriverError("the spindle stays off while E-stop is pressed; release it first")
+            if why := self.fault():
+                raise DriverError(f"the spindle stays off: {why}")
+            if not self._attendant.warm:
+                raise DriverError("the spindle stays off: the inverter has not yet answered often enough")
+        limit = self._config.rpm_max
+        self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
+
+    def coast(self) -> None:
+        """Over its line an inverter knows one stop, that of its ramp; to run free is what its STO is for."""
+        self._attendant.want = 0.0
+
+    def clear_fault(self) -> None:
+        """Forget a fault; a reset goes to the inverter where it has tripped. Nothing turns."""
+        if not self._alive():
+            raise DriverError("whoever attended the inverter has ended; start the control again")
+        self._attendant.clear()
+
+    def speed(self) -> float:
+        """Measured rpm, signed: by the encoder, else what the inverter last said that it gives."""
+        if self._encoder is not None:
+            return self._encoder.speed()
+        seen = self._attendant.seen
+        return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
+
+    def angle(self) -> tuple[float, float] | None:
+        """By the encoder; None without one."""
+        return self._encoder.angle() if self._encoder is not None else None
+
+    def fault(self) -> str:
+        """What is wrong, with the word for the operator; empty when well."""
+        attendant = self._attendant
+        if attendant.trouble:
+            return attendant.trouble
+        if not self._alive():
+            return f"nobody attends the inverter any more: {PRESS}"
+        seen = attendant.seen
+        now = self._clock.now()
+        if seen is not None and now - seen.t > _DEAD and now > attendant.grace:
+            return f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}"
+        return ""
+
+    def status(self) -> str:
+        """One line about it, for a check."""
+        seen = self._attendant.seen
+        if seen is None:
+            return "nothing heard yet"
+        look = seen.look
+        what = f"turns {'back' if look.reverse else 'forward'}" if look.output else "stands"
+        return f"{what}, gives {look.output:.2f} Hz, set to {look.setpoint:.2f} Hz, {look.current:.1f} A"

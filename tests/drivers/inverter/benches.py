@@ -1,0 +1,89 @@
+"""An inverter of each family on the bench, attended round by round."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from drivers.inverter.attendant import Attendant
+from drivers.inverter.building import attendant
+from drivers.inverter.config import InverterConfig
+from drivers.inverter.spindle import InverterSpindle
+from drivers.simulated import StepClock
+from drivers.wire import WireError
+from tests.drivers.inverter.peers import (
+    HZ_PER_RPM,
+    DeltaMemory,
+    HitachiMemory,
+    HuanyangSlave,
+    Inverter,
+    RtuSlave,
+)
+from tests.drivers.inverter.wires import BenchWire, Slave
+
+FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
+
+
+@dataclass
+class Bench:
+    """``memory`` of a Modbus inverter, or the Huanyang itself."""
+
+    clock: StepClock
+    inverter: Inverter
+    memory: DeltaMemory | HitachiMemory | HuanyangSlave
+    wire: BenchWire
+    attendant: Attendant
+    spindle: InverterSpindle
+
+    def run(self, seconds: float) -> None:
+        """Let the line be attended for so long."""
+        end = self.clock.now() + seconds
+        while self.clock.now() < end:
+            before = self.clock.now()
+            self.attendant.round()
+            if self.clock.now() == before:
+                self.clock.advance(0.01)
+
+    def until_fault(self, limit: float) -> float:
+        """Run until a fault is told; after how long."""
+        began = self.clock.now()
+        while not self.spindle.fault():
+            assert self.clock.now() - began < limit, f"no fault within {limit} s"
+            self.run(0.01)
+        return self.clock.now() - began
+
+    @property
+    def rpm(self) -> float:
+        """What the motor really does."""
+        self.inverter.motor.advance(self.clock.now())
+        return self.inverter.motor.speed
+
+
+def config(family: str) -> InverterConfig:
+    """As a machine file would give it."""
+    return InverterConfig(family, 1, HZ_PER_RPM, 3500.0, 1.5, 10 / 9600)
+
+
+def bench(family: str, *, connect: bool = True) -> Bench:
+    """Connected, standing."""
+    clock = StepClock()
+    inverter = Inverter(clock)
+    memory = _memory(family, inverter)
+    slave: Slave = memory if isinstance(memory, HuanyangSlave) else RtuSlave(memory)
+    wire = BenchWire(slave, clock)
+
+    def opened() -> BenchWire:
+        if wire.out:
+            raise WireError("/dev/bench cannot be opened: No such file or directory")
+        return wire
+
+    one = attendant(config(family), opened, clock)
+    made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
+    if connect:
+        one.connect()
+    return made
+
+
+def _memory(family: str, inverter: Inverter) -> DeltaMemory | HitachiMemory | HuanyangSlave:
+    if family == "huanyang":
+        return HuanyangSlave(inverter)
+    return HitachiMemory(inverter) if family == "hitachi-wj200" else DeltaMemory(inverter)

@@ -1,0 +1,142 @@
+"""Frames by known examples of manuals, and what must not pass for an answer."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivers.inverter import frames
+from drivers.inverter.errors import NoAnswerError, RefusedError
+from drivers.inverter.modbus import Modbus
+from drivers.simulated import StepClock
+from tests.drivers.inverter.peers import DeltaMemory, HitachiMemory, Inverter, RtuSlave
+from tests.drivers.inverter.wires import BenchWire
+
+
+@pytest.mark.parametrize(
+    ("body", "crc"),
+    [
+        # Huanyang, stop: list of Bouni
+        ("01 03 01 08", "F1 8E"),
+        # Huanyang at unit 4, read PD001, and its answer: a log of an HY01D523B
+        ("04 01 03 01 00 00", "6D DB"),
+        ("04 01 02 01 02", "F5 AD"),
+        # INVT's manual, 9.4.1: read two words from 0004
+        ("01 03 00 04 00 02", "85 CA"),
+        # Hitachi WJ200's manual, Ver.3-29: read 4001h, and its answer
+        ("01 03 40 00 00 01", "91 CA"),
+        ("01 03 02 00 10", "B9 88"),
+        # the same, Ver.3-34: write FFFF to 4003h
+        ("01 06 40 02 FF FF", "3C 7A"),
+    ],
+)
+def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
+    assert frames.sealed(bytes.fromhex(body)) == bytes.fromhex(body + crc)
+    assert frames.whole(bytes.fromhex(body + crc))
+
+
+@pytest.mark.parametrize(
+    ("pdu", "expected"),
+    [
+        (frames.read(3, 0x2103, 1), "03 21 03 00 01"),
+        (frames.write_coil(0, True), "05 00 00 FF 00"),
+        (frames.write_coil(1, False), "05 00 01 00 00"),
+        (frames.write_register(0x2001, 6000), "06 20 01 17 70"),
+        (frames.write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
+        (frames.write_coils(0x13, (True, False, True, True, False, False, True, True, True, False)),
+         "0F 00 13 00 0A 02 CD 01"),  # the standard's own example
+        (frames.loopback(0xA537), "08 00 00 A5 37"),
+    ],
+)  # fmt: skip
+def test_requests(pdu: bytes, expected: str) -> None:
+    assert pdu == bytes.fromhex(expected)
+
+
+def test_an_answer_is_found_between_noise() -> None:
+    frame = frames.sealed(bytes.fromhex("01 03 02 00 10"))
+    assert frames.answer_in(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
+    assert frames.answer_in(frame[:-1], 1, 3) is None
+    assert frames.answer_in(frame, 2, 3) is None  # another unit's
+    assert frames.answer_in(frame, 1, 4) is None  # to another question
+
+
+def line_to(slave: RtuSlave) -> tuple[Modbus, BenchWire, StepClock]:
+    clock = StepClock()
+    wire = BenchWire(slave, clock)
+    return Modbus(wire, clock, 1, 10 / 9600), wire, clock
+
+
+def delta() -> RtuSlave:
+    return RtuSlave(DeltaMemory(Inverter(StepClock())))
+
+
+def test_every_function_reads_and_writes() -> None:
+    inverter = Inverter(StepClock())
+    modbus, _, _ = line_to(RtuSlave(HitachiMemory(inverter)))
+    modbus.write_registers(0, (0, 4250))
+    assert modbus.registers(0, 2) == modbus.input_registers(0, 2) == [0, 4250]
+    modbus.write_register(1, 1234)
+    assert modbus.registers(1) == [1234]
+    modbus.write_coil(1, True)
+    assert modbus.coils(0, 2) == [False, True]
+    modbus.write_coils(0, (True, False))
+    assert modbus.inputs(0, 2) == [True, False]
+
+
+def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
+    modbus, wire, _ = line_to(delta())
+    with pytest.raises(RefusedError, match="no such address"):
+        modbus.registers(0x7777)
+    with pytest.raises(RefusedError, match="function not known"):
+        modbus.coils(0)
+    assert len(wire.sent) == 2
+
+
+def test_silence_takes_three_tries() -> None:
+    modbus, wire, clock = line_to(delta())
+    wire.silent = True
+    with pytest.raises(NoAnswerError, match="look at cable, id and line settings"):
+        modbus.registers(0x2103)
+    assert len(wire.sent) == 3
+    assert clock.now() == pytest.approx(0.6, abs=0.05)  # three answers of .2 s at most
+
+
+def test_noise_alone_is_told_apart_from_silence() -> None:
+    modbus, wire, _ = line_to(delta())
+    wire.noise, wire.spoils = b"\x55\x55", True
+    with pytest.raises(NoAnswerError, match="nothing of what comes back is an answer"):
+        modbus.registers(0x2103)
+
+
+def test_a_stop_that_waits_ends_the_tries() -> None:
+    modbus, wire, _ = line_to(delta())
+    wire.silent, modbus.hurry = True, lambda: True
+    with pytest.raises(NoAnswerError):
+        modbus.registers(0x2103)
+    assert len(wire.sent) == 1
+
+
+def test_an_old_answer_is_never_taken_for_a_new_one() -> None:
+    """The answer to the first question comes after the second has been sent."""
+    slave = delta()
+    modbus, wire, _ = line_to(slave)
+    slave.memory.inverter.hz = 33.33
+    wire.delay = 0.25
+    with pytest.raises(NoAnswerError):
+        modbus.registers(0x0100)  # 6000, asked for in vain
+    wire.delay = 0.02
+    assert modbus.registers(0x2102) == [3333]
+
+
+def test_requests_keep_their_pace() -> None:
+    modbus, _, clock = line_to(delta())
+    for _ in range(10):
+        modbus.registers(0x2103)
+    assert clock.now() >= 9 * 0.03
+
+
+def test_a_reset_is_said_once_even_when_nobody_answers() -> None:
+    modbus, wire, _ = line_to(delta())
+    wire.silent = True
+    with pytest.raises(NoAnswerError):
+        modbus.write_register(0x2000, 0x2000, tries=1)
+    assert len(wire.sent) == 1

@@ -1,0 +1,102 @@
+"""What an inverter's settings are looked at for when the line is opened."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.ports import DriverError
+from tests.drivers.inverter.benches import bench
+from tests.drivers.inverter.peers import DeltaMemory, HitachiMemory, HuanyangSlave
+
+
+def test_delta_gets_its_time_out_and_is_written_once() -> None:
+    one = bench("delta-vfdb")
+    assert isinstance(one.memory, DeltaMemory)
+    assert (one.memory.settings[0x0902], one.memory.settings[0x0903]) == (1, 15)  # ramp, 1.5 s in tenths
+    assert one.attendant.warnings == ()
+    one.memory.written.clear()
+    one.attendant.close()
+    one.attendant.connect()
+    assert [address for address, _ in one.memory.written if address < 0x2000] == []
+
+
+def test_hitachi_gets_its_time_out() -> None:
+    one = bench("hitachi-wj200")
+    assert isinstance(one.memory, HitachiMemory)
+    assert (one.memory.settings[0x113C], one.memory.settings[0x113D]) == (4, 150)  # ramp, hundredths
+    assert one.attendant.warnings == ()
+
+
+def test_huanyang_has_none_and_says_so() -> None:
+    warnings = bench("huanyang").attendant.warnings
+    assert len(warnings) == 1
+    assert "no time-out of its own" in warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("family", "register", "value", "said"),
+    [
+        ("delta-vfdb", 0x0201, 0, "Pr.02-01 is 0; set it to 3"),
+        ("delta-vfdb", 0x0100, 5000, "Pr.01-00 ends at 50 Hz, the highest speed needs 58.33"),
+        ("hitachi-wj200", 0x1201, 2, "A002 is 2; set it to 3"),
+        ("hitachi-wj200", 0x1203, 500, "A004 ends at 50 Hz"),
+    ],
+)
+def test_settings_of_others_are_told_and_left(family: str, register: int, value: int, said: str) -> None:
+    one = bench(family, connect=False)
+    assert isinstance(one.memory, DeltaMemory | HitachiMemory)
+    one.memory.settings[register] = value
+    one.attendant.connect()
+    assert [said in text for text in one.attendant.warnings] == [True]
+    assert one.memory.settings[register] == value
+
+
+def test_settings_that_an_inverter_does_not_know_are_told() -> None:
+    one = bench("delta-vfdb", connect=False)
+    assert isinstance(one.memory, DeltaMemory)
+    del one.memory.settings[0x0903]
+    one.attendant.connect()
+    assert len(one.attendant.warnings) == 1
+    assert "Pr.09-03 cannot be read" in one.attendant.warnings[0]
+
+
+def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
+    one = bench("huanyang", connect=False)
+    assert isinstance(one.memory, HuanyangSlave)
+    one.memory.parameters[1] = 0
+    one.attendant.connect()
+    assert any("PD001 is 0; set it to 2" in text for text in one.attendant.warnings)
+
+
+def test_huanyang_is_trusted_after_ten_good_answers() -> None:
+    one = bench("huanyang")
+    assert one.attendant.warm
+    one.wire.loses = 1
+    one.attendant.round()
+    assert not one.attendant.warm
+    with pytest.raises(DriverError, match="not yet answered often enough"):
+        one.spindle.run(100.0)
+    one.run(1.0)
+    one.spindle.run(100.0)
+
+
+@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+@pytest.mark.parametrize(("fault", "said"), [("silent", "does not answer"), ("out", "cannot be opened")])
+def test_nobody_there_is_one_sentence(family: str, fault: str, said: str) -> None:
+    one = bench(family, connect=False)
+    setattr(one.wire, fault, True)
+    with pytest.raises(DriverError, match=said):
+        one.attendant.connect()
+
+
+@pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
+def test_a_spindle_that_turns_when_the_control_comes_is_stopped(family: str) -> None:
+    one = bench(family, connect=False)
+    one.inverter.hz, one.inverter.running = 30.0, True
+    one.inverter.obey(run=True)
+    one.clock.advance(2.0)
+    assert one.rpm == pytest.approx(1800.0)
+    one.attendant.connect()
+    one.run(2.0)
+    assert one.rpm == 0.0
+    assert one.spindle.fault() == ""
