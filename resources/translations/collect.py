@@ -28,7 +28,18 @@ APART = frozenset(
     {"pictures.py", "book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
 )
 # Read by somebody, and not to be told from names by their looks.
-ALSO = ("M03 FWD", "M04 REV", "M05 OFF", "done", "rapid", "none", "in/min", "in/rev", "%1 · SIMULATED")
+ALSO = (
+    "M03 FWD",
+    "M04 REV",
+    "M05 OFF",
+    "done",
+    "rapid",
+    "none",
+    "in/min",
+    "in/rev",
+    "IN/OUT",
+    "%1 · SIMULATED",
+)
 LOUD = ("app", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _NO_TEXT = re.compile(

@@ -10,6 +10,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>IN/OUT</source>
+      <translation>INT/EXT</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>M03 FWD</source>
       <translation>M03 ADEL</translation>
     </message>
@@ -37,11 +42,6 @@
       <location filename="app/compose/backends.py" />
       <source>%1: there is no driver for backend %2 yet</source>
       <translation>%1: todavía no hay controlador para %2</translation>
-    </message>
-    <message>
-      <location filename="app/compose/backends.py" />
-      <source>%1: there is no driver for spindle.driver vfd yet</source>
-      <translation>%1: todavía no hay controlador para spindle.driver vfd</translation>
     </message>
     <message>
       <location filename="app/compose/canopen.py" />
@@ -94,6 +94,21 @@
       <translation>el proceso alimentador terminó al arrancar; vea su mensaje arriba</translation>
     </message>
     <message>
+      <location filename="app/compose/inverter.py" />
+      <source>%1: inverter %2 on %3: %4</source>
+      <translation>%1: variador %2 en %3: %4</translation>
+    </message>
+    <message>
+      <location filename="app/compose/inverter.py" />
+      <source>an inverter on a line needs real time; it cannot follow a clock that is moved by hand</source>
+      <translation>un variador en una línea necesita tiempo real; no puede seguir un reloj movido a mano</translation>
+    </message>
+    <message>
+      <location filename="app/compose/inverter.py" />
+      <source>spindle speed is the inverter's output frequency: no encoder is connected; slip is not seen, and no thread can be cut</source>
+      <translation>la velocidad del husillo es la frecuencia de salida del variador: no hay encoder; el deslizamiento no se ve, y no se puede roscar</translation>
+    </message>
+    <message>
       <location filename="app/compose/journal.py" />
       <source>OFFSETS CANNOT BE KEPT: %1</source>
       <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
@@ -117,6 +132,16 @@
       <location filename="app/compose/screen.py" />
       <source>SIMULATED</source>
       <translation>SIMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>SIMULATED SLIDES · REAL SPINDLE</source>
+      <translation>CARROS SIMULADOS · HUSILLO REAL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/serial_line.py" />
+      <source>serial lines need pyserial: pip install pyserial</source>
+      <translation>las líneas seriales necesitan pyserial: pip install pyserial</translation>
     </message>
     <message>
       <location filename="app/desk/answers.py" />
@@ -921,7 +946,7 @@
     <message>
       <location filename="app/desk/inforce.py" />
       <source>COOLANT</source>
-      <translation>REFRIGERANTE</translation>
+      <translation>REFRIG.</translation>
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
@@ -1011,7 +1036,7 @@
     <message>
       <location filename="app/desk/inforce.py" />
       <source>SPEED</source>
-      <translation>VELOCIDAD</translation>
+      <translation>VELOC</translation>
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
@@ -1241,7 +1266,7 @@
     <message>
       <location filename="app/desk/jogging/home.py" />
       <source>HOMED</source>
-      <translation>REFERENCIADO</translation>
+      <translation>CON REF</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/home.py" />
@@ -1251,7 +1276,7 @@
     <message>
       <location filename="app/desk/jogging/home.py" />
       <source>NOT HOMED</source>
-      <translation>SIN REFERENCIA</translation>
+      <translation>SIN REF</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/home.py" />
@@ -1561,7 +1586,7 @@
     <message>
       <location filename="app/desk/offsets/entry.py" />
       <source>NOSE RADIUS</source>
-      <translation>RADIO DE PUNTA</translation>
+      <translation>RADIO PUNTA</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/entry.py" />
@@ -1756,7 +1781,7 @@
     <message>
       <location filename="app/desk/offsets/telling.py" />
       <source>none</source>
-      <translation>ninguno</translation>
+      <translation>ninguna</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/telling.py" />
@@ -1851,7 +1876,7 @@
     <message>
       <location filename="app/desk/pages.py" />
       <source>TOOL OFFSETS</source>
-      <translation>COMPENSACIÓN DE HERRAMIENTA</translation>
+      <translation>HERRAMIENTAS</translation>
     </message>
     <message>
       <location filename="app/desk/pages.py" />
@@ -2336,7 +2361,7 @@
     <message>
       <location filename="app/desk/special/drives.py" />
       <source>power, home, following error, faults</source>
-      <translation>potencia, referencia, error de seguimiento, fallas</translation>
+      <translation>potencia, referencia, error, fallas</translation>
     </message>
     <message>
       <location filename="app/desk/special/events.py" />
@@ -2491,7 +2516,7 @@
     <message>
       <location filename="app/desk/special/keeping.py" />
       <source>offsets, versions, counts, settings, log</source>
-      <translation>compensaciones, versiones, cuentas, ajustes, bitácora</translation>
+      <translation>compensaciones, versiones, ajustes</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -2581,7 +2606,7 @@
     <message>
       <location filename="app/desk/special/parts.py" />
       <source>parts made, stop at a number, times</source>
-      <translation>piezas hechas, parar en un número, tiempos</translation>
+      <translation>piezas hechas, meta, tiempos</translation>
     </message>
     <message>
       <location filename="app/desk/special/preferences.py" />
@@ -2791,7 +2816,7 @@
     <message>
       <location filename="app/desk/special/signals.py" />
       <source>live state, outputs by hand, lamps</source>
-      <translation>estado en vivo, salidas a mano, lámparas</translation>
+      <translation>estado, salidas a mano, lámparas</translation>
     </message>
     <message>
       <location filename="app/desk/special/special.py" />
@@ -8870,8 +8895,8 @@
     </message>
     <message>
       <location filename="core/proving/interlock.py" />
-      <source>stop it with M5 first, or choose a lathe whose C has its own drive: --machine sinumerik-modulo</source>
-      <translation>párelo primero con M5, o elija un torno cuyo C tenga servo propio: --machine sinumerik-modulo</translation>
+      <source>stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo</source>
+      <translation>párelo primero con M5, o use un torno cuyo C tenga servo propio: sinumerik-modulo</translation>
     </message>
     <message>
       <location filename="core/proving/timeline.py" />

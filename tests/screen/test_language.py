@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib import import_module
 
 import pytest
 from PySide6.QtCore import QTranslator
@@ -14,6 +14,7 @@ from app.desk.words import tr
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
 from app.screen.look import Look
+from app.screen.pages import Page
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
 from core.executor.snapshot import Alarm
@@ -121,13 +122,21 @@ def test_an_unknown_language_has_no_catalogue() -> None:
 
 
 def test_key_labels_fit(spanish: Hands) -> None:
-    for key in (Key.Key_F1, Key.Key_F8, Key.Key_F9, Key.Key_F10, Key.Key_F3):
+    for module in ("mdi", "jog", "searchto", "editor", "files", "special", "offsets", "zero_offsets"):
+        import_module(f"app.screen.{module}.page")
+    labels = {label for page in _pages(Page) for label in getattr(page, "LABELS", ())}
+    for key in (Key.Key_F10, Key.Key_F1, Key.Key_F6, Key.Key_F9):
         spanish.key(key)
-        for label in spanish.frame.keys.labels:
-            told = catalogue("es").translate(label)
-            assert len(told) <= KEY_LABEL, f"{label}: {told}"
-        spanish.key(Key.Key_F1)
-    assert re.fullmatch(r"MENÚ", catalogue("es").translate("MENU"))
+        labels.update(spanish.frame.keys.labels)
+    told = {label: catalogue("es").translate(label) for label in labels}
+    assert {label: text for label, text in told.items() if max(len(label), len(text)) > KEY_LABEL} == {}
+    assert told["MENU"] == "MENÚ"
+
+
+def _pages(page: type[Page]) -> Iterator[type[Page]]:
+    for kind in page.__subclasses__():
+        yield kind
+        yield from _pages(kind)
 
 
 def test_every_text_has_its_spanish() -> None:
