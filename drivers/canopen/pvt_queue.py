@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections import deque
 from collections.abc import Sequence
 from enum import Enum
 
@@ -15,6 +16,7 @@ from drivers.setpoint_queue import SetpointQueue
 _log = logging.getLogger(__name__)
 
 LOW_WATER = 2  # records; with fewer a drive faults
+MOST = 56  # records in a drive that takes 64
 RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
 _LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
 _BEGIN = 0.3  # s in which a drive must have begun
@@ -44,6 +46,7 @@ class PvtFollower:
         self._phase = _Phase.REST
         self.front = 0.0  # time of the next point
         self._begun = 0.0
+        self._sent: deque[float] = deque()  # when each record that was sent is over
         self.trouble = ""
         self.urgent = False
         self.off_path = 0.0
@@ -70,6 +73,7 @@ class PvtFollower:
     def abort(self) -> None:
         """Nothing is fed any more."""
         self._phase, self.trouble = _Phase.REST, ""
+        self._sent.clear()
         for axis in self._axes:
             axis.drive.extra &= ~NEW
 
@@ -114,12 +118,18 @@ class PvtFollower:
             self._push(0)
             self._phase = _Phase.ENDING
             return
-        while True:
+        while self._in_drives(now) < MOST:
             stretch = span(self._demand, self.front, self._longest, self._counts)
             if self.front + 0.001 * stretch.ms > now + self._ahead:
                 return
             self.off_path = max(self.off_path, stretch.off)
             self._push(stretch.ms)
+
+    def _in_drives(self, now: float) -> int:
+        """Records that have not been played."""
+        while self._sent and self._sent[0] < now:
+            self._sent.popleft()
+        return len(self._sent)
 
     def _push(self, ms: int) -> None:
         positions, velocities = self._demand(self.front)
@@ -129,6 +139,7 @@ class PvtFollower:
                 speed *= 60.0 / axis.config.counts_per_rev
             axis.drive.push(packed(ms, speed, p / axis.config.count))
         self.front += 0.001 * ms
+        self._sent.append(self.front)
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         p, v = self._queue.demand_at(t)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from core.ports import DriverError, Stop
+from core.ports import DriverError, Segments, Stop
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
@@ -151,6 +151,30 @@ def test_drives_refuse_when_off_too_fast_or_outside(bench: CanBench) -> None:
         axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.1))
     bench.run(0.5)
     assert bench.peers.machine.true_position() == ZERO
+
+
+def test_a_path_of_the_shortest_records_never_overfills_the_drives() -> None:
+    """A shaking path, cut into 2 ms records, with 160 ms of it wanted in queues of 64."""
+    bench = CanBench(
+        can_machine(("commit_ms = 140", "commit_ms = 200"), ("lease_ms = 200", "lease_ms = 205"))
+    )
+    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes.enable(True)
+    n, most = 400, 0
+    a = np.zeros((n, 3))
+    a[:, 0] = np.tile([3000.0, -3000.0, -3000.0, 3000.0], n // 4)
+    v = np.vstack([np.zeros(3), np.cumsum(a, axis=0)[:-1] * 0.003])
+    step = v * 0.003 + a * 0.003**2 / 2
+    p = np.vstack([np.zeros(3), np.cumsum(step, axis=0)[:-1]])
+    t = np.asarray(bench.clock.now() + 0.21 + 0.003 * np.arange(n), dtype=np.float64)
+    axes.splice(Segments(t, np.full(n, 0.003), p, v, a))
+    for _ in range(400):
+        bench.tick()
+        most = max(most, len(drive.queue))
+    assert 40 < most <= 60
+    assert axes.sample().fault == ""
+    assert not axes.sample().moving
+    bench.close()
 
 
 @pytest.fixture
