@@ -15,14 +15,13 @@ import numpy as np
 
 from app.desk.swivel.camera import Camera, FloatArray
 from app.desk.swivel.scene import Ink, Scene
+from app.desk.swivel.shapes import carried, corners_of, diagonal_of, middle_of, outline, spot, table_rim
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
     from app.desk.swivel.telling import Instant
-    from core.geometry.kinematics import Kinematics, Place
 
-_ROUND = 48  # corners of what is round
 _SHARE = 0.34  # of the blank's diagonal: length of the plane's axes, and half a side of its square
 _TOOL = 12  # corners of the tool
 _MOST_POINTS = 20_000  # of the path; longer ones are thinned out to so many
@@ -58,8 +57,8 @@ class Figure:
 
 def camera_for(scene: Scene) -> Camera:
     """The whole table with the blank on it, and the tool above, whichever way it swivels."""
-    table = _table(scene)
-    at = scene.kinematics.place({}).machine(_middle(scene))
+    table = table_rim(scene)
+    at = scene.kinematics.place({}).machine(middle_of(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
     return Camera((at[0], at[1], at[2] + 0.1 * reach), 1.1 * reach)
 
@@ -90,13 +89,13 @@ class _Picture:
         """The disc that carries the workpiece."""
         machine_parallel = self._scene.kinematics.place(self._angles)
         zero = self._scene.kinematics.place({})
-        flat = _moved(machine_parallel, np.array([zero.point(_point(row)) for row in _table(self._scene)]))
+        flat = carried(machine_parallel, np.array([zero.point(spot(row)) for row in table_rim(self._scene)]))
         up = np.cross(flat[1] - flat[0], flat[2] - flat[1])
         return [self._face("table" if up @ self._camera.axes[2] > 0.0 else "table-under", flat)]
 
     def blank(self) -> list[tuple[float, Face]]:
         """Those faces of the blank that look at the eye."""
-        corners = _moved(self._part, _box(self._scene))
+        corners = carried(self._part, corners_of(self._scene))
         middle = corners.mean(axis=0)
         eye = self._camera.axes[2]
         found = []
@@ -112,9 +111,9 @@ class _Picture:
         if swivel is None or not swivel.system.tilted:
             return []
         r, o = np.array(swivel.system.frame), np.array(swivel.system.datum)
-        half = _SHARE * _diagonal(self._scene)
+        half = _SHARE * diagonal_of(self._scene)
         square = np.array([(half, half, 0), (-half, half, 0), (-half, -half, 0), (half, -half, 0)])
-        return [self._face("plane", _moved(self._part, o + square @ r.T))]
+        return [self._face("plane", carried(self._part, o + square @ r.T))]
 
     def tool(self) -> list[tuple[float, Face]]:
         """A cutter on its tip, along the tool axis of this instant."""
@@ -123,7 +122,7 @@ class _Picture:
         slides = axes["X"], axes["Y"], axes["Z"]
         tip = np.array(chain.tip(self._angles, slides, length))
         along = np.array(chain.tool_axis(self._angles))
-        size = _diagonal(self._scene)
+        size = diagonal_of(self._scene)
         aside = np.cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < 0.9 else (0.0, 1.0, 0.0))
         aside /= np.linalg.norm(aside)
         third = np.cross(along, aside)
@@ -135,7 +134,7 @@ class _Picture:
                 tip + along * low * size + ring * radius * size,
                 tip + along * high * size + ring * radius * size,
             )
-            faces.append(self._face("tool", _outline(self._camera, np.vstack(ends))))
+            faces.append(self._face("tool", outline(self._camera, np.vstack(ends))))
         return faces
 
     def path(self) -> list[Stroke]:
@@ -145,7 +144,7 @@ class _Picture:
             return []
         done = scene.done(self._instant.block)
         keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MOST_POINTS))
-        seen = self._seen(_moved(self._part, scene.points[keep]))
+        seen = self._seen(carried(self._part, scene.points[keep]))
         ink, behind = scene.ink[keep], keep < done
         return [*_ways(seen, ink, behind)]
 
@@ -155,28 +154,28 @@ class _Picture:
         r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
         o = np.array(swivel.system.datum) if swivel is not None else np.zeros(3)
         mark = "'" if swivel is not None and swivel.system.tilted else ""
-        length = _SHARE * _diagonal(self._scene)
+        length = _SHARE * diagonal_of(self._scene)
         found = []
         for number, name in enumerate("xyz"):
             ends = np.array((o, o + length * r[:, number]))
-            found.append(Stroke(name, self._seen(_moved(self._part, ends))[:, :2], f"{name.upper()}{mark}"))
+            found.append(Stroke(name, self._seen(carried(self._part, ends))[:, :2], f"{name.upper()}{mark}"))
         return found
 
     def lines_of_rotation(self) -> list[Stroke]:
         """The lines about which the tables turn, as they stand now."""
         scene, found = self._scene, []
-        reach = 0.75 * _diagonal(scene)
+        reach = 0.75 * diagonal_of(scene)
         rotaries = scene.kinematics.rotaries
         for number, axis in enumerate(rotaries):
             if not axis.table:
                 continue
             outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :]}
             place, zero = scene.kinematics.place(outer), scene.kinematics.place({})
-            middle = np.array(zero.machine(_middle(scene)))
+            middle = np.array(zero.machine(middle_of(scene)))
             along, point = np.array(axis.direction), np.array(axis.point)
             foot = point + along * float((middle - point) @ along)
             ends = np.array((foot - reach * along, foot + reach * along))
-            moved = _moved(place, np.array([zero.point(_point(end)) for end in ends]))
+            moved = carried(place, np.array([zero.point(spot(end)) for end in ends]))
             found.append(Stroke("axis", self._seen(moved)[:, :2], axis.name))
         return found
 
@@ -199,69 +198,3 @@ def _ways(seen: FloatArray, ink: npt.NDArray[np.int8], behind: npt.NDArray[np.bo
         if kind:
             found.append(Stroke(names[kind], seen[max(0, start - 1) : end, :2]))
     return found
-
-
-def _outline(camera: Camera, points: FloatArray) -> FloatArray:
-    """The convex outline of points (n, 3) as the camera sees them (monotone chain of Andrew)."""
-    flat = points @ camera.axes[:2].T
-    order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
-    half: list[list[int]] = []
-    for run in (order, order[::-1]):
-        hull: list[int] = []
-        for each in run:
-            while len(hull) > 1 and _turns_back(flat, hull[-2], hull[-1], each):
-                hull.pop()
-            hull.append(each)
-        half.append(hull[:-1])
-    return np.asarray(points[half[0] + half[1]])
-
-
-def _turns_back(flat: FloatArray, a: int, b: int, c: int) -> bool:
-    u, v = flat[b] - flat[a], flat[c] - flat[a]
-    return float(u[0] * v[1] - u[1] * v[0]) <= 0.0
-
-
-def _moved(place: Place, points: FloatArray) -> FloatArray:
-    return np.asarray(points @ np.array(place.turn).T + np.array(place.shift))
-
-
-def _box(scene: Scene) -> FloatArray:
-    (x0, y0, z0), (x1, y1, z1) = scene.corners
-    return np.array([(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)])
-
-
-def _middle(scene: Scene) -> tuple[float, float, float]:
-    low, high = scene.corners
-    x, y, z = (0.5 * (a + b) for a, b in zip(low, high, strict=True))
-    return x, y, z
-
-
-def _diagonal(scene: Scene) -> float:
-    low, high = scene.corners
-    return max(1.0, math.dist(low, high))
-
-
-def _table(scene: Scene) -> FloatArray:
-    """The rim of the table (n, 3) in the machine with all axes at 0: round the first table's line, under the
-    blank and wide enough for it.
-    """
-    place = scene.kinematics.place({}, scene.kinematics.basic)
-    corners = _moved(place, _box(scene))
-    centre = _foot(scene.kinematics, corners.mean(axis=0))
-    radius = 1.12 * float(np.hypot(*(corners[:, :2] - centre[:2]).T).max())
-    turn = np.linspace(0.0, 2.0 * math.pi, _ROUND, endpoint=False)
-    low = np.full(_ROUND, corners[:, 2].min())
-    return np.column_stack((centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn), low))
-
-
-def _foot(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
-    """The point of a table's line along Z; the middle of the blank where no table turns so."""
-    for axis in kinematics.rotaries:
-        if axis.table and abs(axis.direction[2]) > 0.5:
-            return np.array(axis.point)
-    return middle
-
-
-def _point(row: FloatArray) -> tuple[float, float, float]:
-    x, y, z = row.tolist()
-    return x, y, z

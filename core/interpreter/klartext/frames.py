@@ -17,7 +17,8 @@ from core.geometry.frames import (
 )
 from core.geometry.swivel import Side, choose
 from core.interpreter.klartext import words
-from core.interpreter.klartext.state import State, WorkingPlane
+from core.interpreter.klartext.standing import WorkingPlane
+from core.interpreter.klartext.state import State
 from core.language.klartext import faults
 from core.language.klartext.nodes import AxisWord, Plane
 

@@ -10,7 +10,8 @@ from core.geometry.pivot import PivotWay
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.klartext import words
 from core.interpreter.klartext.frames import working_plane
-from core.interpreter.klartext.state import ORIGIN, Q_TARGETS, ROTARY, SAME_POINT, SLIDES, State, WorkingPlane
+from core.interpreter.klartext.standing import ORIGIN, WorkingPlane
+from core.interpreter.klartext.state import Q_TARGETS, ROTARY, SAME_POINT, SLIDES, State
 from core.language.klartext import faults
 from core.language.klartext.nodes import Plane, Positioning, Retract
 

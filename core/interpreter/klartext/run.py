@@ -14,7 +14,8 @@ from core.interpreter.klartext.flow import Flow
 from core.interpreter.klartext.moves import move
 from core.interpreter.klartext.planes import plane
 from core.interpreter.klartext.program import Program
-from core.interpreter.klartext.state import ORIGIN, SLIDES, State
+from core.interpreter.klartext.standing import ORIGIN
+from core.interpreter.klartext.state import SLIDES, State
 from core.interpreter.klartext.tools import ToolUse, tool_call
 from core.interpreter.log import Log, refusal
 from core.interpreter.modal import Modal

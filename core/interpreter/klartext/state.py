@@ -4,56 +4,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
-from core.geometry.frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
-from core.geometry.kinematics import Kinematics, Place
+from core.geometry.frames import Vector
+from core.geometry.kinematics import Kinematics
 from core.geometry.travel import CurvedWay, Travel
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.blocks import Block, Kind
+from core.interpreter.klartext.standing import Standing
 from core.interpreter.log import Log
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
-from core.interpreter.swivel import Angles, Corners, Swivel, System
+from core.interpreter.swivel import Corners, Swivel, System
 from core.interpreter.units import MM_PER_INCH
 
-ORIGIN: Vector = (0.0, 0.0, 0.0)
 SLIDES = "XYZ"
 ROTARY = "ABC"
 Q_TARGETS = (120, 121, 122)
 SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
 
 
-@dataclass(frozen=True, slots=True)
-class WorkingPlane:
-    """The plane in force. ``frame`` in the machine-parallel system; ``targets`` by axis, as shown."""
-
-    frame: Matrix
-    targets: Mapping[str, float]
-    line: int
-
-
-class State:
-    """Machine position and modal state. ``at`` holds all axes by name, mm and degrees, rotary counted on.
-
-    ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
-    the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
-    system, ``place`` takes its points to machine positions of the slides; ``point`` is where the tip stands
-    in it, mm.
-    """
+class State(Standing):
+    """Where everything stands, and what a line inherits from the lines before it."""
 
     def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
+        super().__init__(kinematics, setup.start)
         self.setup = setup
-        self.kinematics = kinematics
         self.log = log
         self.scale = MM_PER_INCH if inch else 1.0
         self.blocks = 0
-        self.at = dict(zip(kinematics.names, setup.start, strict=True))
-        self.plane: WorkingPlane | None = None
-        self.datum = ORIGIN
-        self.shift = ORIGIN
         self.tool_axis = ""
-        self.tool_length = 0.0
         self.feed: float | None = None  # F in force, as programmed
         self.tool_feed: float | None = None  # F of the last TOOL CALL
         self.q: dict[int, float] = {}
@@ -61,56 +40,13 @@ class State:
         self.blank: Corners | None = None
         self.told: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
-        self.frame, self.origin = IDENTITY, ORIGIN
-        self._names = kinematics.names
-        self._rotary_names = tuple(axis.name for axis in kinematics.rotaries)
-        self._c = self._names.index("C") if "C" in self.at else -1
-        self._there = tuple(setup.start)  # all axes in the machine's order
-        self._shown: Angles | None = None  # worked out again when a rotary axis has turned
+        self._c = self.names.index("C") if "C" in self.at else -1
         self._shared: System | None = None
-        self.place = self._place()
-        self.point = self.place.point(self.slides)
-
-    # --- where things stand -------------------------------------------------------------------------------
-
-    @property
-    def slides(self) -> Vector:
-        """Machine X Y Z, mm."""
-        return self.at["X"], self.at["Y"], self.at["Z"]
-
-    @property
-    def rotary(self) -> dict[str, float]:
-        """Rotary axes by name, degrees, counted on."""
-        return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
-
-    @property
-    def targets(self) -> dict[str, float]:
-        """The effective angle of each rotary axis: that of the plane in force, else where it stands."""
-        if self.plane is not None:
-            return dict(self.plane.targets)
-        return {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
 
     def derive(self) -> None:
         """Work out again what follows from plane, datum and tool."""
-        self.frame = IDENTITY
-        if self.plane is not None:
-            self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
-        self.origin = plus(self.datum, applied(self.frame, self.shift))
-        self.place = self._place()
-        self.point = self.place.point(self.slides)
+        super().derive()
         self._shared = None
-
-    def set_plane(self, plane: WorkingPlane | None) -> None:
-        """Another plane, or none. The datum's point on the workpiece stays where it is."""
-        self.datum, self.shift = self.origin, ORIGIN
-        self.plane = plane
-        self.derive()
-
-    def _place(self) -> Place:
-        angles = self.plane.targets if self.plane is not None else {}
-        frame = self.plane.frame if self.plane is not None else self.kinematics.basic
-        datum = applied(self.kinematics.basic, self.origin)
-        return self.kinematics.place(angles, frame, datum, self.tool_length)
 
     # --- numbers ------------------------------------------------------------------------------------------
 
@@ -138,23 +74,20 @@ class State:
         linear = away > SAME_POINT and way is None
         length = away
         if not linear:
-            turn = math.hypot(*(goal[name] - start[name] for name in self._rotary_names))
+            turn = math.hypot(*(goal[name] - start[name] for name in self.rotary_names))
             length = turn if turn > SAME_POINT else 0.0
         rate = feed if feed is not None else self._rapid(start, goal, length, slides=linear)
-        from_here, to = self._there, tuple([goal[name] for name in self._names])
-        if any(goal[name] != start[name] for name in self._rotary_names):
-            self._shown = None
-        self.at, self._there = goal, to
-        self.point = self.place.point(self.slides)
+        from_here = self.there
+        self.go(goal)
         if self.modal.rapid != (feed is None):
             self.modal = self.modal._replace(rapid=feed is None)
         return self._block(
-            line, text, kind, before, Travel(from_here, to, length, way, away > SAME_POINT), rate
+            line, text, kind, before, Travel(from_here, self.there, length, way, away > SAME_POINT), rate
         )
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
-        here = Travel(self._there, self._there, 0.0, slides=False)
+        here = Travel(self.there, self.there, 0.0, slides=False)
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
         return self._block(line, text, kind, self.point, here, 0.0, action)
 
@@ -183,14 +116,8 @@ class State:
             rpm=self.modal.rpm * self.modal.spindle,
             action=action,
             travel=travel,
-            swivel=Swivel(before, end, slides, self._rotary_shown(), self._system()),
+            swivel=Swivel(before, end, slides, self.shown, self._system()),
         )  # fmt: skip
-
-    def _rotary_shown(self) -> Angles:
-        if self._shown is None:
-            axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
-            self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
-        return self._shown
 
     def _system(self) -> System:
         if self._shared is None:
