@@ -79,3 +79,16 @@ def test_whatever_comes_nothing_is_raised_and_a_fault_stops_all(
     bench.run(0.1)
     assert bench.peers.machine.true_position() == before
     bench.close()
+
+
+def test_an_error_frame_that_says_bus_off_stops_everything(bench: CanBench) -> None:
+    axes = bench.machine.axes
+    axes.enable(True)
+    assert bench.peers.network.bus is not None
+    bench.peers.network.bus.send(can.Message(arbitration_id=0x04, is_error_frame=True))  # a warning only
+    bench.run(0.05)
+    assert axes.sample().fault == ""
+    bench.peers.network.bus.send(can.Message(arbitration_id=0x40, is_error_frame=True))
+    bench.run(0.05)
+    assert axes.sample().fault.startswith("bus-off")
+    assert not axes.sample().enabled

@@ -1,0 +1,64 @@
+"""Drives that plan single moves, and setpoints one at a time: the modes beside PVT."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.ports import DriverError, Stop
+from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.machines import ramp
+
+ZERO = (0.0, 0.0, 0.0)
+
+
+def profiled() -> CanBench:
+    return CanBench(can_machine(('mode = "pvt"', 'mode = "pp"')))
+
+
+def test_profile_position_goes_where_the_queue_ends() -> None:
+    bench = profiled()
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.5))
+    bench.run(1.5)
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[0] == pytest.approx(60.0 * 0.52, abs=0.003)
+    bench.close()
+
+
+def test_profile_position_brakes_where_the_queue_does() -> None:
+    bench = profiled()
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.8))
+    bench.run(0.5)
+    axes.stop(Stop.RAMP_HOLD)
+    bench.run(0.6)
+    sample = axes.sample()
+    assert not sample.moving
+    assert sample.actual[0] < 35.0  # 60 mm/s for half a second, and the ramps; not the 49 of the whole move
+    assert sample.actual[0] == pytest.approx(sample.demand[0], abs=0.003)
+    bench.close()
+
+
+def test_profile_position_refuses_a_corner() -> None:
+    bench = profiled()
+    axes = bench.machine.axes
+    axes.enable(True)
+    segments = ramp(bench.clock.now() + 0.15, ZERO, 60.0, 0.5)
+    bent = segments.p.copy()
+    bent[1:, 1] = 1.0
+    with pytest.raises(DriverError, match="single straight moves only"):
+        axes.splice(segments._replace(p=bent))
+    bench.close()
+
+
+def test_csp_follows_where_the_machine_file_dares() -> None:
+    bench = CanBench(can_machine(('mode = "pvt"', 'mode = "csp"\nexperimental = true')))
+    axes = bench.machine.axes
+    axes.enable(True)
+    axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.3))
+    bench.run(1.0)
+    assert axes.sample().fault == ""
+    assert axes.sample().actual[0] == pytest.approx(60.0 * 0.32, abs=0.003)
+    bench.close()
