@@ -12,6 +12,7 @@ import pytest
 
 from core.geometry.frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
 from core.geometry.kinematics import Kinematics, Rotary
+from core.geometry.pivot import PivotWay
 from core.geometry.swivel import Side, choose, solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
 
@@ -162,3 +163,33 @@ def test_the_basic_rotation_turns_the_workpiece_about_its_zero() -> None:
     turned_part = dataclasses.replace(AC, basic_rotation=90.0)
     place = turned_part.place({}, turned_part.basic)
     assert place.machine((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))
+
+
+def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array, length: float) -> Array:
+    """The tip in the machine-parallel system of the workpiece, by rotations about each line in turn."""
+    tip = np.array((0.0, 0.0, -length))
+    for axis in reversed(chain.rotaries):
+        if not axis.table:
+            point = np.array(axis.point)
+            tip = point + rotation(axis.direction, angles[axis.name]) @ (tip - point)
+    spot = slides + tip
+    for axis in reversed(chain.rotaries):
+        if axis.table:
+            point = np.array(axis.point)
+            spot = point + rotation(axis.direction, angles[axis.name]) @ (spot - point)
+    return np.asarray(spot - np.array(ORIGIN))
+
+
+@pytest.mark.parametrize("name", CHAINS)
+@pytest.mark.parametrize("depth", [0.0, 35.0])
+def test_move_keeps_its_pivot_on_any_chain(name: str, depth: float) -> None:
+    chain, length = CHAINS[name], 80.0
+    names = [axis.name for axis in chain.rotaries]
+    start, end = dict.fromkeys(names, 5.0), dict(zip(names, (70.0, -40.0), strict=True))
+    pivot = (12.0, -7.0, 25.0)
+    way = PivotWay(chain, start, end, pivot, depth, length, 1.0)
+    for row in way.machine(np.linspace(0.0, 1.0, 9)).tolist():
+        at = dict(zip(chain.names, row, strict=True))
+        slides = np.array((at["X"], at["Y"], at["Z"]))
+        # A tool as much longer as the pivot lies deeper has its tip on it.
+        assert on_the_workpiece(chain, at, slides, length + depth) == pytest.approx(pivot, abs=1e-9)

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from core.geometry.kinematics import Kinematics
 from core.interpreter.blocks import Kind
@@ -327,3 +329,23 @@ def test_b_on_a_b_c_table() -> None:
     assert swivel is not None
     assert (swivel.rotary, swivel.system.targets) == ((None, 45.0, 90.0), (0.0, 45.0, 90.0))
     assert np.array(swivel.system.frame)[:, 2] == pytest.approx((0.0, S, S), abs=1e-12)
+
+
+@given(
+    st.floats(-119.0, 119.0),
+    st.floats(-60.0, 60.0),
+    st.floats(-180.0, 180.0),
+    st.sampled_from(["", "SYM+", "SYM-"]),
+)
+def test_whatever_the_plane_its_z_is_the_spindles(a: float, b: float, c: float, side: str) -> None:
+    """A move along Z' of any plane that the table can reach moves Z of the machine alone, by as much."""
+    plane = f"PLANE SPATIAL SPA{a:+.4f} SPB{b:+.4f} SPC{c:+.4f} TURN FMAX {side}"
+    ran = run(f"{plane}\nL X+5 Y-3 Z+40 FMAX\nL IZ+7 FMAX")
+    if ran.errors:
+        assert ran.codes == ["Entered angle not permitted"]
+        return
+    before, after = (ran.axes(block) for block in ran.blocks[-3:-1])
+    assert [after[axis] - before[axis] for axis in "XYZ"] == pytest.approx([0.0, 0.0, 7.0], abs=1e-9)
+    swivel = ran.blocks[-2].swivel
+    assert swivel is not None
+    assert swivel.end == pytest.approx((5.0, -3.0, 47.0), abs=1e-9)
