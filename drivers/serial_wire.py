@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from typing import NamedTuple
 
 import serial
@@ -10,11 +11,12 @@ from serial.tools.list_ports import comports
 
 from drivers.wire import LineSettings, WireError
 
-_FAILURES = (
-    serial.SerialException,
-    OSError,
-    TypeError,
-)  # TypeError: pyserial's own, of a port closed meanwhile
+# termios' own error is no OSError; a TypeError is what pyserial makes of a port that was closed meanwhile.
+_FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
+if sys.platform != "win32":
+    import termios
+
+    _FAILURES += (termios.error,)
 
 
 class Found(NamedTuple):
@@ -104,4 +106,6 @@ def _why(error: Exception) -> str:
     """The operating system's word for it, where there is one."""
     if isinstance(error, OSError) and error.strerror:
         return os.strerror(error.errno) if error.errno else error.strerror
+    if error.args and isinstance(error.args[0], int):
+        return os.strerror(error.args[0])
     return str(error).splitlines()[0] if str(error) else type(error).__name__

@@ -1,0 +1,164 @@
+"""The whole way: machine file, pyserial, a pty, and at its end a pymodbus server or a scripted Huanyang."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.cli.main import main
+from app.compose.backends import Connected, connect
+from app.compose.checking import check_ports
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.simulated import RealClock, StepClock
+from tests.drivers.inverter.benches import FAMILIES
+from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
+from tests.drivers.inverter.peers import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
+
+
+@dataclass
+class Wired:
+    """A machine file whose inverter hangs on a pty."""
+
+    machine: Machine
+    path: Path
+    cable: Pair
+    inverter: Inverter
+
+
+def machine_file(folder: Path, family: str, port: str) -> Path:
+    """The shipped sample with this inverter."""
+    text = resources.machine_file("gt75-vfd.toml")
+    text = text.replace(
+        'family = "delta-vfdb", port = "/dev/ttyUSB1"', f'family = "{family}", port = "{port}"'
+    )
+    path = folder / "own.toml"
+    path.write_text(text)
+    return path
+
+
+@pytest.fixture(params=FAMILIES)
+def wired(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Wired]:
+    """Each family at the end of its line."""
+    one = inverter()
+    with ExitStack() as stack:
+        cable = stack.enter_context(Pair())
+        if request.param == "huanyang":
+            stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
+        else:
+            memory = DeltaMemory(one) if request.param == "delta-vfdb" else HitachiMemory(one)
+            stack.enter_context(ModbusServer(cable.far, memory))
+        path = machine_file(tmp_path, request.param, cable.near)
+        yield Wired(load_machine(path), path, cable, one)
+
+
+@pytest.fixture
+def connected(wired: Wired) -> Iterator[Connected]:
+    """Its ports."""
+    made = connect(wired.machine, RealClock())
+    yield made
+    made.close()
+
+
+def test_turns_back_and_stops_over_the_line(connected: Connected, wired: Wired) -> None:
+    spindle = connected.ports.spindle
+    spindle.run(-600.0)
+    until(lambda: abs(spindle.speed() + 600.0) < 2.0, "600 rpm back")
+    assert wired.inverter.motor.speed == pytest.approx(-600.0, abs=2.0)
+    spindle.run(0.0)
+    until(lambda: spindle.speed() == 0.0, "standstill")
+    assert spindle.fault() == ""
+
+
+def test_ignoring_a_stop_asks_for_the_estop(connected: Connected, wired: Wired) -> None:
+    spindle = connected.ports.spindle
+    spindle.run(900.0)
+    until(lambda: spindle.speed() > 800.0, "900 rpm")
+    wired.inverter.deaf = True
+    spindle.run(0.0)
+    until(lambda: spindle.fault() != "", "a fault")
+    assert "told to stop" in spindle.fault()
+    assert "PRESS E-STOP" in spindle.fault()
+
+
+def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: Connected, wired: Wired) -> None:
+    spindle = connected.ports.spindle
+    spindle.run(900.0)
+    until(lambda: spindle.speed() > 800.0, "900 rpm")
+    wired.cable.cut()
+    until(lambda: spindle.fault() != "", "a fault")
+    assert "PRESS E-STOP" in spindle.fault()
+    connected.ports.axes.clear_fault()
+    until(lambda: spindle.fault() != "", "the fault again")
+
+
+def test_silence_then_life_and_a_clear_word(connected: Connected, wired: Wired) -> None:
+    spindle = connected.ports.spindle
+    wired.cable.silent = True
+    until(lambda: spindle.fault() != "", "a fault")
+    wired.cable.silent = False
+
+    def turns() -> bool:
+        connected.ports.axes.clear_fault()
+        try:
+            spindle.run(300.0)
+        except DriverError:
+            return False
+        return True
+
+    until(turns, "it takes a speed")
+    until(lambda: abs(spindle.speed() - 300.0) < 2.0, "300 rpm")
+
+
+def test_estop_keeps_it_off(connected: Connected) -> None:
+    assert connected.panel is not None
+    connected.panel.press_estop()
+    with pytest.raises(DriverError, match="E-stop is pressed"):
+        connected.ports.spindle.run(100.0)
+    connected.ports.spindle.run(0.0)
+
+
+def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["machine", "check", str(wired.path), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    (spindle,) = [port for port in report["ports"] if port["name"] == "spindle"]
+    assert spindle["state"] == "ok"
+    assert spindle["detail"].startswith("0 rpm, stands, gives 0.00 Hz")
+    assert any("no encoder is connected" in text for text in report["warnings"])
+    assert wired.inverter.stops > 0
+    assert not wired.inverter.running
+
+
+def test_through_the_feeder(wired: Wired) -> None:
+    """The process that owns the drivers owns the inverter too: it stops it when the control is gone."""
+    path = wired.path
+    path.write_text(path.read_text().replace('backend = "sim"', 'backend = "sim"\nfeeder = true'))
+    made = connect(load_machine(path), RealClock())
+    try:
+        spindle = made.ports.spindle
+        spindle.run(500.0)
+        until(lambda: abs(spindle.speed() - 500.0) < 2.0, "500 rpm")
+    finally:
+        made.close()
+    until(lambda: not wired.inverter.running, "stopped by the feeder")
+
+
+def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
+    path = machine_file(tmp_path, "huanyang", "/dev/ttyNONE7")
+    with pytest.raises(
+        DriverError, match="huanyang on /dev/ttyNONE7: /dev/ttyNONE7 cannot be opened: No such"
+    ):
+        check_ports(load_machine(path))
+
+
+def test_a_clock_moved_by_hand_is_refused(tmp_path: Path) -> None:
+    machine = load_machine(machine_file(tmp_path, "huanyang", "/dev/ttyNONE7"))
+    with pytest.raises(DriverError, match="needs real time"):
+        connect(machine, StepClock())
