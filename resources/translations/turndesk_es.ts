@@ -5629,6 +5629,16 @@
       <translation>Esta máquina no tiene eje giratorio %1.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Where the table stands at the start decides which of two ways it swivels.</source>
+      <translation>De dónde está la mesa al arrancar depende en cuál de dos sentidos bascula.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/frames.py" />
+      <source>Write SYM+ or SYM-, or position the table before.</source>
+      <translation>Escriba SYM+ o SYM-, o posicione antes la mesa.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/functions.py" />
       <source>M%1 stands twice in the block.</source>
       <translation>M%1 está dos veces en el bloque.</translation>
