@@ -96,13 +96,25 @@ def choose(
     The sum of the ways counts; ways that differ by less than TIE are equal, and the positive side is taken.
     None where no solution is possible.
     """
-    near = [_nearest(machine, made, present) for made in solutions(machine, frame, table_rot=table_rot)]
-    fits = [made for made in near if made is not None and made.on(side)]
     best: Solution | None = None
-    for made in sorted(fits, key=lambda each: -each.symmetry):
+    for made in fitting(machine, frame, present, side, table_rot=table_rot):
         if best is None or _way(machine, made, present) < _way(machine, best, present) - TIE:
             best = made
     return best
+
+
+def fitting(
+    machine: Kinematics,
+    frame: Matrix,
+    present: Mapping[str, float],
+    side: Side | None = None,
+    *,
+    table_rot: bool = False,
+) -> list[Solution]:
+    """The solutions inside the axis ranges on ``side``, the positive side first."""
+    near = [_nearest(machine, made, present) for made in solutions(machine, frame, table_rot=table_rot)]
+    fits = [made for made in near if made is not None and made.on(side)]
+    return sorted(fits, key=lambda each: -each.symmetry)
 
 
 def _tilts(chain: tuple[Rotary, ...], normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:

@@ -349,3 +349,21 @@ def test_whatever_the_plane_its_z_is_the_spindles(a: float, b: float, c: float, 
     swivel = ran.blocks[-2].swivel
     assert swivel is not None
     assert swivel.end == pytest.approx((5.0, -3.0, 47.0), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"{CHAMFER_1} TURN FMAX", True),
+        (f"{CHAMFER_1} STAY\n{CHAMFER_2} STAY", True),
+        (f"{CHAMFER_1} TURN FMAX SYM+", False),
+        ("PLANE AXIAL A+45 TURN FMAX", False),
+        (f"PLANE RESET TURN FMAX\n{CHAMFER_1} TURN FMAX", False),
+        (f"L A+0 C+0 FMAX\n{CHAMFER_1} TURN FMAX", False),
+        ("PLANE SPATIAL SPA+0 SPB+0 SPC+30 TURN FMAX", False),  # there is one way only
+    ],
+)
+def test_a_way_that_hangs_on_where_the_table_stands_is_told(text: str, told: bool) -> None:
+    ran = run(text)
+    assert not ran.errors
+    assert ("two-ways" in [d.code for d in ran.diagnostics]) is told

@@ -15,10 +15,11 @@ from core.geometry.frames import (
     product,
     turned,
 )
-from core.geometry.swivel import Side, choose
+from core.geometry.swivel import Side, choose, fitting
 from core.interpreter.klartext import words
 from core.interpreter.klartext.standing import WorkingPlane
 from core.interpreter.klartext.state import State
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import faults
 from core.language.klartext.nodes import AxisWord, Plane
 
@@ -37,7 +38,17 @@ def working_plane(state: State, line: int, node: Plane) -> WorkingPlane:
         asked = f" with {side}" if side else ""
         text = f"No position of the rotary axes inside their ranges gives this plane{asked}."
         raise faults.fault(line, node.column, faults.ANGLE, text, "Look at points, angles and SYM.")
+    if side is None and not state.table_known:
+        _tell_of_two_ways(state, line, node, frame)
     return WorkingPlane(frame, found.angles, line)
+
+
+def _tell_of_two_ways(state: State, line: int, node: Plane, frame: Matrix) -> None:
+    """Which way the table swivels hangs on where it stands at the start, which no proof knows."""
+    if len(fitting(state.kinematics, frame, state.rotary)) > 1:
+        text = "Where the table stands at the start decides which of two ways it swivels."
+        hint = "Write SYM+ or SYM-, or position the table before."
+        state.log.add(Diagnostic(line, node.column, Severity.NOTE, "two-ways", text, hint))
 
 
 def _axial(state: State, line: int, node: Plane) -> WorkingPlane:

@@ -67,6 +67,7 @@ def _rotary(state: State, line: int, node: Move) -> dict[str, float]:
         word = next((each for each in node.axes if each.axis == axis.name), None)
         if word is not None:
             value, now = words.coordinate(state, line, word), state.at[axis.name]
+            state.table_known = state.table_known or not word.incremental
             goal[axis.name] = now + (value if word.incremental else axis.way(now, value))
     return goal
 

@@ -37,6 +37,7 @@ def plane(state: State, line: int, text: str, node: Plane) -> Iterator[Block]:
         yield retract(state, line, text, up, feed)
     pivot = _pivot(state, distance) if way == "MOVE" else None
     goal = state.rotary if way == "STAY" else _goal(state, targets)
+    state.table_known = state.table_known or way != "STAY"
     state.set_plane(made)
     yield _swivel(state, line, text, goal, feed, pivot, distance)
 

@@ -37,6 +37,7 @@ class State(Standing):
         self.tool_feed: float | None = None  # F of the last TOOL CALL
         self.q: dict[int, float] = {}
         self.m128 = False
+        self.table_known = False  # the program has positioned it, so it no longer matters where it stood
         self.blank: Corners | None = None
         self.told: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
