@@ -11,6 +11,7 @@ from drivers.canopen.standing import stopping
 from drivers.canopen.states import MODE_BITS, PV, DriveState
 
 _STANDS = 2.0  # rpm
+_POWER = 1.0  # s in which the drive must come on
 
 
 class CanopenSpindle:
@@ -19,6 +20,9 @@ class CanopenSpindle:
     def __init__(self, config: SpindleConfig, bus: Bus) -> None:
         self._config = config
         self._bus = bus
+        self._came_on = False
+        self._last = self._counts = 0
+        self._ordered = 0.0  # s, when power was last asked for
         self.drive = Drive402(bus, "spindle", config.node, config.eds, od.TARGET_SPEED, od.VELOCITY)
 
     def connect(self) -> None:
@@ -34,12 +38,24 @@ class CanopenSpindle:
         self.drive.mode, self.drive.target = PV, 0
 
     def tick(self) -> None:
-        """Supervise; power goes when it stands and is to stand."""
+        """Supervise; power goes when it stands and is to stand, and never comes back by itself."""
         drive = self.drive
         drive.look(3.0 * self._bus.config.heartbeat)
+        lost = self._came_on and not drive.enabled
+        self._came_on = drive.enabled and drive.goal is DriveState.ENABLED
         if drive.trouble:
             drive.goal, drive.target = DriveState.QUICK_STOP, 0
-        elif drive.target == 0 and abs(drive.more) < _STANDS and drive.goal is DriveState.ENABLED:
+        elif drive.goal is DriveState.ENABLED:
+            self._watch(lost)
+
+    def _watch(self, lost: bool) -> None:
+        """Power that E-stop took, or that does not come, is not waited for: its return would start it."""
+        drive, now = self.drive, self._bus.clock.now()
+        if lost:
+            drive.goal, drive.target = DriveState.OFF, 0
+        elif not drive.enabled and now - self._ordered > _POWER:
+            drive.trouble = "spindle: the drive does not come on; is E-stop pressed, is power there?"
+        elif drive.target == 0 and abs(drive.more) < _STANDS:
             drive.goal = DriveState.OFF
 
     def run(self, rpm: float) -> None:
@@ -48,8 +64,8 @@ class CanopenSpindle:
             raise DriverError(f"the spindle stays off: {self._bus.trouble or self.drive.trouble}")
         limit = self._config.rpm_max
         self.drive.target = round(min(max(rpm, -limit), limit))
-        if rpm:
-            self.drive.goal = DriveState.ENABLED
+        if rpm and self.drive.goal is not DriveState.ENABLED:
+            self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
 
     def coast(self) -> None:
         """No torque: it runs down by itself."""
@@ -71,7 +87,10 @@ class CanopenSpindle:
         """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""
         if not self._config.counts_per_rev:
             return None
-        return self.drive.answered, self.drive.position / self._config.counts_per_rev
+        now = self.drive.position
+        self._counts += (now - self._last + 2**31) % 2**32 - 2**31  # its counter goes round every few hours
+        self._last = now
+        return self.drive.answered, self._counts / self._config.counts_per_rev
 
     def fault(self) -> str:
         """What is wrong with it; empty when well."""
