@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, Reset
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from tests.drivers.canopen.bench import CanBench, can_machine
@@ -150,4 +150,54 @@ def test_palms_start_where_the_machine_file_wants_two_hands() -> None:
     assert "palm" in rig.shot.start_refused
     rig.bench.peers.machine.press_start()
     rig.until(State.RUN, limit=0.3)
+    rig.bench.close()
+
+
+def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -> None:
+    rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
+    for index, way in ((0, 8.0), (1, -15.0)):
+        rig.bench.peers.plant.servos[index].switch = way
+    rig.start(OVER)
+    rig.run(0.2)
+    assert rig.state is State.IDLE
+    assert "home" in rig.shot.start_refused.lower()
+    order: list[str] = []
+
+    def note(shot: object) -> None:
+        homing = rig.bench.machine.axes.homing
+        if homing is not None and homing.config.name not in order:
+            order.append(homing.config.name)
+
+    rig.watch.append(note)
+    rig.post(Home(""))
+    rig.until(State.HOME)
+    rig.until(State.IDLE, limit=20.0)
+    assert order == ["Z", "X"]
+    assert rig.shot.homed[:2] == (True, True)
+    assert rig.shot.actual[:2] == pytest.approx((0.0, 0.0), abs=0.00127)
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until(State.IDLE, limit=30.0)
+    assert rig.shot.alarms == ()
+    assert rig.shot.parts == 1
+    rig.bench.close()
+
+
+def test_feed_hold_ends_a_homing_and_jogs_go_on_from_there() -> None:
+    rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
+    rig.bench.peers.plant.servos[1].switch = 60.0
+    rig.ready()
+    rig.post(Home("Z"))
+    rig.until(State.HOME)
+    rig.run(0.8)
+    rig.post(FeedHold())
+    rig.until(State.IDLE)
+    rig.run(0.6)
+    stood = rig.shot.actual[1]
+    assert stood > 10.0
+    rig.post(Jog("Z", 5.0, 0.2))
+    rig.until(State.JOG)
+    rig.until(State.IDLE)
+    assert 0.0 < rig.shot.actual[1] - stood < 2.0
+    assert rig.shot.alarms == ()
     rig.bench.close()
