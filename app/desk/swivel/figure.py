@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _SHARE = 0.34  # of the blank's diagonal: length of the plane's axes, and half a side of its square
 _TOOL = 12  # corners of the tool
-_MOST_POINTS = 20_000  # of the path; longer ones are thinned out to so many
+_MOST_POINTS = 10_000  # of the path; longer ones are thinned out to so many
 _FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
 _TOP = 1  # of those
 _SIDE_ONLY = 1e-9

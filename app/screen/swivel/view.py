@@ -37,6 +37,7 @@ _STROKES = {
     "z": ("wait", 0.30, False),
     "axis": ("soft", 0.10, True),
 }
+SMOOTH = 2000  # points of a line up to which it is drawn wide and smooth
 _DRAG_STEP = 60.0  # pixels of a drag that are one step of panning
 
 
@@ -162,10 +163,14 @@ class SwivelView(Panel):
     def _stroke(self, painter: QPainter, stroke: Stroke) -> None:
         colour, width, dashed = _STROKES[stroke.role]
         pen = QPen(self.look.pen(colour, width))
-        if dashed:
+        fine = len(stroke.points) <= SMOOTH  # a wide, smoothed pen takes a tenth of a second for the others
+        if not fine:
+            pen.setWidth(1)
+        elif dashed:
             pen.setStyle(Qt.PenStyle.DashLine)
         painter.setPen(pen)
         painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, fine)
         painter.drawPolyline(_polygon(stroke.points))
         if stroke.name:
             u = self.look.u
@@ -192,4 +197,6 @@ class SwivelView(Panel):
 
 
 def _polygon(points: FloatArray) -> QPolygonF:
-    return QPolygonF([QPointF(x, y) for x, y in points.tolist()])
+    from app.screen.path.plot import polygon
+
+    return polygon(points[:, 0], points[:, 1])
