@@ -252,3 +252,24 @@ def test_inch_programs_count_lengths_in_inches_and_feeds_in_tenths_a_minute() ->
 def test_points_and_datum_in_inches() -> None:
     ran = run("TRANS DATUM AXIS X+1\nL X+0 Y+0 Z+0 FMAX", unit="INCH")
     assert ran.state.at["X"] == pytest.approx(255.4)
+
+
+@pytest.mark.parametrize(
+    ("second", "unit", "corners"),
+    [
+        ("X+4 Y+2 Z+0", "MM", ((0.0, 0.0, -1.0), (4.0, 2.0, 0.0))),
+        ("X+4 Y+2 Z+0", "INCH", ((0.0, 0.0, -25.4), (101.6, 50.8, 0.0))),
+        ("X+4 Y+2 Z-1", "MM", None),  # no height
+        ("X+Q1 Y+2 Z+0", "MM", None),
+    ],
+)
+def test_the_blank_is_known_where_it_is_given_in_numbers(
+    second: str, unit: str, corners: tuple[tuple[float, ...], tuple[float, ...]] | None
+) -> None:
+    ran = run(f"BLK FORM 0.1 Z X+0 Y+0 Z-1\nBLK FORM 0.2 {second}", unit=unit)
+    assert not ran.errors
+    if corners is None:
+        assert ran.state.blank is None
+    else:
+        assert ran.state.blank is not None
+        assert np.allclose(ran.state.blank, corners)

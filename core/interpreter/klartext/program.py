@@ -68,14 +68,16 @@ def read_program(source: Source) -> Program:
 
 
 def _corners(program: Program) -> Corners | None:
-    """Least and greatest corner, where both are given in numbers."""
+    """Least and greatest corner, where both are given in numbers and hold a block between them."""
     scale = MM_PER_INCH if program.inch else 1.0
     found: dict[int, Vector] = {}
     for line in program.lines:
-        if isinstance(line.node, BlankForm):
+        if isinstance(line.node, BlankForm) and all(word.value.q is None for word in line.node.corner):
             at = {word.axis: word.value.number * scale for word in line.node.corner}
             found[line.node.part] = (at["X"], at["Y"], at["Z"])
-    return (found[1], found[2]) if len(found) == 2 else None
+    if len(found) < 2 or any(low >= high for low, high in zip(found[1], found[2], strict=True)):
+        return None
+    return found[1], found[2]
 
 
 def _frame(program: Program) -> Sequence[Diagnostic]:
