@@ -27,8 +27,7 @@ class Publisher:
         block = cycle.current if cycle else None
         following = cycle.next_block if cycle else None
         job, modal = standing.job, conductor.modal
-        if block is not None:
-            self._swivel = block.swivel
+        self._swivel = self._system(block, under_way=cycle is not None)
         return Snapshot(
             t=bench.now,
             state=standing.state,
@@ -80,6 +79,13 @@ class Publisher:
             tool_open=standing.tool_open,
             start_refused=standing.start_refused,
         )
+
+    def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
+        """Of a mill: the system of the last block; between programs nothing is tilted or shifted."""
+        if block is not None:
+            return block.swivel
+        last = self._swivel
+        return last if last is None or under_way or last.system.level else last.levelled()
 
     def _measured(self, sample: AxisSample, slides: int) -> float:
         """Velocity of all slides together, mm/s, from the encoders."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.geometry.frames import IDENTITY, Matrix, Vector
 from core.geometry.kinematics import Kinematics, Place
@@ -30,6 +30,16 @@ class System:
     tool_length: float = 0.0
     blank: Corners | None = None
 
+    @property
+    def level(self) -> bool:
+        """Whether it is the workpiece's own system: no plane, no datum shifted."""
+        return not self.tilted and self.datum == (0.0, 0.0, 0.0)
+
+    def levelled(self) -> System:
+        """The workpiece's own system with the same tool: what is left when a program has been given up."""
+        place = self.kinematics.place({}, self.kinematics.basic, tool_length=self.tool_length)
+        return System(place, self.kinematics, tool_length=self.tool_length, blank=self.blank)
+
 
 @dataclass(frozen=True, slots=True)
 class Swivel:
@@ -44,3 +54,9 @@ class Swivel:
     slides: Vector
     rotary: Angles
     system: System
+
+    def levelled(self) -> Swivel:
+        """The same place in the workpiece's own system."""
+        system = self.system.levelled()
+        end = system.place.point(self.slides)
+        return replace(self, start=end, end=end, system=system)

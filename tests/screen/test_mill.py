@@ -148,6 +148,24 @@ def test_hold_in_the_middle_of_a_swivel_and_go_on(mill: Mill) -> None:
     assert not end.alarms
 
 
+def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
+    mill.choose("roof")
+    mill.start()
+    cut = line_of("L X+90 F900")
+    mill.goes_on(lambda s: s.line == cut and s.actual[0] > 260.0)
+    mill.key(Key.Key_H)
+    held = mill.goes_on(lambda s: s.state is State.HOLD)
+    assert held.swivel is not None
+    assert held.swivel.system.tilted  # it can go on
+    mill.key(Key.Key_R)
+    mill.key(Key.Key_R)
+    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    assert end.swivel is not None
+    assert end.swivel.system.level
+    x, y, z, *_ = end.actual
+    assert end.swivel.system.place.point((x, y, z)) == pytest.approx((x - 230.0, y - 210.0, z + 350.0 - 76.2))
+
+
 def test_keys_of_looking_around_are_the_spaces(mill: Mill) -> None:
     mill.choose("roof")
     space = mill.page.space
