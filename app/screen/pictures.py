@@ -79,7 +79,8 @@ class Stage:
         end = self.clock.now() + most
         while not until():
             if self.clock.now() > end:
-                raise TimeoutError(f"not so after {most:g} s: {self.desk.snapshot().state.value}")
+                state = self.desk.snapshot().state.value
+                raise TimeoutError(f"not so after {most:g} s: {state}: {self.desk.notice}")
             self._executor.tick()
             self.clock.sleep_until(self.clock.now() + TICK)
 
@@ -106,6 +107,8 @@ class Stage:
         from core.executor.snapshot import State
 
         desk = self.desk
+        desk.look()  # what was changed since is read anew first
+        desk.session.settled(LOADING)
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
