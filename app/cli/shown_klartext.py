@@ -54,6 +54,8 @@ def figures(report: Report, mill: MillFigures) -> Json:
 
 def machine_reach(mill: MillFigures) -> str:
     """The same for a person."""
+    if not mill.reach:
+        return "  machine stands\n"
     reached = zip(mill.axes, mill.reach, strict=False)
     return "  machine " + "   ".join(f"{name} {low:.3f} … {high:.3f}" for name, (low, high) in reached) + "\n"
 

@@ -28,7 +28,7 @@ def number(
         found = -state.q[value.q] if value.negative else state.q[value.q]
     low = -most if least is None else least
     if not low <= found <= most:
-        text = f"{what} {found:+.12g} is not between {low:.12g} and {most:.15g}."
+        text = f"{what} {found:+.12g} is not between {low:.15g} and {most:.15g}."
         raise faults.fault(line, value.column, faults.INPUT_VALUE, text, "Correct the value.")
     return found
 
