@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.klartext import words
-from core.interpreter.klartext.state import SLIDES, State
+from core.interpreter.klartext.state import SAME_POINT, SLIDES, State
 from core.language.klartext import faults
 from core.language.klartext.nodes import AxisWord, Move
 
@@ -19,18 +19,22 @@ def move(state: State, line: int, text: str, node: Move, *, machine: bool) -> It
         if node.feed is not None:
             _take_feed(state, line, node)
         return
-    for word in node.axes:
-        if word.axis not in state.at:
-            text = f"This machine has no axis {word.axis}."
-            raise faults.fault(line, word.column, faults.WRONG_AXIS, text, "Take the word out.")
+    _demand_axes(state, line, node)
     _demand_no_compensation(state, line, node)
     goal = _slides(state, line, node, machine=machine) | _rotary(state, line, node)
     feed = _take_feed(state, line, node)
     if feed is not None:
         _warn(state, line, node)
-    linear = any(abs(goal.get(name, state.at[name]) - state.at[name]) > 1e-7 for name in SLIDES)
+    linear = any(abs(goal.get(name, state.at[name]) - state.at[name]) > SAME_POINT for name in SLIDES)
     rate = None if feed is None else (state.path_feed(feed) if linear else feed / 60.0)
     yield state.move(line, text, Kind.RAPID if rate is None else Kind.FEED, goal, rate)
+
+
+def _demand_axes(state: State, line: int, node: Move) -> None:
+    for word in node.axes:
+        if word.axis not in state.at:
+            text = f"This machine has no axis {word.axis}."
+            raise faults.fault(line, word.column, faults.WRONG_AXIS, text, "Take the word out.")
 
 
 def _take_feed(state: State, line: int, node: Move) -> float | None:
