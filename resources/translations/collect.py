@@ -19,9 +19,12 @@ HERE = Path(__file__).parent
 HOUSE = HERE.parents[1]
 CONTEXT = "turndesk"
 LANGUAGES = ("es",)
+# Of composing, what is said while the screen is open; the rest goes to the console before there is one.
+COMPOSING = "app/compose"
+COMPOSED = ("journal.py", "offsets.py", "mdi.py", "screen.py", "special.py", "searchto.py", "simulated.py")
 ROOMS = (
-    *("app/desk", "app/screen", "app/compose", "core/executor", "core/store", "core/interpreter"),
-    *("core/language", "core/proving", "core/geometry", "core/motion"),
+    *("app/desk", "app/screen", "core/executor", "core/store", "core/interpreter"),
+    *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
 )
 # Scripts and tables that no screen shows.
 APART = frozenset(
@@ -62,7 +65,7 @@ def texts() -> dict[str, str]:
     for room in ROOMS:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
-            if path.name not in APART:
+            if path.name not in APART and (room != COMPOSING or path.name in COMPOSED):
                 tree = ast.parse(path.read_text(encoding="utf-8"))
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):

@@ -39,76 +39,6 @@
       <translation>pulg/rev</translation>
     </message>
     <message>
-      <location filename="app/compose/backends.py" />
-      <source>%1: there is no driver for backend %2 yet</source>
-      <translation>%1: todavía no hay controlador para %2</translation>
-    </message>
-    <message>
-      <location filename="app/compose/canopen.py" />
-      <source>%1: there is no [canopen] table</source>
-      <translation>%1: no hay tabla [canopen]</translation>
-    </message>
-    <message>
-      <location filename="app/compose/canopen.py" />
-      <source>backend canopen needs %1: pip install 'turndesk[canopen]'</source>
-      <translation>el sistema canopen necesita %1: pip install 'turndesk[canopen]'</translation>
-    </message>
-    <message>
-      <location filename="app/compose/canopen.py" />
-      <source>terminal %1 is no address on the bus</source>
-      <translation>la terminal %1 no es una dirección del bus</translation>
-    </message>
-    <message>
-      <location filename="app/compose/checking.py" />
-      <source>%1 rpm</source>
-      <translation>%1 rpm</translation>
-    </message>
-    <message>
-      <location filename="app/compose/checking.py" />
-      <source>feed pot %1</source>
-      <translation>perilla de avance %1</translation>
-    </message>
-    <message>
-      <location filename="app/compose/checking.py" />
-      <source>homed %1, at %2</source>
-      <translation>referenciado %1, en %2</translation>
-    </message>
-    <message>
-      <location filename="app/compose/checking.py" />
-      <source>input %1</source>
-      <translation>entrada %1</translation>
-    </message>
-    <message>
-      <location filename="app/compose/driven.py" />
-      <source>%1: the feeder has no backend %2</source>
-      <translation>%1: el alimentador no tiene %2</translation>
-    </message>
-    <message>
-      <location filename="app/compose/feeder.py" />
-      <source>the feeder's process does not come up</source>
-      <translation>el proceso alimentador no arranca</translation>
-    </message>
-    <message>
-      <location filename="app/compose/feeder.py" />
-      <source>the feeder's process has ended at its start; see its message above</source>
-      <translation>el proceso alimentador terminó al arrancar; vea su mensaje arriba</translation>
-    </message>
-    <message>
-      <location filename="app/compose/inverter.py" />
-      <source>%1: inverter %2 on %3: %4</source>
-      <translation>%1: variador %2 en %3: %4</translation>
-    </message>
-    <message>
-      <location filename="app/compose/inverter.py" />
-      <source>an inverter on a line needs real time; it cannot follow a clock that is moved by hand</source>
-      <translation>un variador en una línea necesita tiempo real; no puede seguir un reloj movido a mano</translation>
-    </message>
-    <message>
-      <location filename="app/compose/inverter.py" />
-      <source>spindle speed is the inverter's output frequency: no encoder is connected; slip is not seen, and no thread can be cut</source>
-      <translation>la velocidad del husillo es la frecuencia de salida del variador: no hay encoder; el deslizamiento no se ve, y no se puede roscar</translation>
-    </message>
-    <message>
       <location filename="app/compose/journal.py" />
       <source>OFFSETS CANNOT BE KEPT: %1</source>
       <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
@@ -137,11 +67,6 @@
       <location filename="app/compose/screen.py" />
       <source>SIMULATED SLIDES · REAL SPINDLE</source>
       <translation>CARROS SIMULADOS · HUSILLO REAL</translation>
-    </message>
-    <message>
-      <location filename="app/compose/serial_line.py" />
-      <source>serial lines need pyserial: pip install pyserial</source>
-      <translation>las líneas seriales necesitan pyserial: pip install pyserial</translation>
     </message>
     <message>
       <location filename="app/desk/answers.py" />
