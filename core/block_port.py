@@ -72,8 +72,10 @@ class BlockSink(Protocol):
     itself when the host is lost.
     """
 
-    caps: frozenset[str]
     ahead: float
+
+    @property
+    def caps(self) -> frozenset[str]: ...
 
     def submit(self, op: BlockOp) -> int | None:
         """Hand a block over: its ticket, or None while it takes no more. Raises DriverError."""

@@ -7,6 +7,7 @@ import sys
 from types import FrameType
 
 from app.cli.errors import EXIT_OK, CommandError
+from app.compose.grblhal import play_grblhal
 from app.compose.machine import read_machine
 from app.compose.peer import play_peers
 from core.ports import DriverError
@@ -15,9 +16,9 @@ from core.ports import DriverError
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
     machine = read_machine(file)
-    if machine.hardware.canopen is None:
-        raise CommandError(f"{file}: there is no [canopen] table; a peer answers on a CAN bus")
     bus, ended = machine.hardware.canopen, False
+    if bus is None and machine.hardware.grblhal is None:
+        raise CommandError(f"{file}: there is no [canopen] or [grblhal] table, so nothing to be a peer of")
 
     def end(_signal: int, _frame: FrameType | None) -> None:
         nonlocal ended
@@ -25,10 +26,19 @@ def play(file: str) -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-    sys.stdout.write(f"simulated drives of {machine.name} on {bus.interface} {bus.channel}; end: Ctrl-C\n")
-    sys.stdout.flush()
+
+    def say(what: str) -> None:
+        sys.stdout.write(f"simulated {what}; end: Ctrl-C\n")
+        sys.stdout.flush()
+
     try:
-        play_peers(machine, lambda: not ended)
+        if bus is None:
+            play_grblhal(
+                machine, lambda: not ended, lambda where: say(f"grblHAL of {machine.name} on {where}")
+            )
+        else:
+            say(f"drives of {machine.name} on {bus.interface} {bus.channel}")
+            play_peers(machine, lambda: not ended)
     except DriverError as error:
         raise CommandError(str(error)) from error
     return EXIT_OK

@@ -34,6 +34,8 @@ def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
     if machine.backend == "sim" and not machine.hardware.feeder:
         return _in_process(machine, clock)
+    if machine.backend == "grblhal":
+        return _controller(machine, clock)
     if machine.backend not in {"sim", "canopen"}:
         raise DriverError(f"{machine.source}: there is no driver for backend {machine.backend} yet")
     line, close = _line(machine, clock)
@@ -45,6 +47,14 @@ def connect(machine: Machine, clock: Clock) -> Connected:
     hands = FeederHands(line)
     panel = hands if played(machine) or not has_station(machine) else None
     return Connected(ports, panel, hands.set_input if played(machine) else None, close)
+
+
+def _controller(machine: Machine, clock: Clock) -> Connected:
+    """A controller that plans by itself; it knows no buttons, so the station is the screen's."""
+    from app.compose.grblhal import grblhal_machine
+
+    controller = grblhal_machine(machine, clock)
+    return Connected(controller.ports, controller.panel, None, controller.close)
 
 
 def _in_process(machine: Machine, clock: Clock) -> Connected:

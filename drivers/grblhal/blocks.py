@@ -1,0 +1,195 @@
+"""The block-level port: tickets, holds and overrides on the conversation; ``core.block_port.BlockSink``."""
+
+from __future__ import annotations
+
+from core.block_port import BlockOp, BlockState, ThreadOp
+from core.ports import DriverError
+from drivers.grblhal import codes, scripts
+from drivers.grblhal.controller import Controller
+from drivers.grblhal.gcode import line_number, line_of
+from drivers.grblhal.jog import Jogs
+from drivers.grblhal.overrides import Overrides
+from drivers.grblhal.report import Report
+
+AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
+
+
+class GrblBlocks:
+    """Blocks of one controller. Called by the executor's thread alone."""
+
+    ahead = AHEAD
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.overrides = Overrides(lambda data: controller.realtime(*data), controller.fail)
+        self._jogs = Jogs(controller)
+        self._last = 0  # ticket
+        self._done = 0
+        self._active = 0
+        self._threads: set[int] = set()  # tickets of passes that are not done
+        self._settled = False  # a report since the last line has said that all is done
+        self._hold = False  # asked, and not yet taken back
+        self._ours = False  # the hold that stands is our own
+        self._target: tuple[float, float] | None = None
+        self.rest: tuple[float, float] | None = None  # X and Z where the last block has exactly ended
+        controller.on_report, controller.on_void = self._reported, self._voided
+
+    @property
+    def caps(self) -> frozenset[str]:
+        """Threads need the controller's own encoder, which a third speed in its reports tells of."""
+        report = self._c.report
+        encoder = report is not None and report.measured is not None
+        return frozenset(("arc", "thread")) if encoder else frozenset(("arc",))
+
+    @property
+    def quiet(self) -> bool:
+        """Whether nothing moves and nothing is left: lines that wait for a standstill may go."""
+        return self._settled and not self._c.busy
+
+    def submit(self, op: BlockOp) -> int | None:
+        """Hand one block over; None while the controller's buffer is full. Raises DriverError."""
+        c = self._c
+        self._demand_ready()
+        ticket = self._last + 1
+        rapid = min(axis.vmax for axis in c.config.axes if axis.wired)
+        line = line_of(op, ticket, rapid, self.overrides.wanted[0] / 100.0)
+        if not c.stream.fits(line):
+            return None
+        c.send(line, ticket)
+        self._last, self._settled, self._target = ticket, False, (op.x, op.z)
+        self.rest = None
+        if isinstance(op, ThreadOp):
+            self._threads.add(ticket)
+            c.index_wait = True
+        return ticket
+
+    def state(self) -> BlockState:
+        """From the last report and what has been sent since."""
+        c = self._c
+        held = c.report is not None and c.report.state in {"Hold", "Door"} and not c.report.sub
+        resting = self.quiet or c.lost or (c.fault != "" and self._dead())
+        return BlockState(self._done, self._active, resting, held and not c.busy, self.hindrance())
+
+    def hindrance(self) -> str:
+        """Why nothing may be begun now."""
+        c = self._c
+        if c.fault:
+            return c.fault
+        if c.alarm == codes.HOMING_REQUIRED:
+            return "" if c.busy else "the controller has to be homed first"
+        if c.busy or not c.ready:
+            return "the controller's modes are being verified"
+        return ""
+
+    def hold(self) -> None:
+        """0x82; the controller delays it to the end of a thread pass."""
+        self._hold = self._ours = True
+        self._c.realtime(codes.HOLD)
+        self._c.question()
+
+    def resume(self) -> None:
+        """0x81, at once where it rests, or as soon as it does."""
+        self._hold = False
+        self._go_on()
+
+    def abort(self) -> None:
+        """To rest; the tickets are void."""
+        self._hold = self._ours = False
+        if not self._c.lost:
+            self._c.run(scripts.abort(self._c))
+
+    def override(self, feed: float, rapid: float) -> None:
+        """Wanted from now on; sent and verified by ``pump``."""
+        self.overrides.want(feed, rapid)
+
+    def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+        """Begin or renew."""
+        if not self._jogs.active:
+            self._demand_ready()
+        moves = self._jogs.move(axis, velocity, lease, limits)
+        if moves:
+            self._settled, self.rest = False, None
+        return moves
+
+    def jog_to(self, axis: str, target: float, speed: float) -> None:
+        """One step."""
+        self._demand_ready()
+        self._jogs.step(axis, target, speed)
+        self._settled, self.rest = False, None
+
+    def jog_stop(self) -> None:
+        """0x85, and lines that it swallowed are settled."""
+        if self._jogs.active or not self._settled:
+            self._jogs.forget()
+            self._settled = False
+            self._c.realtime(codes.JOG_CANCEL)
+            if self._c.stream.quiet:
+                self._c.question()
+            else:
+                self._c.run(scripts.jog_end(self._c))
+
+    def home(self, axis: str) -> None:
+        """Look for its switch."""
+        self._settled, self.rest = False, None
+        self._c.run(scripts.home(self._c, axis))
+
+    def pump(self) -> None:
+        """Once a tick, behind the conversation's own."""
+        c = self._c
+        self._jogs.pump()
+        steady = self._threads or c.busy or not c.ready
+        c.see_overrides(not self.overrides.true_to(c.overrides) and not steady)
+        if not steady:
+            self.overrides.correct(c.overrides, c.clock.now())
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _demand_ready(self) -> None:
+        why = self.hindrance()
+        if why:
+            raise DriverError(f"the controller takes no block: {why}")
+
+    def _dead(self) -> bool:
+        """An alarm has stopped everything, or the last report says that nothing moves."""
+        c = self._c
+        return not c.busy and (c.alarm != 0 or c.report is None or not c.report.moves)
+
+    def _reported(self, report: Report) -> None:
+        c = self._c
+        empty = report.free is None or report.free >= c.most_free
+        if report.state in {"Idle", "Alarm"} and c.stream.quiet and empty:
+            self._finished(report)
+        elif report.line is not None and report.line and self._last:
+            self._active = self._last - (line_number(self._last) - report.line) % 9_000_000
+            self._done = max(self._done, self._active - 1)
+            self._threads = {ticket for ticket in self._threads if ticket > self._done}
+            c.index_wait = bool(self._threads)
+        if report.state == "Hold":
+            self._go_on()
+        else:
+            self._ours = self._ours and (self._hold or report.state in {"Run", "Jog"})
+
+    def _finished(self, report: Report) -> None:
+        """Everything has been moved to its end."""
+        if self._target is not None and report.state == "Idle":
+            self.rest = self._target
+        self._target = None
+        self._done, self._active, self._settled = self._last, 0, True
+        self._threads.clear()
+        self._c.index_wait = False
+        self._jogs.rested()
+
+    def _voided(self) -> None:
+        """Stop, reset, alarm: no ticket holds any more, and where the slides stand is what is reported."""
+        self._done, self._active, self._target, self.rest = self._last, 0, None, None
+        self._threads.clear()
+        self._settled = False
+        self._jogs.forget()
+
+    def _go_on(self) -> None:
+        """Out of a hold of our own once it rests and is no longer wanted; never out of another's."""
+        report = self._c.report
+        if self._ours and not self._hold and report is not None and report.state == "Hold" and not report.sub:
+            self._ours = False
+            self._c.realtime(codes.START)
+            self._c.question()

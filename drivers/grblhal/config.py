@@ -1,0 +1,47 @@
+"""What the driver must know of the machine: filled by the app from the machine file, frozen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class GrblAxis:
+    """One axis of the machine file; mm and seconds. ``wired``: the controller has it."""
+
+    name: str
+    vmax: float
+    amax: float
+    travel: tuple[float, float] | None
+    absolute: bool
+    wired: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GrblOutput:
+    """Where an output is: ``flood``, ``mist`` or ``out.N``; its safe state, None to keep what it is."""
+
+    terminal: str
+    safe: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class GrblInput:
+    """Where an input is: ``pn.E`` is the letter E of the status report's pins."""
+
+    terminal: str
+    active_low: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GrblConfig:
+    """The controller and what hangs on it. ``settings`` are written at each connection and read back."""
+
+    port: str
+    baud: int
+    settings: Mapping[int, float | str]
+    axes: tuple[GrblAxis, ...]
+    rpm_max: float
+    outputs: Mapping[str, GrblOutput]
+    inputs: Mapping[str, GrblInput]

@@ -1,0 +1,100 @@
+"""The controller as a machine: connects, and puts the ports together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from core.ports import Clock, DriverError, MachinePorts, Stop
+from drivers.grblhal import scripts
+from drivers.grblhal.blocks import GrblBlocks
+from drivers.grblhal.config import GrblConfig
+from drivers.grblhal.controller import Controller
+from drivers.grblhal.outputs import GrblIO, GrblSpindle
+from drivers.grblhal.ports import GrblAxes
+from drivers.grblhal.wire import Wire, open_wire
+from drivers.panel_station import PanelStation
+
+_ROUND = 0.005  # s between two looks while it connects
+_CONNECTING = 15.0
+_LEAVING = 4.0
+
+
+class GrblMachine:
+    """Connected and verified when it is made. Raises DriverError.
+
+    ``wire`` and ``idle`` are for tests, whose clock does not move by itself.
+    """
+
+    def __init__(
+        self,
+        config: GrblConfig,
+        clock: Clock,
+        wire: Wire | None = None,
+        idle: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._clock = clock
+        self._idle = idle
+        self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
+        self.blocks = GrblBlocks(self.controller)
+        self.spindle = GrblSpindle(self.controller, self.blocks)
+        self.io = GrblIO(self.controller)
+        self.axes = GrblAxes(self.controller, self.blocks, self.pump)
+        voided = self.controller.on_void
+
+        def void() -> None:
+            voided()
+            self.spindle.voided()
+            self.io.voided()
+
+        self.controller.on_void = void
+        self._connect()
+        self.panel = PanelStation(clock, lambda: bool(self.io.inputs().get("estop")))
+        self.ports = MachinePorts(
+            clock=clock,
+            axes=self.axes,
+            spindle=self.spindle,
+            io=self.io,
+            station=self.panel,
+            warnings=self._warnings(),
+            blocks=self.blocks,
+        )
+
+    def pump(self) -> None:
+        """One round; never waits."""
+        self.controller.pump()
+        self.blocks.pump()
+        self.spindle.pump()
+        self.io.pump()
+
+    def close(self) -> None:
+        """Nothing is left moving; then the wire goes."""
+        self.axes.stop(Stop.RAMP_OFF)
+        self._rounds(_LEAVING)
+        self.controller.close()
+
+    def _connect(self) -> None:
+        c = self.controller
+        c.run(scripts.connect(c))
+        self._rounds(_CONNECTING)
+        if c.busy or c.identity is None or (c.fault and c.alarm == 0):
+            c.close()
+            raise DriverError(f"{c.config.port}: {c.fault or 'the controller does not answer'}")
+
+    def _rounds(self, limit: float) -> None:
+        end = self._clock.now() + limit
+        while self.controller.busy and not self.controller.lost and self._clock.now() < end:
+            self._idle()
+            self.pump()
+            self._clock.sleep_until(self._clock.now() + _ROUND)
+
+    def _warnings(self) -> list[str]:
+        lacking = {name: self.io.lacking(name) for name in self.controller.config.outputs}
+        told = [f"output {name}: {why}" for name, why in lacking.items() if why]
+        told += [
+            f"input {name}: {wired.terminal} is in no status report; it is not read"
+            for name, wired in self.controller.config.inputs.items()
+            if not wired.terminal.startswith("pn.")
+        ]
+        if "thread" not in self.blocks.caps:
+            told.append("the controller reports no spindle encoder: threads are refused")
+        return told

@@ -1,0 +1,114 @@
+"""The look-alike's planner and slides: blocks on a path, always able to stop at its end."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+Place = tuple[float, float]  # X as a radius, Z; mm
+
+
+@dataclass(slots=True)
+class PeerBlock:
+    """``way``: distance (mm) to place. ``per_rev``: ``speed`` is mm a turn; ``thread`` awaits the index."""
+
+    number: int
+    length: float
+    speed: float
+    way: Callable[[float], Place]
+    rapid: bool = False
+    per_rev: bool = False
+    thread: bool = False
+    jog: bool = False
+
+
+def straight(start: Place, end: Place) -> tuple[float, Callable[[float], Place]]:
+    """Length and way of a line."""
+    length = math.dist(start, end)
+
+    def way(s: float) -> Place:
+        part = s / length if length else 1.0
+        return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
+
+    return length, way
+
+
+def circle(
+    start: Place, end: Place, centre: Place, *, counter: bool
+) -> tuple[float, Callable[[float], Place]] | None:
+    """Length and way of an arc in the plane of Z and X; None when the end is not on it."""
+    radius = math.dist(start, centre)
+    if abs(math.dist(end, centre) - radius) > 0.005:
+        return None
+    first = math.atan2(start[0] - centre[0], start[1] - centre[1])
+    turned = (math.atan2(end[0] - centre[0], end[1] - centre[1]) - first) % math.tau
+    sweep = (turned or math.tau) if counter else (turned - math.tau)
+
+    def way(s: float) -> Place:
+        angle = first + math.copysign(s / radius, sweep)
+        return centre[0] + radius * math.sin(angle), centre[1] + radius * math.cos(angle)
+
+    return radius * abs(sweep), way
+
+
+class Slides:
+    """Advanced in small steps by the firmware; ``turns_per_s`` is the spindle's."""
+
+    def __init__(self, accel: float, capacity: int) -> None:
+        self.queue: deque[PeerBlock] = deque()
+        self.capacity = capacity
+        self.place: Place = (0.0, 0.0)
+        self.v = 0.0
+        self.feed = self.rapid = 1.0  # overrides
+        self.held = False  # asked to stop
+        self.travelled = 0.0  # mm since power-up
+        self._accel = accel
+        self._s = 0.0
+
+    @property
+    def free(self) -> int:
+        """Blocks that still fit."""
+        return self.capacity - len(self.queue)
+
+    @property
+    def moving(self) -> bool:
+        """Whether it has speed."""
+        return self.v > 0.0
+
+    def drop(self) -> None:
+        """Forget every block; stands at once where it is."""
+        self.queue.clear()
+        self.v = self._s = 0.0
+
+    def step(self, dt: float, turns_per_s: float) -> None:
+        """Let ``dt`` pass."""
+        if not self.queue:
+            self.v = 0.0
+            return
+        left = sum(block.length for block in self.queue) - self._s
+        goal = 0.0 if self.held else self._speed(self.queue[0], turns_per_s)
+        change = self._accel * dt
+        self.v = min(self.v + change, goal) if self.v < goal else max(self.v - change, goal)
+        self.v = min(self.v, math.sqrt(2.0 * self._accel * max(left, 0.0)) + 1e-3)
+        if self.held and self.v < 1.5 * change:
+            self.v = 0.0
+        self._go(self.v * dt)
+
+    def _speed(self, block: PeerBlock, turns_per_s: float) -> float:
+        speed = block.speed * turns_per_s if block.per_rev else block.speed
+        if block.thread or block.jog:
+            return speed
+        return speed * (self.rapid if block.rapid else self.feed)
+
+    def _go(self, way: float) -> None:
+        self._s, self.travelled = self._s + way, self.travelled + way
+        while self.queue and self._s >= self.queue[0].length - 1e-9:
+            done = self.queue.popleft()
+            self._s = max(self._s - done.length, 0.0)
+            self.place = done.way(done.length)
+        if self.queue:
+            self.place = self.queue[0].way(self._s)
+        else:
+            self.v = self._s = 0.0

@@ -1,0 +1,106 @@
+"""The status report ``<Run|MPos:…|Bf:…>``, read strictly: a damaged one is no report."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
+_STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Check", "Sleep", "Tool"))
+
+
+class Report(NamedTuple):
+    """One status report; None for what it does not carry. mm; X as the controller counts it."""
+
+    state: str
+    sub: int | None = None
+    position: tuple[float, ...] | None = None
+    free: int | None = None  # blocks of the planner
+    line: int | None = None
+    speeds: tuple[float, ...] | None = (
+        None  # feed, rpm as commanded, rpm as measured where there is an encoder
+    )
+    pins: str = ""
+    offset: tuple[float, ...] | None = None
+    overrides: tuple[int, ...] | None = None  # per cent: feed, rapid, spindle
+    diameter: bool | None = None
+    homed: tuple[int, ...] | None = None
+    full: bool = False
+
+    @property
+    def moves(self) -> bool:
+        """Whether slides may be moving."""
+        return self.state in {"Run", "Jog", "Home"} or (self.state in {"Hold", "Door"} and self.sub != 0)
+
+    @property
+    def measured(self) -> float | None:
+        """Spindle speed by an encoder, rpm."""
+        return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
+
+
+def read_report(line: str) -> Report | None:
+    """The report in a line, None when the line is damaged."""
+    if not (line.startswith("<") and line.endswith(">")):
+        return None
+    head, *fields = line[1:-1].split("|")
+    state, _, sub = head.partition(":")
+    if state not in _STATES or (sub and not sub.isdecimal()):
+        return None
+    values: dict[str, object] = {}
+    for field in fields:
+        name, colon, text = field.partition(":")
+        if not colon or not name.isalnum():
+            return None
+        reader = _READERS.get(name)
+        if reader is None:
+            continue
+        found = reader(text)
+        if found is None:
+            return None
+        values.update(found)
+    if "position" not in values:
+        return None
+    return Report(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
+
+
+def _numbers(text: str) -> tuple[float, ...] | None:
+    parts = text.split(",")
+    if not all(_NUMBER.fullmatch(part) for part in parts):
+        return None
+    values = tuple(float(part) for part in parts)
+    return values if all(math.isfinite(value) for value in values) else None
+
+
+def _floats(name: str) -> Callable[[str], Mapping[str, object] | None]:
+    def read(text: str) -> Mapping[str, object] | None:
+        values = _numbers(text)
+        return None if values is None else {name: values}
+
+    return read
+
+
+def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, object] | None]:
+    def read(text: str) -> Mapping[str, object] | None:
+        parts = text.split(",")
+        if not all(part.isdecimal() for part in parts):
+            return None
+        values = tuple(int(part) for part in parts)
+        return {name: values if index is None else values[index]}
+
+    return read
+
+
+_READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
+    "MPos": _floats("position"),
+    "FS": _floats("speeds"),
+    "WCO": _floats("offset"),
+    "Bf": _whole("free", 0),
+    "Ln": _whole("line", 0),
+    "Ov": _whole("overrides"),
+    "H": _whole("homed"),
+    "Pn": lambda text: {"pins": text},
+    "FW": lambda _: {"full": True},
+    "D": lambda text: {"diameter": text == "1"} if text in {"0", "1"} else None,
+}

@@ -1,0 +1,90 @@
+"""Lines out, one answer each back: counts the bytes that the controller has not yet answered for."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+_RESERVE = 100  # bytes of its buffer that are never used
+_LONGEST = 256  # bytes of a line
+
+
+@dataclass(slots=True)
+class Ask:
+    """A line whose answer matters: what was told before its ``ok``; ``error`` 0 is none."""
+
+    line: str
+    lines: list[str] = field(default_factory=list)
+    done: bool = False
+    error: int = 0
+    sent_at: float = 0.0
+    ticket: int = 0  # of a block, 0 for everything else
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return len(self.line) + 1
+
+
+class Stream:
+    """``write`` puts bytes on the wire. Lines leave in order, and only as many as surely fit."""
+
+    def __init__(self, write: Callable[[bytes], None]) -> None:
+        self._write = write
+        self.room = _RESERVE  # bytes that may be unanswered; the controller tells its buffer first
+        self.waiting: deque[Ask] = deque()
+        self.unanswered: deque[Ask] = deque()
+        self.stale = False  # answers to lines that no longer count may still come
+
+    def use(self, buffer: int) -> None:
+        """The controller's buffer holds so many bytes."""
+        self.room = buffer - _RESERVE
+
+    @property
+    def quiet(self) -> bool:
+        """Whether every line has been sent and answered."""
+        return not self.waiting and not self.unanswered
+
+    def fits(self, line: str) -> bool:
+        """Whether this line could leave at once."""
+        return not self.waiting and self._used() + len(line) + 1 <= self.room
+
+    def send(self, line: str, now: float, ticket: int = 0) -> Ask:
+        """Send a line, or let it wait its turn."""
+        assert line.isascii(), line
+        assert len(line) < _LONGEST, line
+        ask = Ask(line, sent_at=now, ticket=ticket)
+        self.waiting.append(ask)
+        self.pump(now)
+        return ask
+
+    def pump(self, now: float) -> None:
+        """Send what has come to fit."""
+        while self.waiting and (not self.unanswered or self._used() + self.waiting[0].size <= self.room):
+            ask = self.waiting.popleft()
+            ask.sent_at = now
+            self.unanswered.append(ask)
+            self._write(ask.line.encode("ascii") + b"\n")
+
+    def answered(self, error: int) -> Ask | None:
+        """``ok`` (0) or an error has come; the line that it belongs to, None when there is none."""
+        if not self.unanswered:
+            return None
+        ask = self.unanswered.popleft()
+        ask.done, ask.error = True, error
+        return ask
+
+    def told(self, line: str) -> None:
+        """Something that the controller says before it answers for a line."""
+        if self.unanswered:
+            self.unanswered[0].lines.append(line)
+
+    def void(self) -> None:
+        """No line counts any more; what is still answered belongs to nothing until ``$G`` has been told."""
+        self.waiting.clear()
+        self.unanswered.clear()
+        self.stale = True
+
+    def _used(self) -> int:
+        return sum(ask.size for ask in self.unanswered)

@@ -1,0 +1,112 @@
+"""The wire to the controller: a serial device, a pseudo terminal or TCP. Nothing here waits but opening."""
+
+from __future__ import annotations
+
+import socket
+from typing import TYPE_CHECKING, Protocol
+
+from core.ports import DriverError
+
+if TYPE_CHECKING:
+    import serial
+
+_TCP = "tcp://"
+_OPENING = 3.0  # s
+
+
+class WireLostError(Exception):
+    """The other end has gone; the text says how it was noticed."""
+
+
+class Wire(Protocol):
+    """Bytes both ways. ``read`` and ``write`` raise WireLostError and never wait."""
+
+    def read(self) -> bytes: ...
+
+    def write(self, data: bytes) -> None: ...
+
+    def close(self) -> None: ...
+
+
+def open_wire(port: str, baud: int) -> Wire:
+    """A serial device by its path, or ``tcp://host:port``. Raises DriverError."""
+    if not port.startswith(_TCP):
+        return SerialWire(port, baud)
+    host, _, number = port.removeprefix(_TCP).rpartition(":")
+    if not host or not number.isdecimal():
+        raise DriverError(f"{port}: expected tcp://host:port")
+    return TcpWire(host, int(number))
+
+
+class SerialWire:
+    """pyserial without DTR and RTS: raising them resets some boards, and a reset loses the position."""
+
+    def __init__(self, port: str, baud: int) -> None:
+        try:
+            import serial  # noqa: PLC0415  not everybody has a controller
+        except ImportError as error:
+            raise DriverError("backend grblhal needs pyserial: pip install pyserial") from error
+        self._port: serial.Serial = serial.Serial(timeout=0, write_timeout=0, exclusive=True)
+        self._port.port, self._port.baudrate = port, baud
+        self._port.dtr = self._port.rts = False
+        try:
+            self._port.open()
+        except (OSError, ValueError) as error:
+            raise DriverError(
+                f"{port} cannot be opened: {error}; check the cable and [grblhal] port"
+            ) from error
+
+    def read(self) -> bytes:
+        """What has arrived."""
+        try:
+            return bytes(self._port.read(4096))
+        except (OSError, TypeError) as error:  # TypeError: pyserial's own, when the device vanishes
+            raise WireLostError(str(error)) from error
+
+    def write(self, data: bytes) -> None:
+        """All of it; less than a controller's buffer fits into the computer's own."""
+        try:
+            if self._port.write(data) != len(data):
+                raise WireLostError("the line takes no more bytes")
+        except OSError as error:
+            raise WireLostError(str(error)) from error
+
+    def close(self) -> None:
+        """Let the device go."""
+        self._port.close()
+
+
+class TcpWire:
+    """A socket that does not wait."""
+
+    def __init__(self, host: str, port: int) -> None:
+        try:
+            self._socket = socket.create_connection((host, port), _OPENING)
+        except OSError as error:
+            raise DriverError(f"tcp://{host}:{port} does not answer: {error}") from error
+        self._socket.setblocking(False)
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def read(self) -> bytes:
+        """What has arrived."""
+        try:
+            data = self._socket.recv(4096)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise WireLostError(str(error)) from error
+        if not data:
+            raise WireLostError("the other end has closed the connection")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """All of it."""
+        try:
+            if self._socket.send(data) != len(data):
+                raise WireLostError("the connection takes no more bytes")
+        except OSError as error:
+            raise WireLostError(str(error)) from error
+
+    def close(self) -> None:
+        """Hang up."""
+        self._socket.close()

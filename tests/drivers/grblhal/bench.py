@@ -1,0 +1,151 @@
+"""An executor on the controller's look-alike, on a clock that the test moves."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import resources
+from app.compose.grblhal import grblhal_config
+from app.compose.machine import setup_for
+from app.compose.proof import proof_of
+from core.executor.commands import Command, EnableDrives, LoadJob
+from core.executor.executor import Executor
+from core.executor.job import Job, make_job
+from core.executor.snapshot import Event, Snapshot, State
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source
+from core.machine.load import parse_machine
+from core.machine.model import Machine
+from core.proving.prove import prove
+from drivers.grblhal.machine import GrblMachine
+from drivers.grblhal.peer.firmware import Firmware, Quirks
+from drivers.grblhal.wire import WireLostError
+from drivers.simulated import StepClock
+
+TICK = 0.01
+SHIPPED = resources.machine_file("gt75-grblhal.toml")
+
+
+def grbl_machine(*changes: tuple[str, str]) -> Machine:
+    """The shipped machine."""
+    text = SHIPPED
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    return parse_machine(text, "bench.toml")
+
+
+class LoopWire:
+    """The firmware in the same process; ``sent`` is every byte of the host."""
+
+    def __init__(self, firmware: Firmware) -> None:
+        self.firmware = firmware
+        self.sent = bytearray()
+        self.cut = False
+
+    def read(self) -> bytes:
+        if self.cut:
+            raise WireLostError("the cable is out")
+        return self.firmware.take()
+
+    def write(self, data: bytes) -> None:
+        if self.cut:
+            raise WireLostError("the cable is out")
+        self.sent += data
+        self.firmware.feed(data)
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+    def lines(self) -> list[str]:
+        """Whole lines of the host, without real-time bytes."""
+        plain = bytes(b for b in self.sent if b < 0x80 and b not in {0x18, 0x19})
+        return [line for line in plain.decode("ascii").split("\n") if line]
+
+
+class GrblBench:
+    """Drive it with ``post``, ``run`` and the hands of ``panel``."""
+
+    def __init__(self, machine: Machine | None = None, quirks: Quirks | None = None) -> None:
+        self.model = machine or grbl_machine()
+        self.clock = StepClock()
+        self.peer = Firmware(self.clock, quirks)
+        self.wire = LoopWire(self.peer)
+        self.machine = GrblMachine(grblhal_config(self.model), self.clock, self.wire)
+        self.events: list[Event] = []
+        self.executor = Executor(self.model, self.machine.ports, self.events.append)
+        self.wire.sent.clear()
+
+    @property
+    def shot(self) -> Snapshot:
+        return self.executor.snapshot
+
+    @property
+    def state(self) -> State:
+        return self.executor.snapshot.state
+
+    def post(self, *commands: Command) -> None:
+        for command in commands:
+            self.executor.post(command)
+        self.tick()
+
+    def tick(self, dt: float = TICK) -> None:
+        self.clock.advance(dt)
+        self.executor.tick()
+
+    def run(self, seconds: float) -> None:
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.tick()
+
+    def until(self, *states: State, limit: float = 60.0) -> float:
+        return self.until_true(lambda shot: shot.state in states, limit)
+
+    def until_true(self, condition: Callable[[Snapshot], bool], limit: float = 60.0) -> float:
+        began = self.clock.now()
+        while not condition(self.shot):
+            assert self.clock.now() - began < limit, f"not within {limit} s: {self.shot}\n{self.events[-5:]}"
+            self.tick()
+        return self.clock.now() - began
+
+    def ready(self) -> None:
+        self.post(EnableDrives())
+        assert self.state is State.IDLE, self.shot
+
+    def load(self, text: str) -> Job:
+        """With the proof that proving gives, which tells what the program needs."""
+        setup = setup_for(self.model, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
+        job = make_job(Source("PART", text), setup)
+        proof = proof_of(job, prove(job.source, job.setup, self.model))
+        assert not proof.errors, proof.errors
+        self.post(LoadJob(job, proof))
+        return job
+
+    def press(self) -> None:
+        """Both palms."""
+        panel = self.machine.panel
+        panel.press_left()
+        panel.press_right()
+        self.tick()
+        panel.release_left()
+        panel.release_right()
+        self.run(0.2)
+
+    def start(self, text: str) -> None:
+        """Drives on, program loaded, both palms."""
+        if self.state is State.DISABLED:
+            self.ready()
+        self.run(0.4)
+        self.load(text)
+        self.press()
+
+    def said(self, kind: str) -> list[str]:
+        return [event.text for event in self.events if event.kind == kind]
+
+    def alarms(self) -> str:
+        return "; ".join(f"{alarm.code}: {alarm.cause}" for alarm in self.shot.alarms)
+
+
+def quirky(**changes: object) -> Quirks:
+    return dataclasses.replace(Quirks(), **changes)  # type: ignore[arg-type]
