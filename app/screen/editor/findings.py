@@ -13,7 +13,7 @@ from app.desk.editing.checking import Findings
 from app.screen.editor.textfield import LETTERS, TONES
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Panel
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, Severity
 
 ROW = 5.2  # units: a fingertip, two lines of text
 
@@ -54,8 +54,9 @@ class FindingList(Panel):
         return f"FINDINGS  ·  {_many(found.errors, 'ERROR')}  ·  {_many(found.warnings, 'WARNING')}"
 
     def following(self, line: int) -> Diagnostic | None:
-        """The next finding after a line, going on at the top."""
-        found = [d for d in self.findings.diagnostics if d.line]
+        """The next error after a line, round the end; without errors the next of what else was found."""
+        placed = [d for d in self.findings.diagnostics if d.line]
+        found = [d for d in placed if d.severity is Severity.ERROR] or placed
         return next((d for d in found if d.line > line), found[0] if found else None)
 
     @property

@@ -1,0 +1,177 @@
+"""A day at the lathe: one operator, keys alone, an empty shop to begin with, the clock in the test's hand.
+
+Everything is the product's: its desk, its executor, the simulated lathe, its store. Where the slides really
+stand is asked of the lathe and of nobody else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.compose.offsets import stored_offsets
+from app.compose.screen import desk_and_executor
+from app.desk.desk import Desk
+from app.screen.frame import Frame
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.executor import Executor
+from core.executor.snapshot import Snapshot, State
+from core.store.store import Store
+from drivers.simulated import StepClock
+from drivers.simulated.machine import SimMachine
+
+Key = Qt.Key
+NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
+INCH = 25.4
+TICK = 0.01
+NEAR = 0.0005  # inch: what a slide in position may be off, and more than any wrong figure here would be
+PATIENCE = 20_000  # ms for workers that read, prove and draw
+
+
+@dataclass
+class Day:
+    """Presses keys, lets the machine go on, and looks."""
+
+    qtbot: QtBot
+    window: MainWindow
+    desk: Desk
+    executor: Executor
+    clock: StepClock
+    journal: Journal
+
+    @property
+    def frame(self) -> Frame:
+        """What is on the screen."""
+        assert self.window.frame is not None
+        return self.window.frame
+
+    @property
+    def page(self) -> str:
+        """The page that the title line names."""
+        self.window.refresh()
+        return self.frame.title.page
+
+    @property
+    def prompt(self) -> str:
+        """The prompt line."""
+        self.window.refresh()
+        return self.frame.prompt.text
+
+    @property
+    def shot(self) -> Snapshot:
+        """The machine of now."""
+        return self.executor.snapshot
+
+    @property
+    def slides(self) -> tuple[float, float]:
+        """Where X and Z of the lathe really stand, inches from home."""
+        assert isinstance(self.desk.station, SimMachine)
+        x, z = self.desk.station.true_position()[:2]
+        return x / INCH, z / INCH
+
+    # --- hands ---------------------------------------------------------------------------------------
+
+    def key(self, *keys: Key, modifier: Qt.KeyboardModifier = NONE) -> None:
+        """Press and let go, where the keyboard is."""
+        for key in keys:
+            QTest.keyClick(QApplication.focusWidget() or self.window, key, modifier)
+
+    def type(self, text: str) -> None:
+        """Type, without Return."""
+        QTest.keyClicks(QApplication.focusWidget() or self.window, text)
+
+    def enter(self, *texts: str) -> None:
+        """Type each and press Return."""
+        for text in texts:
+            self.type(text)
+            self.key(Key.Key_Return)
+            self.run(0.05)
+
+    def palms(self) -> None:
+        """Both palm buttons and hands off; their relay wants them up for a while before it works again."""
+        for press, pause in ((QTest.keyPress, 0.1), (QTest.keyRelease, 0.4)):
+            for key in (Key.Key_F11, Key.Key_F12):
+                press(QApplication.focusWidget() or self.window, key)
+            self.run(pause)
+
+    # --- time ----------------------------------------------------------------------------------------
+
+    def run(self, seconds: float) -> None:
+        """So much time on the machine and on the screen."""
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self._tick()
+
+    def until(self, true: Callable[[], bool], limit: float = 60.0) -> None:
+        """Let the machine go on until something is so."""
+        end = self.clock.now() + limit
+        while not true():
+            assert self.clock.now() < end, f"not within {limit} s: {self.shot.state}, {self.prompt}"
+            self._tick()
+
+    def reaches(self, *states: State) -> None:
+        """Until the machine is in one of these states."""
+        self.until(lambda: self.shot.state in states)
+
+    def sees(self, true: Callable[[], bool]) -> None:
+        """Wait for a worker: reading, proving, drawing and writing take their own time."""
+
+        def look() -> bool:
+            self._tick()
+            return true()
+
+        self.qtbot.waitUntil(look, timeout=PATIENCE)
+
+    def saved(self) -> None:
+        """Wait for the disk, then look."""
+        assert self.desk.book.store is not None
+        self.desk.book.store.write(lambda _connection: None).result(5.0)
+        self.run(2 * TICK)
+
+    def _tick(self) -> None:
+        self.clock.advance(TICK)
+        self.executor.tick()
+        self.window.refresh()
+
+    # --- what is kept --------------------------------------------------------------------------------
+
+    @property
+    def store(self) -> Store:
+        """What the lathe remembers."""
+        assert self.desk.book.store is not None
+        return self.desk.book.store
+
+    def count(self, kind: str) -> int:
+        """So many events of this kind are in the store."""
+        self.saved()
+        return len(self.journal.events("", [kind], 1000))
+
+
+@contextmanager
+def begun(qtbot: QtBot) -> Iterator[Day]:
+    """The desk is switched on in an empty folder; put away again afterwards."""
+    clock, journal = StepClock(), Journal.at_home()
+    desk, executor = desk_and_executor(None, stored_offsets, clock, journal)
+    desk.hands.clock = clock.now
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    executor.tick()
+    window.open_desk(desk)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.activateWindow()
+    try:
+        yield Day(qtbot, window, desk, executor, clock, journal)
+    finally:
+        window.put_away()
+        desk.close()
+        journal.close()

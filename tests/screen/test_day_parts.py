@@ -1,0 +1,223 @@
+"""The operator's afternoon: five parts with a correction between, a stop, SEARCHTO, an E-stop, MDI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.desk import pages
+from app.screen.mdi.page import MdiPage
+from core.executor.snapshot import State
+from tests.screen.chapters import (
+    ENDS,
+    NAME,
+    T1,
+    T2,
+    back_to_automatic,
+    correct,
+    drives_on,
+    set_tools,
+    write_program,
+)
+from tests.screen.day import NEAR, SHIFT, Day, Key, begun
+
+TURNING = 6  # the line that turns the .9 diameter
+PARTS = "pin9.nc"
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    """Written, tools set, D1 entered: ready to run."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    with begun(qtbot) as day:
+        drives_on(day)
+        write_program(day)
+        set_tools(day)
+        correct(day, "-.002", ".001")
+        day.sees(lambda: day.prompt.startswith("TO START"))
+        yield day
+
+
+def turning(day: Day) -> float:
+    """Wait until the .9 is being turned; where X stands then."""
+    day.until(lambda: day.shot.line == TURNING and day.slides[1] < -0.6)
+    return day.slides[0]
+
+
+def made(day: Day) -> str:
+    """The count on the screen."""
+    day.window.refresh()
+    return dict(day.frame.times.value)["PARTS"]
+
+
+def target(day: Day, sum_: str) -> None:
+    """F10, 2: stop at so many."""
+    day.key(Key.Key_F10)
+    day.type("2")
+    day.enter(sum_)
+    back_to_automatic(day)
+
+
+def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
+    target(day, "2+3")
+    assert made(day) == "0/5"
+    day.key(Key.Key_C)
+    day.palms()
+    assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
+    day.until(lambda: made(day) == "2/5")
+    assert day.shot.cycle_repeat
+    day.key(Key.Key_O)
+    day.reaches(State.PROGRAM_STOP)  # the optional stop of the third part
+    correct(day, "-.001")
+    day.key(Key.Key_O)
+    day.sees(lambda: not day.shot.cycle_repeat)  # or a part would follow with the old correction
+    day.palms()
+    day.reaches(State.IDLE)
+    assert made(day) == "3/5"
+    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.key(Key.Key_C)
+    day.palms()
+    # .001 on the diameter more: half of it on the slide
+    assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
+    day.reaches(State.IDLE)
+    assert made(day) == "5/5"
+    assert not day.shot.cycle_repeat
+    assert day.prompt == "TARGET REACHED: 5 OF 5 PARTS"
+    assert day.count("part") == 5
+    assert day.journal.parts(PARTS) == 5
+    assert [change.why for change in day.store.history()][:2] == ["X -.001", "X -.002 Z .001"]
+
+
+def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
+    day.palms()
+    turning(day)
+    day.key(Key.Key_H)
+    day.reaches(State.HOLD)
+    day.run(0.1)
+    stood = day.slides
+    day.run(1.0)
+    assert day.slides == pytest.approx(stood, abs=NEAR / 5)
+    day.key(Key.Key_R)
+    assert "GIVE THE PROGRAM UP" in day.prompt
+    day.key(Key.Key_R)
+    day.reaches(State.IDLE)
+    refused(day, "X1.2", "11")
+    clear_of_the_part(day)
+    day.key(Key.Key_S)  # nobody lets the first restart of the day run through
+    search(day, "X1.2", "11")
+    restarts(day)
+    ended = {}
+    day.reaches(State.BLOCK_END)
+    while day.shot.state is State.BLOCK_END:
+        ended[day.shot.line] = day.slides
+        day.palms()
+        day.reaches(State.BLOCK_END, State.IDLE)
+    assert [ended[line] for line in (11, 12, 13, 14)] == [
+        pytest.approx(ENDS[line], abs=NEAR) for line in (11, 12, 13, 14)
+    ]
+    assert day.slides == pytest.approx(ENDS[15], abs=NEAR)
+    assert day.count("part") == 1
+
+
+def clear_of_the_part(day: Day) -> None:
+    """Jog, still in steps of .1, Z an inch to the right; back to Automatic."""
+    day.key(Key.Key_F1, Key.Key_F5)
+    z = day.slides[1]
+    for _ in range(10):
+        day.key(Key.Key_Right)
+        day.run(0.05)
+        day.reaches(State.IDLE)
+    assert day.slides[1] == pytest.approx(z + 1.0, abs=NEAR)
+    back_to_automatic(day)
+
+
+def refused(day: Day, text: str, line: str) -> None:
+    """The other tool would be turned in beside the part."""
+    search(day, text, line)
+    assert day.prompt.startswith("T1 STANDS AT THE PART AND THE LINE WORKS WITH T2: JOG Z CLEAR")
+    day.key(Key.Key_F1, Key.Key_F2)
+
+
+def search(day: Day, text: str, line: str) -> None:
+    """F6, a text or nothing, Return to its state, F10 to take it."""
+    day.key(Key.Key_F6)
+    assert day.page == pages.SEARCHTO
+    model = day.desk.searchto
+    assert model is not None
+    if text:
+        day.type(text)
+        day.key(Key.Key_Return)
+        assert str(model.cursor.line) == line
+        day.key(Key.Key_Escape)
+    assert str(model.cursor.line) == line
+    day.key(Key.Key_Return)
+    model.settle(10.0)
+    day.run(0.05)
+    day.key(Key.Key_F10)
+    model.settle(10.0)
+    day.run(0.05)
+
+
+def restarts(day: Day) -> None:
+    """What was found is proved and waits for the palms."""
+    assert day.prompt.startswith("TO START THE RESTART PRESS BOTH PALM BUTTONS")
+    day.palms()
+
+
+def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: Day) -> None:
+    day.palms()
+    turning(day)
+    day.key(Key.Key_E)
+    day.reaches(State.ESTOP)
+    day.run(3.0)
+    assert day.shot.rpm_actual == pytest.approx(0.0, abs=1.0)
+    day.key(Key.Key_E, modifier=SHIFT)
+    day.reaches(State.DISABLED)
+    day.key(Key.Key_D)
+    day.reaches(State.IDLE)
+    day.key(Key.Key_F6)
+    assert day.prompt.startswith(f"LINE {TURNING} WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    day.key(Key.Key_F1, Key.Key_F2)
+    search(day, "", str(TURNING))
+    restarts(day)
+    assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
+    day.reaches(State.IDLE)
+    assert day.slides == pytest.approx(ENDS[15], abs=NEAR)
+    assert day.count("part") == 1
+
+
+def test_mdi_between_two_parts_keeps_the_spindle(day: Day) -> None:
+    day.key(Key.Key_F1, Key.Key_F4)
+    mdi(day, "G90G72")
+    mdi(day, "T2")
+    mdi(day, "x1.5z.5g94f100")
+    assert day.slides == pytest.approx((0.75 + T2[0], 0.5 + T2[1]), abs=NEAR)
+    mdi(day, "M03S500")
+    day.key(Key.Key_F1, Key.Key_F2)
+    day.until(lambda: day.shot.rpm_actual == pytest.approx(500, abs=10))
+    assert day.shot.rpm_command == 500
+    day.key(Key.Key_F3)
+    assert day.page == pages.AUTOMATIC
+    assert day.prompt.startswith("THE SPINDLE IS ON")
+    day.palms()
+    assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
+    day.reaches(State.IDLE)
+    assert day.count("part") == 1
+    assert day.frame.title.program == f"{NAME}.nc"
+
+
+def mdi(day: Day, line: str) -> None:
+    """One line of MDI to its end."""
+    page = day.frame.page
+    assert isinstance(page, MdiPage)
+    assert day.desk.mdi is not None
+    day.type(line)
+    day.key(Key.Key_Return)
+    day.desk.mdi.settle(5.0)
+    day.run(0.05)
+    day.palms()
+    day.reaches(State.IDLE)
+    day.run(0.05)
