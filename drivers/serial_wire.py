@@ -9,14 +9,18 @@ from typing import NamedTuple
 import serial
 from serial.tools.list_ports import comports
 
+from drivers.marks import Unmarker
 from drivers.wire import LineSettings, WireError
 
+_POSIX = sys.platform != "win32"
 # termios' own error is no OSError; a TypeError is what pyserial makes of a port that was closed meanwhile.
 _FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
 if sys.platform != "win32":
+    import select
     import termios
 
     _FAILURES += (termios.error,)
+_NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
 class Found(NamedTuple):
@@ -32,11 +36,12 @@ def found_ports() -> list[Found]:
 
 
 class SerialWire:
-    """A port of this computer, opened for us alone."""
+    """A port of this computer, opened for us alone. ``watch``: damaged characters are told from good ones."""
 
-    def __init__(self, settings: LineSettings) -> None:
+    def __init__(self, settings: LineSettings, *, watch: bool = False) -> None:
         """Raises WireError."""
         self.settings = settings
+        self._marks = Unmarker() if watch and _POSIX else None
         try:
             self._port = serial.Serial(
                 settings.port,
@@ -50,8 +55,15 @@ class SerialWire:
                 write_timeout=1.0,
                 exclusive=True,
             )
-        except (*_FAILURES, ValueError) as error:
+            if self._marks is not None:
+                self._mark()
+        except _NOT_OPENED as error:
             raise WireError(f"{settings.port} cannot be opened: {_why(error)}") from error
+
+    @property
+    def damaged(self) -> int:
+        """Parity and framing errors, where they are watched for."""
+        return self._marks.damaged if self._marks is not None else 0
 
     def send(self, data: bytes) -> None:
         """Raises WireError; also when the other side holds the line for more than a second."""
@@ -60,14 +72,42 @@ class SerialWire:
         except _FAILURES as error:
             raise self._cut(error) from error
 
+    def offer(self, data: bytes) -> int:
+        """What the kernel takes at once."""
+        try:
+            if sys.platform == "win32":
+                self._port.write(data)
+                return len(data)
+            _, free, _ = select.select((), (self._port.fileno(),), (), 0)
+            return os.write(self._port.fileno(), data) if free else 0
+        except BlockingIOError:
+            return 0
+        except _FAILURES as error:
+            raise self._cut(error) from error
+
+    def obey_codes(self) -> None:
+        """Flow control by XON and XOFF, in the kernel."""
+        try:
+            self._port.xonxoff = True
+        except _FAILURES as error:
+            raise self._cut(error) from error
+
     def receive(self, limit: float) -> bytes:
         """What has come."""
         try:
-            self._port.timeout = max(limit, 0.0)
-            first = self._port.read(1)
-            return first + self._port.read(self._port.in_waiting) if first else b""
+            come = self._come(max(limit, 0.0))
         except _FAILURES as error:
             raise self._cut(error) from error
+        return self._marks.feed(come) if self._marks is not None else come
+
+    def _come(self, limit: float) -> bytes:
+        """Waiting by ``select``: pyserial would set the whole line up again for each other time-out."""
+        if sys.platform == "win32":
+            self._port.timeout = limit
+            first = self._port.read(1)
+            return first + self._port.read(self._port.in_waiting)
+        ready, _, _ = select.select((self._port.fileno(),), (), (), limit)
+        return self._port.read(max(self._port.in_waiting, 1)) if ready else b""
 
     def discard(self) -> None:
         """Forget the input."""
@@ -97,6 +137,17 @@ class SerialWire:
             self._port.close()
         except _FAILURES:
             return  # it has gone already
+
+    def _mark(self) -> None:
+        """Damaged characters come as FF 00 and the character, FF as FF FF."""
+        if sys.platform != "win32":
+            handle = self._port.fileno()
+            attributes = termios.tcgetattr(handle)
+            attributes[0] |= termios.PARMRK
+            if self.settings.parity != "N":
+                attributes[0] |= termios.INPCK
+            attributes[0] &= ~(termios.IGNPAR | termios.ISTRIP)
+            termios.tcsetattr(handle, termios.TCSANOW, attributes)
 
     def _cut(self, error: Exception) -> WireError:
         return WireError(f"{self.settings.port} has failed: {_why(error)}")

@@ -35,7 +35,7 @@ class LineSettings:
 
 
 class Wire(Protocol):
-    """Both ends of a line look like this to their driver. Every method raises WireError when it is cut."""
+    """Questions and answers. Every method raises WireError when the line is cut."""
 
     def send(self, data: bytes) -> None:
         """Give bytes to the line; waits at most a moment."""
@@ -49,12 +49,29 @@ class Wire(Protocol):
         """Forget what has come and was not read."""
         ...
 
+    def close(self) -> None: ...
+
+
+class FlowWire(Wire, Protocol):
+    """A line whose other side may hold what is sent, and where damaged characters are counted."""
+
+    @property
+    def damaged(self) -> int:
+        """Characters with a parity or framing error since the line was opened."""
+        ...
+
+    def offer(self, data: bytes) -> int:
+        """How many of these bytes the line takes now; none while the other side holds it."""
+        ...
+
+    def obey_codes(self) -> None:
+        """From now on the other side's DC3 and DC1 (XOFF, XON) hold and release what is sent."""
+        ...
+
     def waiting(self) -> int:
-        """Bytes given to ``send`` that have not gone out."""
+        """Bytes taken that have not gone out."""
         ...
 
     def drop_output(self) -> None:
-        """What was given to ``send`` and has not gone out is not sent any more."""
+        """What was taken and has not gone out is not sent any more."""
         ...
-
-    def close(self) -> None: ...

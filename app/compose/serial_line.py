@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from core.ports import DriverError
-from drivers.wire import LineSettings, Wire
+from drivers.wire import FlowWire, LineSettings
 
 MISSING = "serial lines need pyserial: pip install pyserial"
 
 
-def open_wire(settings: LineSettings) -> Wire:
-    """A port for us alone. Raises DriverError; one that names the library where it is missing."""
+def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
+    """A port for us alone; ``watch`` counts damaged characters. Raises DriverError; one that names the library where it is missing."""
     try:
         from drivers.serial_wire import SerialWire
     except ImportError as error:
         raise DriverError(MISSING) from error
-    return SerialWire(settings)
+    return SerialWire(settings, watch=watch)
 
 
 def serial_ports() -> list[tuple[str, str]]:

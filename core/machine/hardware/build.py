@@ -109,6 +109,9 @@ def _dnc(values: Values) -> DncModel:
         flow=values.text("dnc.flow"),
         wrap=values.text("dnc.wrap"),
         eol=values.text("dnc.eol"),
+        dc_codes=values.flag("dnc.dc_codes"),
+        wait=values.flag("dnc.wait"),
+        leader=_int(values, "dnc.leader"),
     )
 
 

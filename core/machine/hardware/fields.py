@@ -65,8 +65,11 @@ DNC = (
     Field("parity", _CHOICE, choices=PARITIES, default="N"),
     Field("stop", _WHOLE, low=1, high=2, default=1),
     Field("flow", _CHOICE, choices=("xonxoff", "rtscts", "none"), default="xonxoff"),
-    Field("wrap", _TEXT, default="%"),
+    Field("wrap", _CHOICE, choices=("%", ""), default="%"),
     Field("eol", _CHOICE, choices=("\r\n", "\n", "\r"), default="\r\n"),
+    Field("dc_codes", _FLAG, default=False),
+    Field("wait", _FLAG, default=False),
+    Field("leader", _WHOLE, low=0, high=2000, default=0),
 )
 MTCONNECT = (
     Field("enabled", _FLAG, default=False),

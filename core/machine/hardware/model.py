@@ -82,8 +82,11 @@ class DncModel:
     parity: str  # N, E or O
     stop: int
     flow: str  # xonxoff, rtscts or none
-    wrap: str  # the line before and behind a program
+    wrap: str  # the line before and behind a program; empty: none
     eol: str
+    dc_codes: bool = False  # DC2 and DC4 around what is sent, DC1 and DC3 around what is received
+    wait: bool = False  # send only when the other side has said DC1
+    leader: int = 0  # NULs before and behind what is sent
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,1 @@
+"""Programs over a serial line (RS-232)."""

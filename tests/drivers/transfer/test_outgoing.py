@@ -1,0 +1,61 @@
+"""What goes out, byte by byte."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.ports import DriverError
+from drivers.marks import Unmarker
+from drivers.transfer.outgoing import outgoing
+from drivers.transfer.settings import TransferSettings
+from drivers.wire import LineSettings
+
+LINE = LineSettings("bench")
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        (TransferSettings(LINE), b"%\r\nG90\r\nM30\r\n%\r\n"),
+        (TransferSettings(LINE, eol="\n"), b"%\nG90\nM30\n%\n"),
+        (TransferSettings(LINE, eol="\r"), b"%\rG90\rM30\r%\r"),
+        (TransferSettings(LINE, eol="\n", dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
+        (TransferSettings(LINE, eol="\n", leader=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
+    ],
+)
+@pytest.mark.parametrize("text", [b"G90\nM30\n", b"G90\r\nM30", b"%\nG90\nM30\n%\n", b"G90\rM30\r\x1a"])
+def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: bytes, text: bytes) -> None:
+    assert outgoing(text, settings) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "bits", "said"),
+    [
+        (b"", 8, "empty"),
+        (b"%\n%\n", 8, "empty"),
+        (b"G90\n%\nM30\n", 8, "line 2 begins with %"),
+        (b"G90\nX\x071\n", 8, "line 2 holds the control character 07"),
+        ("(öl)\n".encode(), 7, "line 1 holds a letter that 7 bits cannot carry"),
+    ],
+)
+def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, said: str) -> None:
+    with pytest.raises(DriverError, match=said):
+        outgoing(text, TransferSettings(LineSettings("bench", bits=bits)))
+
+
+def test_without_a_frame_the_text_goes_out_alone() -> None:
+    assert outgoing(b"G90\nM30\n", TransferSettings(LINE, eol="\r", wrap="")) == b"G90\rM30\r"
+
+
+def test_letters_go_out_by_eight_bits() -> None:
+    text = "(öl)\n".encode()
+    assert outgoing(text, TransferSettings(LINE, eol="\n")) == b"%\n" + text + b"%\n"
+
+
+def test_marks_are_taken_out_and_counted() -> None:
+    one = Unmarker()
+    assert one.feed(b"AB") == b"AB"
+    assert one.feed(b"\xff\xffC") == b"\xffC"
+    assert one.damaged == 0
+    assert one.feed(b"\xff") + one.feed(b"\x00") + one.feed(b"XY") == b"XY"
+    assert one.damaged == 1
