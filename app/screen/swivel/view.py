@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPointF, QRectF, Qt
@@ -72,8 +73,6 @@ class SwivelView(Panel):
         aspect = self._camera.aspect if self._camera is not None else 0
         self._scene, self._instant = scene, None
         if scene is not None:
-            from dataclasses import replace
-
             from app.desk.swivel.figure import camera_for
 
             self._camera = replace(camera_for(scene), aspect=aspect)

@@ -14,7 +14,6 @@ CONTRADICTION = "Contradictory entry"  # 1016
 PLANE_WRONG = "Plane wrongly defined"  # 1018
 WRONG_AXIS = "Wrong axis programmed"  # 1019
 WRONG_RPM = "Wrong rpm"  # 1020
-PROGRAM_START = "Program start undefined"  # 1024
 NESTING = "Excessive nesting"  # 1025
 M128_ON = "PLANE not permitted with M128"
 NOT_WITH_M128 = "Not permitted with M128"
