@@ -14,7 +14,7 @@ from app.cli.crash import report_crash
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
-COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine")
+COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial")
 
 NO_DISPLAY = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:

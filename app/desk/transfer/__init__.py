@@ -1,0 +1,1 @@
+"""Programs over the serial line: models without Qt."""

@@ -1,0 +1,77 @@
+"""What a transfer over the serial line is to the desk; who carries it out is told from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+from core.machine.hardware.model import DncModel
+
+T_co = TypeVar("T_co", covariant=True)
+
+
+class Reach(Protocol):
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for, in English."""
+
+    @property
+    def done(self) -> int: ...
+
+    @property
+    def total(self) -> int: ...
+
+    @property
+    def lines(self) -> int: ...
+
+    @property
+    def what(self) -> str: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """A whole program that has come in and was looked at; it is not stored yet.
+
+    ``name`` as it calls itself, empty: it does not. ``digest``: SHA-256 of ``text``. ``seven``: it came in
+    seven bits although eight are set. ``findings``: errors of the proof.
+    """
+
+    text: bytes
+    name: str
+    lines: int
+    digest: str
+    seven: bool
+    skipped: int
+    findings: tuple[str, ...]
+    cycle: float
+
+
+class Carrying(Protocol[T_co]):
+    """One transfer. ``run`` takes its time and is called on a worker; all else by anybody."""
+
+    @property
+    def reach(self) -> Reach: ...
+
+    def cancel(self) -> None:
+        """Give it up: ``run`` ends with a sentence, and nothing is kept."""
+        ...
+
+    def run(self) -> T_co:
+        """Carry it out. Raises DriverError or FileError with a sentence."""
+        ...
+
+
+class Lines(Protocol):
+    """The serial ports, and transfers over them."""
+
+    def ports(self) -> Sequence[tuple[str, str]]:
+        """Device and what it is. Raises DriverError."""
+        ...
+
+    def send(self, settings: DncModel, path: Path) -> Carrying[int]:
+        """A program out; ``run`` answers how many bytes went."""
+        ...
+
+    def receive(self, settings: DncModel) -> Carrying[Received]:
+        """A program in."""
+        ...

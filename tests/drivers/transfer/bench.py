@@ -1,0 +1,71 @@
+"""The other side of a program's line, scripted on a clock that moves only while somebody waits."""
+
+from __future__ import annotations
+
+from drivers.simulated import StepClock
+from drivers.wire import WireError
+
+
+class OtherSide:
+    """``script``: (s, bytes) that come in. It takes bytes as fast as 9600 baud, but not within ``holds``."""
+
+    def __init__(
+        self,
+        clock: StepClock,
+        script: list[tuple[float, bytes]] | None = None,
+        holds: tuple[float, float] = (-1.0, -1.0),
+        cut_at: float = float("inf"),
+    ) -> None:
+        self.clock, self.script, self.holds, self.cut_at = clock, list(script or ()), holds, cut_at
+        self.taken = bytearray()
+        self.damaged = 0
+        self.closed = self.obeys = False
+        self.largest = 0  # chunk
+        self._out = 0.0  # when the last byte will have gone out
+
+    def offer(self, data: bytes) -> int:
+        self._look()
+        if self._held:
+            return 0
+        self.largest = max(self.largest, len(data))
+        self.taken += data
+        self._out = self.clock.now() + len(data) / 960.0
+        return len(data)
+
+    def send(self, data: bytes) -> None:
+        self.offer(data)
+
+    def receive(self, limit: float) -> bytes:
+        self._look()
+        until = self.clock.now() + limit
+        if self.script and self.script[0][0] <= until:
+            at, data = self.script.pop(0)
+            self.clock.sleep_until(at)
+            return data
+        self.clock.sleep_until(until)
+        return b""
+
+    def waiting(self) -> int:
+        self._look()
+        return max(0, round((self._out - self.clock.now()) * 960.0))
+
+    def drop_output(self) -> None:
+        self.taken = self.taken[: len(self.taken) - self.waiting()]
+        self._out = self.clock.now()
+
+    def obey_codes(self) -> None:
+        self.obeys = True
+
+    def discard(self) -> None:
+        """Nothing is kept here."""
+
+    def close(self) -> None:
+        self.closed = True
+
+    @property
+    def _held(self) -> bool:
+        return self.holds[0] <= self.clock.now() < self.holds[1]
+
+    def _look(self) -> None:
+        if self.clock.now() >= self.cut_at:
+            raise WireError("/dev/bench has failed: Input/output error")

@@ -1,0 +1,189 @@
+"""Transfers on a clock of their own: holds, silence, cuts, and giving up at any moment."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.ports import DriverError
+from drivers.simulated import StepClock
+from drivers.transfer.incoming import IncompleteError
+from drivers.transfer.outgoing import outgoing
+from drivers.transfer.session import CancelledError, Reach, Receiving, Sending
+from drivers.transfer.settings import TransferSettings
+from drivers.wire import LineSettings, WireError
+from tests.drivers.transfer.bench import OtherSide
+
+SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), eol="\n")
+TEXT = b"".join(b"N%d X1.2345\n" % n for n in range(200))
+DATA = outgoing(TEXT, SETTINGS)
+
+
+def sending(side: OtherSide, settings: TransferSettings = SETTINGS) -> Sending:
+    return Sending(side, side.clock, settings, DATA)
+
+
+def receiving(side: OtherSide, settings: TransferSettings = SETTINGS) -> Receiving:
+    return Receiving(side, side.clock, settings)
+
+
+def test_it_goes_out_whole_in_small_pieces() -> None:
+    side = OtherSide(StepClock())
+    job = sending(side)
+    assert job.run() == len(DATA)
+    assert bytes(side.taken) == DATA
+    assert side.largest <= 64
+    assert side.closed
+    assert job.reach == Reach(len(DATA), len(DATA), 202, "")
+    assert side.clock.now() == pytest.approx(len(DATA) / 960.0, rel=0.3)
+
+
+def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
+    side = OtherSide(StepClock(), holds=(0.5, 30.0))
+    job = sending(side)
+    told: set[str] = set()
+    held = side.receive
+
+    def look(limit: float) -> bytes:
+        told.add(job.reach.what)
+        return held(limit)
+
+    side.receive = look  # type: ignore[method-assign]
+    job.run()
+    assert bytes(side.taken) == DATA
+    assert "HELD BY THE OTHER SIDE" in told
+    assert side.clock.now() > 30.0
+
+
+def test_a_hold_that_does_not_end_is_a_sentence() -> None:
+    side = OtherSide(StepClock(), holds=(0.5, 1e9))
+    with pytest.raises(DriverError, match="held the line for 2 minutes after"):
+        sending(side).run()
+    assert side.closed
+
+
+def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
+    side = OtherSide(StepClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
+    settings = dataclasses.replace(SETTINGS, wait=True)
+    assert settings.sending.flow == "none"
+    sending(side, settings).run()
+    assert bytes(side.taken) == DATA
+    assert side.obeys
+    assert side.clock.now() > 3.0
+
+
+def test_nobody_asks_for_it() -> None:
+    side = OtherSide(StepClock())
+    with pytest.raises(DriverError, match="has not asked for a program"):
+        sending(side, dataclasses.replace(SETTINGS, wait=True)).run()
+    assert side.taken == b""
+
+
+@pytest.mark.parametrize("at", [0.0, 0.3, 1.0, 2.0])
+def test_cable_out_while_sending(at: float) -> None:
+    side = OtherSide(StepClock(), cut_at=at)
+    with pytest.raises(WireError):
+        sending(side).run()
+    assert side.closed
+
+
+def test_giving_up_while_it_is_held() -> None:
+    side = OtherSide(StepClock(), [(20.0, b"")], holds=(0.2, 1e9))
+    job = sending(side)
+    come = side.receive
+
+    def cancel_late(limit: float) -> bytes:
+        if side.clock.now() > 5.0:
+            job.cancel()
+        return come(limit)
+
+    side.receive = cancel_late  # type: ignore[method-assign]
+    with pytest.raises(CancelledError):
+        job.run()
+    assert side.clock.now() < 5.3
+    assert side.closed
+
+
+def test_a_program_comes_in() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA[:100]), (1.5, DATA[100:150]), (9.0, DATA[150:])])
+    program = receiving(side).run()
+    assert program.text == TEXT
+    assert program.lines == 200
+    assert side.closed
+    assert bytes(side.taken) == b"\x11\x13"  # come on; enough
+
+
+def test_dc1_is_said_again_while_nothing_comes() -> None:
+    side = OtherSide(StepClock(), [(11.0, DATA)])
+    receiving(side).run()
+    assert bytes(side.taken) == b"\x11\x11\x11\x13"  # at 0, 5 and 10 s
+
+
+def test_nothing_is_said_where_no_codes_are_used() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA)])
+    receiving(side, dataclasses.replace(SETTINGS, line=LineSettings("bench"))).run()
+    assert side.taken == b""
+
+
+def test_a_last_percent_without_a_line_end_ends_it_soon() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA[:-1])])
+    assert receiving(side).run().text == TEXT
+    assert side.clock.now() < 2.0
+
+
+def test_a_pause_behind_a_line_is_no_end() -> None:
+    """The sender reads from a slow disk: five seconds in the middle."""
+    side = OtherSide(StepClock(), [(1.0, DATA[:500]), (6.0, DATA[500:])])
+    assert receiving(side).run().text == TEXT
+
+
+def test_a_lost_last_percent_is_refused() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA[:-2])])
+    with pytest.raises(IncompleteError, match="last % is missing, 201 lines came"):
+        receiving(side).run()
+    assert 11.0 <= side.clock.now() < 11.2
+    assert side.closed
+
+
+def test_a_damaged_character_ends_it_at_once() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA[:100]), (1.2, DATA[100:])])
+    job = receiving(side)
+    come = side.receive
+
+    def spoil(limit: float) -> bytes:
+        side.damaged = int(side.clock.now() >= 1.1)
+        return come(limit)
+
+    side.receive = spoil  # type: ignore[method-assign]
+    with pytest.raises(IncompleteError, match="a damaged character in line"):
+        job.run()
+
+
+@pytest.mark.parametrize("at", [0.0, 1.02, 1.1, 9.0])
+def test_cable_out_while_receiving(at: float) -> None:
+    script = [(1.0 + n / 100, DATA[10 * n : 10 * n + 10]) for n in range(len(DATA) // 10 + 1)]
+    side = OtherSide(StepClock(), script, cut_at=at)
+    if at > 8.0:
+        assert receiving(side).run().text == TEXT  # it had come
+        return
+    with pytest.raises(WireError):
+        receiving(side).run()
+    assert side.closed
+
+
+def test_giving_up_while_receiving() -> None:
+    side = OtherSide(StepClock(), [(1.0, DATA[:100])])
+    job = receiving(side)
+    come = side.receive
+
+    def cancel_late(limit: float) -> bytes:
+        if side.clock.now() > 2.0:
+            job.cancel()
+        return come(limit)
+
+    side.receive = cancel_late  # type: ignore[method-assign]
+    with pytest.raises(CancelledError):
+        job.run()
+    assert side.clock.now() < 2.2
+    assert side.closed
