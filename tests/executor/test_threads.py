@@ -97,9 +97,9 @@ def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str, gear: 
 @pytest.mark.parametrize(
     ("lead", "rpm", "period"),
     [
-        (0.01, 600, 0.25),
+        (0.02, 1200, 0.25),
         (0.01, 3000, 0.25),
-        (0.05, 60, 0.25),
+        (0.1, 100, 0.25),
         (0.05, 600, 0.25),
         (0.05, 600, 0.5),
         (0.05, 3000, 0.25),
@@ -231,8 +231,8 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) ->
 
 def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -> None:
     rig = Rig(gear=gear)
-    recorder = Recorder(rig)
-    rig.start(EXTERNAL.replace("S600", "S60"), TOOLS)  # a turn takes a second
+    recorder = Recorder(rig, 0.2)
+    rig.start(EXTERNAL.replace("S600", "S60").replace("K.05", "K.2"), TOOLS)  # a turn takes a second
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
     stood = rig.shot.demand
     rig.post(FeedHold())
