@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from app.compose.transfer import SerialLines, proving
 from app.desk.desk import Desk
 from app.desk.editing.worker import Worker
 from app.desk.files.chooser import Chooser
@@ -26,6 +27,7 @@ from app.desk.special.sheet import Section
 from app.desk.special.signals import SignalsSection
 from app.desk.special.special import SpecialDesk
 from app.desk.special.speed import SpeedSection
+from app.desk.transfer.section import TransferSection
 from core.machine.model import Machine
 
 MakeSection = Callable[[Desk, Machine, Keep, Worker], Section]
@@ -40,6 +42,15 @@ def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Worker) -> Secti
 
     section.restored = restored
     return section
+
+
+def _transfer(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path) -> list[Section]:
+    """RS-232, where the machine file has a line for it. A program that comes in is proved as an import is."""
+    model = machine.hardware.dnc
+    if model is None:
+        return []
+    ending = {"mill": ".h"}.get(machine.kind, ".nc")
+    return [TransferSection(desk, keep, SerialLines(proving(workshop), ending), model, own)]
 
 
 # One line for each special function, in the order of the list; one whose hardware is not there has none.
@@ -63,8 +74,11 @@ def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: P
     desk.counter = PartCounter(keep)
     desk.record = RunRecord(keep)
     worker = Worker()
-    desk.special = SpecialDesk([make(desk, machine, keep, worker) for make in ITEMS], worker)
-    desk.files = _files(desk, keep, workshop, own or home() / "programs")
+    own = own or home() / "programs"
+    sections = [make(desk, machine, keep, worker) for make in ITEMS]
+    sections += _transfer(desk, machine, keep, workshop, own)
+    desk.special = SpecialDesk(sections, worker)
+    desk.files = _files(desk, keep, workshop, own)
 
 
 def _files(desk: Desk, keep: Keep, workshop: Workshop, own: Path) -> FilesDesk:

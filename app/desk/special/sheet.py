@@ -87,6 +87,9 @@ class Section:
     def left(self) -> None:
         """It goes: nothing stays half entered or half asked."""
 
+    def close(self) -> None:
+        """The desk shuts: what is under way ends."""
+
     def choose(self, row: int) -> None:
         """A finger on a row."""
         self.marked = row

@@ -87,5 +87,7 @@ class SpecialDesk:
         self.worker.poll()
 
     def close(self) -> None:
-        """End the worker."""
+        """End the worker, and what a function has under way."""
+        for section in self.sections:
+            section.close()
         self.worker.close()

@@ -19,6 +19,9 @@ def stored(text: bytes, folder: Path, name: str) -> Path:
     target = folder / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder} CANNOT BE WRITTEN: {error.strerror}") from error
+    try:
         _put(target, text)
     except FileExistsError as error:
         raise FileError(f"{name} IS THERE ALREADY; TAKE ANOTHER NAME") from error

@@ -49,7 +49,7 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
         told.add(job.reach.what)
         return held(limit)
 
-    side.receive = look  # type: ignore[method-assign]
+    side.receive = look
     job.run()
     assert bytes(side.taken) == DATA
     assert "HELD BY THE OTHER SIDE" in told
@@ -98,7 +98,7 @@ def test_giving_up_while_it_is_held() -> None:
             job.cancel()
         return come(limit)
 
-    side.receive = cancel_late  # type: ignore[method-assign]
+    side.receive = cancel_late
     with pytest.raises(CancelledError):
         job.run()
     assert side.clock.now() < 5.3
@@ -155,7 +155,7 @@ def test_a_damaged_character_ends_it_at_once() -> None:
         side.damaged = int(side.clock.now() >= 1.1)
         return come(limit)
 
-    side.receive = spoil  # type: ignore[method-assign]
+    side.receive = spoil
     with pytest.raises(IncompleteError, match="a damaged character in line"):
         job.run()
 
@@ -182,7 +182,7 @@ def test_giving_up_while_receiving() -> None:
             job.cancel()
         return come(limit)
 
-    side.receive = cancel_late  # type: ignore[method-assign]
+    side.receive = cancel_late
     with pytest.raises(CancelledError):
         job.run()
     assert side.clock.now() < 2.2

@@ -1,0 +1,213 @@
+"""F10, RS-232: settings, a program out, a program in; what comes in is stored as a new one, never started."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from app.desk.desk import Desk
+from app.desk.editing.worker import Worker
+from app.desk.files.changes import FileError
+from app.desk.keep import Keep
+from app.desk.special.entry import Entry
+from app.desk.special.sheet import Key, Section, Sheet
+from app.desk.transfer.form import ROWS, form_of, kept_form
+from app.desk.transfer.service import Carrying, Lines, Received
+from app.desk.transfer.sheets import progress_sheet, received_sheet, settings_sheet
+from app.desk.transfer.storing import free_name, stored
+from app.desk.words import tr
+from core.executor.snapshot import Snapshot
+from core.machine.hardware.model import DncModel
+from core.store.errors import StoreError
+
+KEPT = "rs232"
+BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
+THROW_AWAY = "PRESS F6 ONCE MORE TO THROW THE RECEIVED PROGRAM AWAY, RETURN TO STORE IT"
+
+
+class TransferSection(Section):
+    """Three faces: the settings, a transfer under way, and a program that waits for its name."""
+
+    name = "RS-232"
+    use = "programs over the serial line"
+
+    def __init__(self, desk: Desk, keep: Keep, lines: Lines, default: DncModel, own: Path) -> None:
+        super().__init__(desk)
+        self.keep, self.lines, self.own = keep, lines, own
+        self.worker = Worker()
+        self.settings = _kept(keep, default)
+        self.ports: Sequence[str] = ()
+        self.under_way: Carrying[int] | Carrying[Received] | None = None
+        self.sends = ""  # the name of the program that is being sent
+        self.received: Received | None = None
+        self.entry = Entry(words=True)
+        self.last = ""  # what came of the last transfer
+
+    @property
+    def count(self) -> int:
+        """Settings, while nothing is under way."""
+        return 0 if self.under_way or self.received else len(ROWS)
+
+    def opened(self) -> None:
+        """Look for ports."""
+        self.worker.ask(lambda: [device for device, _ in self.lines.ports()], self._found, self._failed)
+
+    def _found(self, ports: list[str]) -> None:
+        self.ports = ports
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """The face of this moment."""
+        self.worker.poll()
+        if self.received is not None:
+            return received_sheet(self.received, self.entry.text)
+        if self.under_way is not None:
+            return progress_sheet(self.under_way.reach, self.settings, self.sends)
+        return settings_sheet(self.settings, self.marked, self._chosen(), self.last)
+
+    def keys(self) -> Mapping[str, Key]:
+        """What can be done now."""
+        if self.received is not None:
+            return {"F6": Key("DISCARD", self.discard)}
+        if self.under_way is not None:
+            return {"F6": Key("CANCEL", self.cancel)}
+        return {
+            "F4": Key("SEND", self.send),
+            "F5": Key("RECEIVE", self.receive),
+            "F8": Key("PORTS", self.opened),
+        }
+
+    def takes(self, key: str) -> bool:
+        """Letters of the new name."""
+        return self.received is not None and self.entry.takes(key)
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark a setting, Return steps it on; or the name of what has come."""
+        if self.received is not None:
+            return self._named(key)
+        if key == "Enter" and self.count:
+            self._step()
+            return True
+        return self.moves(key)
+
+    def choose(self, row: int) -> None:
+        """A finger marks; on the marked one it is Return."""
+        if not self.count:
+            return
+        if row == self.marked:
+            self._step()
+        else:
+            self.desk.clear()
+            self.marked = row
+
+    def prompt(self) -> str:
+        """What the keys do."""
+        if self.received is not None:
+            return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
+        if self.under_way is not None:
+            return "F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN"
+        return "ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
+
+    def close(self) -> None:
+        """The desk shuts: nothing goes on."""
+        self.cancel()
+        self.worker.close()
+
+    # --- transfers -----------------------------------------------------------------------------------
+
+    def _chosen(self) -> Path | None:
+        return self.desk.session.now.path
+
+    def send(self) -> None:
+        """The program on the desk."""
+        path = self._chosen()
+        if path is None:
+            self.desk.say("NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)")
+        elif self._ready():
+            self.sends = path.name
+            carrying = self.lines.send(self.settings, path)
+            self.under_way = carrying
+            self.worker.ask(carrying.run, self._sent, self._failed)
+
+    def receive(self) -> None:
+        """Whatever comes."""
+        if self._ready():
+            self.sends = ""
+            carrying = self.lines.receive(self.settings)
+            self.under_way = carrying
+            self.worker.ask(carrying.run, self._came, self._failed)
+
+    def cancel(self) -> None:
+        """Give it up; the worker says when it has ended."""
+        if self.under_way is not None:
+            self.under_way.cancel()
+
+    def _ready(self) -> bool:
+        self.desk.clear()
+        if self.under_way is not None or self.worker.busy:
+            self.desk.say(BUSY)
+        elif not self.settings.port:
+            self.desk.say("NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE")
+        else:
+            return True
+        return False
+
+    def _sent(self, count: int) -> None:
+        self.under_way = None
+        self._say(tr("{name} IS SENT: {count} BYTES").format(name=self.sends, count=count))
+
+    def _came(self, received: Received) -> None:
+        self.under_way, self.received = None, received
+        self.entry.text = free_name(self.own, received.name)
+        self._say(tr("A WHOLE PROGRAM HAS COME: {lines} LINES").format(lines=received.lines))
+
+    def _failed(self, why: str) -> None:
+        self.under_way = None
+        self._say(tr("NOTHING IS KEPT: {why}").format(why=why))
+
+    def _say(self, text: str) -> None:
+        self.last = text
+        self.desk.say(text)
+
+    # --- the name of what has come -------------------------------------------------------------------
+
+    def _named(self, key: str) -> bool:
+        if key == "Enter":
+            self._store()
+            return True
+        if self.entry.type(key):
+            self.desk.clear()
+            return True
+        return False
+
+    def _store(self) -> None:
+        assert self.received is not None
+        try:
+            path = stored(self.received.text, self.own, self.entry.text)
+        except FileError as error:
+            self.desk.say(f"REFUSED: {error}")
+            return
+        self.received = None
+        self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
+
+    def discard(self) -> None:
+        """Throw away what has come, after asking once."""
+        if self.sure(THROW_AWAY):
+            self.received = None
+            self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
+
+    def _step(self) -> None:
+        ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
+        self.settings = replace(ROWS[self.marked][2](self.settings, ports))
+        self.desk.clear()
+        try:
+            self.keep.keep_setting(KEPT, kept_form(self.settings))
+        except StoreError as error:
+            self.desk.say(f"REFUSED: {error}")
+
+
+def _kept(keep: Keep, default: DncModel) -> DncModel:
+    try:
+        return form_of(keep.setting(KEPT), default)
+    except StoreError:
+        return default  # the desk says by itself that nothing is kept

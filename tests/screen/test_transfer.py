@@ -1,0 +1,252 @@
+"""F10 RS-232 by keys alone: settings, a program out, a program in under a new name; and what is refused."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.compose.journal import Journal
+from app.desk.transfer.section import TransferSection
+from app.desk.transfer.service import Received
+from app.screen.look import Look
+from app.screen.special.page import SpecialPage
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.machine.hardware.model import DncModel
+from core.ports import DriverError
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key
+
+DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
+CAME = Received(b"O77\nM30\n", "O77", 2, "ab" * 32, False, 3, (), 1.5)
+WAIT = 20.0
+
+
+@dataclass(frozen=True)
+class Reach:
+    done: int = 640
+    total: int = 1280
+    lines: int = 20
+    what: str = "HELD BY THE OTHER SIDE"
+
+
+class Script:
+    """A transfer that goes on until the test lets it end, or somebody gives it up."""
+
+    def __init__(self, answer: object) -> None:
+        self.reach = Reach()
+        self.answer = answer
+        self.go = threading.Event()
+        self.cancelled = False
+
+    def cancel(self) -> None:
+        self.cancelled = True
+        self.go.set()
+
+    def run(self) -> object:
+        assert self.go.wait(WAIT)
+        if self.cancelled:
+            raise DriverError("cancelled")
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+@dataclass
+class FakeLines:
+    """What the far end does is in ``answer``."""
+
+    answer: object = 1280
+    job: Script | None = None
+    said: list[tuple[DncModel, Path | None]] = field(default_factory=list)
+
+    def ports(self) -> list[tuple[str, str]]:
+        return [("/dev/ttyS0", ""), ("/dev/ttyUSB0", "adapter")]
+
+    def send(self, settings: DncModel, path: Path) -> Script:
+        self.said.append((settings, path))
+        self.job = Script(self.answer)
+        return self.job
+
+    def receive(self, settings: DncModel) -> Script:
+        self.said.append((settings, None))
+        self.job = Script(self.answer)
+        return self.job
+
+
+@pytest.fixture
+def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    journal = Journal.at_home()
+    yield journal
+    journal.close()
+
+
+@pytest.fixture
+def lines() -> FakeLines:
+    return FakeLines()
+
+
+@pytest.fixture
+def hands(
+    qtbot: QtBot, machine: FakeMachine, journal: Journal, lines: FakeLines, tmp_path: Path
+) -> Iterator[Hands]:
+    """A desk whose machine has a line for programs."""
+    desk = desk_on(machine, keep=journal)
+    assert desk.special is not None
+    section = TransferSection(desk, journal, lines, DEFAULT, tmp_path / "own")
+    desk.special.sections = [*desk.special.sections, section]
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    with qtbot.waitExposed(window):
+        window.show()
+    window.open_desk(desk)
+    window.activateWindow()
+    made = Hands(qtbot, window, desk, machine)
+    made.key(Key.Key_F10)
+    made.type("8")
+    made.sees(lambda: page(made).model.inside and section.ports != ())
+    yield made
+    machine.idle()
+    window.close()
+    desk.close()
+    window.deleteLater()
+
+
+def page(hands: Hands) -> SpecialPage:
+    shown = hands.frame.page
+    assert isinstance(shown, SpecialPage)
+    return shown
+
+
+def cells(hands: Hands) -> dict[str, str]:
+    return {row.cells[0]: row.cells[1] for row in page(hands).table.sheet.rows}
+
+
+def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) -> None:
+    assert cells(hands)["BITS, PARITY, STOP BITS"] == "7E1"
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: cells(hands)["PORT"] == "/dev/ttyS0")
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: cells(hands)["BITS, PARITY, STOP BITS"] == "7E2")
+
+    def kept() -> bool:
+        value = journal.setting("rs232")
+        return isinstance(value, dict) and (value["port"], value["stop"]) == ("/dev/ttyS0", 2)
+
+    hands.sees(kept)
+
+
+def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
+    hands: Hands, lines: FakeLines, tmp_path: Path
+) -> None:
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: cells(hands).get("WAITS") == "HELD BY THE OTHER SIDE")
+    assert cells(hands)["DONE"] == "50%"
+    assert lines.job is not None
+    posted = len(hands.machine.posted)
+    lines.job.go.set()
+    hands.sees(lambda: page(hands).table.sheet.question == "NAME OF THE NEW PROGRAM?")
+    assert page(hands).table.sheet.text == "O77.nc"
+    assert cells(hands)["PROVED"] == "NO ERROR"
+    hands.key(Key.Key_Delete)
+    hands.type("new")
+    hands.key(Key.Key_Return)
+    target = tmp_path / "own" / "new.nc"
+    hands.sees(target.exists)
+    assert target.read_bytes() == CAME.text
+    assert "NOTHING WAS STARTED" in hands.desk.notice
+    assert len(hands.machine.posted) == posted
+
+
+def test_a_taken_name_is_refused_and_the_program_still_there(
+    hands: Hands, lines: FakeLines, tmp_path: Path
+) -> None:
+    (tmp_path / "own").mkdir()
+    old = tmp_path / "own" / "O77.nc"
+    old.write_bytes(b"OLD\n")
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    assert lines.job is not None
+    lines.job.go.set()
+    hands.sees(lambda: page(hands).table.sheet.text == "O77-2.nc")
+    hands.key(Key.Key_Delete)
+    hands.type("o77")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: "IS THERE ALREADY" in hands.desk.notice)
+    assert old.read_bytes() == b"OLD\n"
+    assert page(hands).table.sheet.question == "NAME OF THE NEW PROGRAM?"
+
+
+def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    assert lines.job is not None
+    lines.job.go.set()
+    hands.sees(lambda: page(hands).table.sheet.question != "")
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: "ONCE MORE" in hands.desk.notice)
+    assert page(hands).table.sheet.question != ""
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: page(hands).table.sheet.question == "")
+    assert not (tmp_path / "own").exists()
+
+
+def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: "WAITS" in cells(hands))
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: "NOTHING IS KEPT: cancelled" in hands.desk.notice)
+    assert "PORT" in cells(hands)
+    assert not (tmp_path / "own").exists()
+
+
+def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
+    lines.answer = DriverError("parity error in line 7")
+    hands.key(Key.Key_F5)
+    assert lines.job is not None
+    lines.job.go.set()
+    hands.sees(lambda: "NOTHING IS KEPT: parity error in line 7" in hands.desk.notice)
+
+
+def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: FakeLines) -> None:
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: "NO PROGRAM IS ON THE DESK" in hands.desk.notice)
+    assert lines.said == []
+
+
+def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> None:
+    assert hands.desk.choose("pin.nc")
+    hands.sees(lambda: hands.desk.session.now.path is not None)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: lines.job is not None)
+    assert lines.job is not None
+    lines.job.go.set()
+    hands.sees(lambda: "pin.nc IS SENT: 1280 BYTES" in hands.desk.notice)
+    (said,) = lines.said
+    assert said[1] is not None
+    assert said[1].name == "pin.nc"
+
+
+def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    hands.sees(lambda: "WAITS" in cells(hands))
+    hands.key(Key.Key_Escape)
+    hands.key(Key.Key_Escape)
+    assert lines.job is not None
+    assert not lines.job.cancelled
+    lines.job.go.set()
+    hands.key(Key.Key_F10)
+    hands.type("8")
+    hands.sees(lambda: page(hands).table.sheet.question != "")
