@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.modal import Modal
 from core.interpreter.refused import Refused
+from core.interpreter.series import Series
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.dialect import Dialect
@@ -47,6 +48,15 @@ class Interpretation(Protocol):
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
+        ...
+
+
+@runtime_checkable
+class InSeries(Protocol):
+    """An interpretation that can also hand on whole series of moves; the blocks are the same."""
+
+    def series(self) -> Iterator[Block | Series]:
+        """``blocks``, series of straight moves in one. To be called once, instead of it."""
         ...
 
 
@@ -114,3 +124,8 @@ _INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
 def interpretation(source: Source, setup: Setup) -> Interpretation:
     """One pass through this program."""
     return _INTERPRETERS[source.dialect](source, setup)
+
+
+def passed_on(interpreter: Interpretation) -> Iterator[Block | Series]:
+    """The elementary blocks as whoever goes through a whole program takes them: in series where there are."""
+    return interpreter.series() if isinstance(interpreter, InSeries) else interpreter.blocks()

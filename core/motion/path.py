@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from core.motion.batches import Part, words_of
 from core.motion.bounds import piece_limits
 from core.motion.errors import MotionError
 from core.motion.limits import FloatArray, IntArray, MotionLimits
@@ -14,7 +15,7 @@ from core.motion.mapped import parts_of, with_parts
 from core.motion.pieces import Pieces, joined, make_pieces
 from core.motion.rates import by_radius, constant_rates, split_by_radius
 from core.motion.rounding import SUPPORT, ends_in_chord, regrown, unrounded
-from core.motion.words import MotionBlock, Words, read_words
+from core.motion.words import MotionBlock, Words
 
 GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
 
@@ -109,11 +110,14 @@ class PathBuilder:
         near the end no joint of the path so far is moved any more.
         """
         batch = list(blocks)
-        if not batch:
-            return
+        if batch:
+            self.add_batch([batch], reached)
+
+    def add_batch(self, batch: Sequence[Part], reached: float = -np.inf) -> None:
+        """``add`` for blocks that come as lists and rows, none of them empty."""
+        words = words_of(batch, self.rpm_max)
         if self._closed:
-            raise MotionError(f"Block {batch[0].n} comes after the end of the path; begin another path.")
-        words = read_words(batch, self.rpm_max)
+            raise MotionError(f"Block {words.n[0]:.0f} comes after the end of the path; begin another path.")
         _demand_unbroken(words, self._end)
         pieces, counts = _pieces(words, self._limits)
         if self._start is None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
+from core.motion.batches import Row, batches
 from core.motion.errors import MotionError
 from core.motion.limits import FloatArray, IntArray, MotionLimits
 from core.motion.path import PathBuilder
@@ -57,15 +57,14 @@ class ChunkPlanner:
         """Time up to which motion has been yielded, s."""
         return self._t
 
-    def add(self, blocks: Iterable[MotionBlock]) -> Iterator[Chunk]:
+    def add(self, blocks: Iterable[MotionBlock | Row]) -> Iterator[Chunk]:
         """Take blocks lazily and yield what is settled; nothing happens until the result is iterated.
 
         Raises MotionError for a block that cannot be moved.
         """
-        source = iter(blocks)
-        while batch := list(islice(source, self._window - self._waiting)):
-            self._builder.add(batch)
-            self._waiting += len(batch)
+        for batch, size in batches(blocks, self._window - self._waiting, self._window):
+            self._builder.add_batch(batch)
+            self._waiting += size
             if self._waiting >= self._window:
                 self._waiting = 0
                 yield from self._settled()

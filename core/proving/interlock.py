@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.blocks import Block
+from core.interpreter.series import Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Machine
 
 
 def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
     """An error for each block that moves C while the spindle, which is this machine's C, turns."""
-    if not machine.spindle_is_c:
+    if not machine.spindle_is_c or isinstance(blocks, Series):  # which moves X and Z alone
         return
     for block in blocks:
         if block.c != block.c0 and block.modal.spindle:

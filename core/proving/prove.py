@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
 
 from core.interpreter.actions import Dwell
 from core.interpreter.blocks import Block
 from core.interpreter.needs import Need, first_needs, needs_of
+from core.interpreter.series import Series
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine
 from core.proving.interlock import c_findings
+from core.proving.passing import Part
 from core.proving.report import MillFigures, Report, Times
 from core.proving.tally import Tally
 from core.proving.timeline import Moved, Rested, Timeline
@@ -48,7 +53,8 @@ class _Proof:
     def __init__(self, machine: Machine) -> None:
         self._machine = machine
         self._tally = Tally()
-        self._unseen: list[Block] = []
+        self._unseen: list[Part] = []
+        self._waiting = 0  # blocks in them
         self._cutting = self._rapid = self._dwell = self._wait = 0.0
         self._beyond: dict[tuple[int, str], Diagnostic] = {}
         self._needs: tuple[Need, ...] = ()
@@ -64,27 +70,32 @@ class _Proof:
             self._rested(stretch)
 
     def _moved(self, stretch: Moved) -> None:
-        blocks, spent = stretch.blocks, (stretch.chunk.t1 - stretch.chunk.t0).tolist()
-        self._unseen += blocks
-        rapid = sum(t for block, t in zip(blocks, spent, strict=True) if block.rapid)
+        spent = stretch.chunk.t1 - stretch.chunk.t0
+        rapid = float(spent[_rapid(stretch.parts)].sum())
         self._rapid += rapid
-        self._cutting += sum(spent) - rapid
-        self.elementary += len(blocks)
-        if blocks:
-            self.last = self._last_move = blocks[-1]
-        if len(self._unseen) >= _AT_ONCE:
+        self._cutting += float(spent.sum()) - rapid
+        self._unseen += stretch.parts
+        self._waiting += len(spent)
+        self.elementary += len(spent)
+        if stretch.last is not None:
+            self.last = self._last_move = stretch.last
+        if self._waiting >= _AT_ONCE:
             self._see()
 
     def _see(self) -> None:
         """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
-        blocks, self._unseen = self._unseen, []
-        self._tally.add(blocks)
-        self._need(blocks)
-        if len(self._beyond) < MAX_FINDINGS:
-            for finding in (*travel_findings(blocks, self._machine), *c_findings(blocks, self._machine)):
-                self._beyond.setdefault((finding.line, finding.message[:1]), finding)
+        parts, self._unseen, self._waiting = self._unseen, [], 0
+        self._tally.add(parts)
+        for part in parts:
+            self._need(part)
+            if len(self._beyond) < MAX_FINDINGS:
+                self._look_beyond(part)
 
-    def _need(self, blocks: list[Block]) -> None:
+    def _look_beyond(self, part: Part) -> None:
+        for finding in (*travel_findings(part, self._machine), *c_findings(part, self._machine)):
+            self._beyond.setdefault((finding.line, finding.message[:1]), finding)
+
+    def _need(self, blocks: Part) -> None:
         """Only a controller that plans by itself can lack what a program needs."""
         if blocks and self._machine.backend == "grblhal":
             self._needs = first_needs((*self._needs, *needs_of(blocks, self._before)))
@@ -135,6 +146,15 @@ class _Proof:
             reach=tuple(span.range for span in self._tally.axes),
             final=self.last.swivel if self.last else None,
         )
+
+
+def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
+    """For each block whether it is a rapid."""
+    found: list[bool] = []
+    for part in parts:
+        series = isinstance(part, Series)
+        found += [part[0].rapid] * len(part) if series else [block.rapid for block in part]
+    return np.array(found, dtype=bool)
 
 
 def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:

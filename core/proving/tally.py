@@ -11,6 +11,8 @@ import numpy.typing as npt
 from core.geometry.extent import arc_sweep
 from core.geometry.mill import PlaneMove
 from core.interpreter.blocks import Block, Kind
+from core.interpreter.series import Series
+from core.proving.passing import Part
 from core.proving.report import Range, Reach
 
 
@@ -45,13 +47,29 @@ class Tally:
         """What the program reaches."""
         return Reach(self.x.range, self.z.range, self.c.range, self.rpm.range, self.feed.range)
 
-    def add(self, blocks: Sequence[Block]) -> None:
+    def add(self, parts: Sequence[Part]) -> None:
         """Count the moving blocks of a stretch."""
-        if not blocks:
+        if not parts:
             return
-        table = np.array([(b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev) for b in blocks])
-        rapid = np.array([b.rapid for b in blocks])
+        table = np.concatenate([_rows(part) for part in parts])
         length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
+        first = 0
+        for part in parts:
+            if not isinstance(part, Series):
+                self._curved(part, length[first : first + len(part)])
+            first += len(part)
+        rapid, turned, locked = (table[:, column] > 0.0 for column in (8, 9, 10))
+        self.rapid_length += float(length[rapid].sum())
+        self.cutting_length += float(length[~rapid].sum())
+        for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
+            span.see(float(table[:, column].min()), float(table[:, column].max()))
+        in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
+        if not in_degrees.all():
+            self._feeds(table[~in_degrees])
+        self._turning(table[~(turned | locked)])
+
+    def _curved(self, blocks: Sequence[Block], length: npt.NDArray[np.float64]) -> None:
+        """Put in the lengths of ways that are no straight lines of X and Z."""
         for index, block in enumerate(blocks):
             if block.travel is not None:
                 length[index] = 0.0 if block.swivels else block.travel.length
@@ -60,16 +78,6 @@ class Tally:
                 length[index] = self._arc(block)
             elif block.plane is not None:
                 length[index] = self._plane(block, block.plane)
-        self.rapid_length += float(length[rapid].sum())
-        self.cutting_length += float(length[~rapid].sum())
-        for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
-            span.see(float(table[:, column].min()), float(table[:, column].max()))
-        turned = np.array([b.kind is Kind.ROTATE or b.swivels for b in blocks])
-        by_c = turned | np.array([b.modal.c_locked for b in blocks])
-        in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
-        if not in_degrees.all():
-            self._feeds(table[~in_degrees])
-        self._turning(table[~by_c])
 
     def _see_axes(self, block: Block) -> None:
         if not self.axes:
@@ -104,3 +112,17 @@ class Tally:
         turning = rpm[rpm > 0]
         if turning.size:
             self.rpm.see(float(turning.min()), float(turning.max()))
+
+
+def _rows(part: Part) -> npt.NDArray[np.float64]:
+    """What is summed up of each block, a row (11,) each."""
+    if not isinstance(part, Series):
+        return np.array([_row(block) for block in part])
+    rows = np.repeat(np.array([_row(part.pattern)]), len(part), axis=0)
+    rows[:, :4] = np.column_stack((part.x0, part.z0, part.x, part.z))
+    return rows
+
+
+def _row(b: Block) -> tuple[float, ...]:
+    turned = b.kind is Kind.ROTATE or b.swivels
+    return b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev, b.rapid, turned, b.modal.c_locked

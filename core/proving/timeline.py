@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
-from core.interpreter.dialects import Interpretation, interpretation
+from core.interpreter.dialects import Interpretation, interpretation, passed_on
+from core.interpreter.series import Series
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
@@ -19,6 +20,7 @@ from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.timeline import Chunk, ChunkPlanner
 from core.proving.forecast import SETTLING, THREAD_EARLY, SpindleForecast
+from core.proving.passing import Part, Passing
 
 _AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
 
@@ -28,7 +30,17 @@ class Moved(NamedTuple):
 
     t0: float
     chunk: Chunk
-    blocks: list[Block]
+    parts: tuple[Part, ...]
+
+    @property
+    def blocks(self) -> list[Block]:
+        """Each block, those of series made for whoever asks."""
+        return list(chain.from_iterable(self.parts))
+
+    @property
+    def last(self) -> Block | None:
+        """The last block that ends in it."""
+        return self.parts[-1][-1] if self.parts else None
 
     @property
     def t1(self) -> float:
@@ -38,7 +50,8 @@ class Moved(NamedTuple):
     def times(self) -> Iterator[tuple[Block, float, float]]:
         """Each block with its start and end on the program's clock."""
         shift = self.t0 - self.chunk.t
-        for block, t0, t1 in zip(self.blocks, self.chunk.t0.tolist(), self.chunk.t1.tolist(), strict=True):
+        blocks = chain.from_iterable(self.parts)
+        for block, t0, t1 in zip(blocks, self.chunk.t0.tolist(), self.chunk.t1.tolist(), strict=True):
             yield block, t0 + shift, t1 + shift
 
 
@@ -70,9 +83,9 @@ class Timeline:
         if ideal:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
-        self._source = self.interpreter.blocks()
-        self._back: Block | None = None  # the block that ended a motion and is still to come
-        self._moving: deque[Block] = deque()
+        self._source = passed_on(self.interpreter)
+        self._back: Block | Series | None = None  # what ended a motion and is still to come
+        self._moving = Passing()
         self._speed_wanted = False  # a speed was commanded that no feed has waited for yet
         self._refused: list[Diagnostic] = []
 
@@ -94,20 +107,21 @@ class Timeline:
 
     def spans(self) -> Iterator[Moved | Rested]:
         """The program in time order, without gaps."""
-        while (block := self._next()) is not None:
-            if block.moves:
-                yield from self._motion(block)
+        while (each := self._next()) is not None:
+            if isinstance(each, Series) or each.moves:
+                yield from self._motion(each)
             else:
-                yield self._action(block)
+                yield self._action(each)
 
-    def _next(self) -> Block | None:
+    def _next(self) -> Block | Series | None:
         if self._back is not None:
-            block, self._back = self._back, None
-            return block
+            back, self._back = self._back, None
+            return back
         return next(self._source, None)
 
-    def _motion(self, first: Block) -> Iterator[Moved | Rested]:
+    def _motion(self, each: Block | Series) -> Iterator[Moved | Rested]:
         """Everything up to the next block that does not move, as one motion from rest to rest."""
+        first = _like(each)
         if not first.rapid:
             yield from self._at_speed()
         yield self._rest(self._wait(self._machine.timing.commit))
@@ -115,7 +129,7 @@ class Timeline:
             yield self._index(first)
         start = self.t - self._planner.t
         try:
-            for chunk in self._planner.add(self._moves(first)):
+            for chunk in self._planner.add(self._moves(each)):
                 yield self._moved(start, chunk)
             for chunk in self._planner.finish():
                 yield self._moved(start, chunk)
@@ -123,17 +137,17 @@ class Timeline:
         except MotionError as error:
             self._refuse(str(error))
 
-    def _moves(self, first: Block) -> Iterator[Block]:
-        """Moving blocks; ends before one that must wait for the spindle, or that does not move."""
-        block: Block | None = first
-        before = first
-        while block is not None and block.moves:
-            if block is not first and self._stands_before(first, before, block):
+    def _moves(self, each: Block | Series | None) -> Iterator[Block | Series]:
+        """What moves; ends before one that must wait for the spindle, or that does not move."""
+        first = before = None
+        while each is not None:
+            block = _like(each)
+            if not block.moves or (first and before and self._stands_before(first, before, block)):
                 break
-            self._moving.append(block)
-            yield block
-            before, block = block, self._next()
-        self._back = block
+            self._moving.append(each)
+            yield each
+            first, before, each = first or block, block, self._next()
+        self._back = each
 
     def _stands_before(self, first: Block, before: Block, block: Block) -> bool:
         """A new speed, and a thread pass with what pulls out of it, begin at a standstill."""
@@ -153,11 +167,11 @@ class Timeline:
         return self._rest(THREAD_EARLY + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
     def _moved(self, start: float, chunk: Chunk) -> Moved:
-        blocks = [self._moving.popleft() for _ in range(len(chunk.n))]
-        stretch = Moved(start + chunk.t, chunk, blocks)
+        stretch = Moved(start + chunk.t, chunk, self._moving.take(len(chunk.n)))
         self.t = stretch.t1
-        if blocks and blocks[-1].css is not None:
-            self._follow(blocks[-1].rpm)
+        last = stretch.last
+        if last is not None and last.css is not None:
+            self._follow(last.rpm)
         return stretch
 
     def _follow(self, rpm: float) -> None:
@@ -209,10 +223,15 @@ class Timeline:
         return 0.0
 
     def _refuse(self, why: str) -> None:
-        line = self._moving[0].line if self._moving else 0
+        line = self._moving.first.line if self._moving.first else 0
         hint = "change the move that the message names"
         self._refused.append(Diagnostic(line, 0, Severity.ERROR, "impossible-motion", why, hint))
         self._source, self._back = iter(()), None
+
+
+def _like(each: Block | Series) -> Block:
+    """The block, or one such as each of the series."""
+    return each.pattern if isinstance(each, Series) else each
 
 
 def timed_blocks(timeline: Timeline) -> Iterator[tuple[Block, float, float]]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from core.interpreter.blocks import Block, Kind
+from core.interpreter.series import Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Axis, Machine
 
@@ -30,13 +31,18 @@ def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]
     """Blocks that may leave the travel: straight moves of a lathe, which are most, are seen by their ends."""
     (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
     endless = all(least == -math.inf for _, least, _ in limits[2:])
+    if endless and isinstance(blocks, Series):
+        x, z = blocks.x + blocks.pattern.offset_x, blocks.z + blocks.pattern.offset_z
+        inside = (x_least <= x) & (x <= x_most) & (z_least <= z) & (z <= z_most)
+        yield from (blocks[at] for at in (~inside).nonzero()[0].tolist())
+        return
     for block in blocks:
         straight = block.kind is Kind.FEED or block.kind is Kind.RAPID
         if not (straight and endless and block.travel is None):
             yield block
             continue
-        x, z = block.x + block.offset_x, block.z + block.offset_z
-        if not (x_least <= x <= x_most and z_least <= z <= z_most):
+        mx, mz = block.mx, block.mz
+        if not (x_least <= mx <= x_most and z_least <= mz <= z_most):
             yield block
 
 
