@@ -29,6 +29,14 @@ class Flow:
         """Let the main program end before this line, counted from 1."""
         self.end = min(line - 1, self._structure.main_end)
 
+    def passes_left(self, start: int) -> int:
+        """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
+        return self._loops[-1][1] if self._loops and self._loops[-1][0] == start else 0
+
+    def passed(self, times: int) -> None:
+        """The inner loop has been gone through so often, each time back to its first line."""
+        self._loops[-1][1] -= times
+
     def steer(self, made: Statement) -> None:
         """Follow a line that steers. Raises ProgramError for calls nested too deep."""
         flow = made.flow

@@ -23,6 +23,11 @@ class Log:
         """Whether there are so many errors that going on tells nothing more."""
         return len(self.errors) >= MOST_OF_A_KIND
 
+    @property
+    def silent(self) -> bool:
+        """Whether there are so many warnings and notes that no further one is kept."""
+        return self._others >= MOST_OF_A_KIND
+
     def add(self, found: Diagnostic) -> None:
         """Keep a finding unless it is known or there are too many."""
         key = (found.line, found.code, found.column)
@@ -32,7 +37,7 @@ class Log:
             if self.full:
                 return
             self.errors.append(found)
-        elif self._others >= MOST_OF_A_KIND:
+        elif self.silent:
             return
         else:
             self._others += 1

@@ -16,7 +16,7 @@ from core.language.omniturn import Word, lex_line
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
 _DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
-_WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
+WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
 
 
 def fast_move(state: State, line: int, text: str, step: PlainMove) -> Block:
@@ -124,8 +124,8 @@ def mill_step(state: State, line: int, word: Word) -> float:
     value = word.value or 0.0
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
     count = value / step
-    whole = copysign(floor(abs(count) + 0.5 + _WHOLE), count)
-    if abs(count - whole) > max(_WHOLE, abs(count) * 1e-12):
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)
+    if abs(count - whole) > max(WHOLE, abs(count) * 1e-12):
         value = whole * step
         text = f"{word.text} is finer than the step; {value:.5f} is used."
         state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
@@ -146,7 +146,7 @@ def rounded(state: State, line: int, text: str, x: float | None, z: float | None
     return new_x, new_z
 
 
-def _step(state: State, letter: str) -> float:
+def step_of(state: State, letter: str) -> float:
     """The control's step in the unit of the program's numbers."""
     modal = state.modal
     if modal.metric:
@@ -156,16 +156,16 @@ def _step(state: State, letter: str) -> float:
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
     """The number on the control's step, and whether it was not there before."""
-    step = _step(state, letter)
+    step = step_of(state, letter)
     count = value / step
-    whole = copysign(floor(abs(count) + 0.5 + _WHOLE), count)  # half a step goes away from zero
-    if abs(count - whole) <= max(_WHOLE, abs(count) * 1e-12):
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step goes away from zero
+    if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):
         return value, False
     return whole * step, True
 
 
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
-    step = f"{_step(state, word.letter):.5f}".rstrip("0")
+    step = f"{step_of(state, word.letter):.5f}".rstrip("0")
     text = f"{word.text} is finer than the step of {step} {name}; {value:.5f} is used."
     state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")

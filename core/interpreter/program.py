@@ -8,12 +8,16 @@ from core.interpreter import codes
 from core.interpreter.plain import read_move
 from core.interpreter.reading import statement, unreadable
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
+from core.interpreter.steps import Steps, read_steps
 from core.interpreter.structure import Structure, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
 from core.language.omniturn.plane import PlaneLine, ends_program, lex_plane, plane_entry
 from core.language.source import Source
+
+LONG = 5_000
+"""Lines from which on a program is read into columns."""
 
 _MOST_PROBLEMS = 100
 
@@ -23,7 +27,7 @@ class Program:
     """A program ready to run. ``steps`` has one entry a line; ``m_codes`` are those of the machine file."""
 
     source: Source
-    steps: list[Step]
+    steps: Steps
     structure: Structure
     diagnostics: tuple[Diagnostic, ...]
     blocks: int  # lines that hold more than a comment
@@ -44,23 +48,29 @@ class _Reader:
     def __init__(self, source: Source, *, strict: bool) -> None:
         self.source = source
         self.style = Style(strict=strict)
-        self.steps: list[Step] = []
+        self.steps: Steps = []
+        self.blank = 0  # lines that hold nothing
         self.statements: list[Statement] = []
         self.problems: list[Diagnostic] = []
         self._plane = 0  # line of a (~PL..) whose (END) is still to come
 
     def read(self) -> None:
-        append = self.steps.append
-        for text in self.source.lines:
-            move = read_move(text)
-            append(self.statement(text) if move is None or self._plane else move)
+        lines = self.source.lines
+        if len(lines) >= LONG and "~" not in self.source.text:
+            self.steps = read_steps(lines, self._step)
+        else:
+            self.steps = [self._step(number, text) for number, text in enumerate(lines, start=1)]
         if self._plane:
             self._plane_open(self._plane)
 
-    def statement(self, text: str) -> Statement | None:
-        number = len(self.steps) + 1
+    def _step(self, number: int, text: str) -> Step:
+        move = read_move(text)
+        return self.statement(number, text) if move is None or self._plane else move
+
+    def statement(self, number: int, text: str) -> Statement | None:
         if not text or text.isspace():
             self.style.tell("blank-line", number)
+            self.blank += 1
             return None
         if self._plane and ends_program(text):
             self._plane_open(number)
@@ -131,14 +141,13 @@ def read_program(source: Source, strict: bool = False) -> Program:
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
     """One line of a text on its own, and what is wrong with it; None for an empty one."""
     reader = _Reader(Source("", text), strict=False)
-    reader.steps = [None] * (number - 1)
-    made = reader.statement(text)
+    made = reader.statement(number, text)
     return made, reader.problems
 
 
 def _executable(reader: _Reader) -> int:
     comments = sum(1 for made in reader.statements if not made.executable)
-    return sum(1 for step in reader.steps if step is not None) - comments
+    return len(reader.steps) - reader.blank - comments
 
 
 def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
@@ -152,7 +161,7 @@ def _comments_in_loops(statements: list[Statement], structure: Structure) -> lis
     return found
 
 
-def _beyond_the_end(steps: list[Step], structure: Structure) -> list[Diagnostic]:
+def _beyond_the_end(steps: Steps, structure: Structure) -> list[Diagnostic]:
     """Moves after M30 that no subroutine holds: the first of them."""
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())

@@ -7,6 +7,7 @@ from itertools import chain
 
 from core.interpreter import codes
 from core.interpreter.actions import AskInput, ProgramEnd
+from core.interpreter.ahead import Ahead
 from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import looks_ahead
@@ -19,9 +20,10 @@ from core.interpreter.moves import fast_move, go, on_step, plain_move
 from core.interpreter.nose import nose_code, switch
 from core.interpreter.opening import check_opening
 from core.interpreter.plain import plain
-from core.interpreter.program import Program
+from core.interpreter.program import LONG, Program
 from core.interpreter.reading import statement
 from core.interpreter.resume import checkpoint_of, restore, way_blocks
+from core.interpreter.series import Series
 from core.interpreter.setup import Setup
 from core.interpreter.shaper import Shaper
 from core.interpreter.spindle import rpm_at
@@ -47,6 +49,7 @@ class Interpreter:
         self._shaper = Shaper(self._state)
         self._tools = ToolUse()
         self._flow = Flow(program)
+        self._ahead: Ahead | None = None
         self._stopped = False  # an error has been met: no more blocks
         self._first, self._refused = check_opening(self._state, program)
         if setup.begin is not None:
@@ -89,11 +92,20 @@ class Interpreter:
         At the first error the blocks end. What is left of the program is then still gone through for its
         errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
         """
-        for block in chain(self._way(), self._pass()):
-            if not self._stopped:
-                yield block
-            elif to_first_error:
-                return
+        for each in chain(self._way(), self._pass()):
+            if self._stopped:
+                if to_first_error:
+                    return
+            elif isinstance(each, Series):
+                yield from each
+            else:
+                yield each
+
+    def series(self) -> Iterator[Block | Series]:
+        """The same, whole series of straight moves in one: for whoever goes through all of a program."""
+        if self._program.structure.loop_ends or len(self._program.steps) >= LONG:
+            self._ahead = Ahead(self._state, self._program, self._flow)
+        return (each for each in chain(self._way(), self._pass()) if not self._stopped)
 
     @property
     def checkpoint(self) -> Checkpoint:
@@ -104,18 +116,24 @@ class Interpreter:
         begin = self._state.setup.begin
         return iter(()) if begin is None or self._refused else way_blocks(self._state, begin)
 
-    def _pass(self) -> Iterator[Block]:
+    def _pass(self) -> Iterator[Block | Series]:
         if self._refused:
             return
         yield from self._lines()
         yield from self._held_back(self._shaper.end())
         warn_of_idle_shifts(self._state)
 
-    def _lines(self) -> Iterator[Block]:
-        steps, flow, state = self._program.steps, self._flow, self._state
+    def _lines(self) -> Iterator[Block | Series]:
+        steps, flow, state, ahead = self._program.steps, self._flow, self._state, self._ahead
         lines = self._program.source.lines
         left = MOST_LINES
         while flow.at < flow.end:
+            if ahead is not None and state.fast:
+                taken = ahead.take(left, MOST_BLOCKS - state.blocks)
+                if taken is not None:
+                    left -= taken[1]
+                    yield taken[0]
+                    continue
             at = flow.at
             flow.at = at + 1
             step = steps[at]

@@ -17,10 +17,11 @@ class Walk(Interpreter):
         May be called again with a later line. At the first error they end; ``failed`` tells.
         """
         self._flow.until(line)
-        for block in self._lines():
+        for each in self._lines():
             if self._stopped:
                 return
-            yield block
+            assert isinstance(each, Block)  # series are made for ``series`` alone
+            yield each
 
     @property
     def next_line(self) -> int:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.interpreter.program import Program
-from core.interpreter.statement import PLANE, Statement, Step
+from core.interpreter.statement import PLANE, Statement
+from core.interpreter.steps import Steps
 
 _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
@@ -71,7 +72,7 @@ def _structured(program: Program) -> Iterator[Stretch]:
         yield Stretch(structure.main_end + 1, len(program.steps), "stands after the end of the program.")
 
 
-def _open(steps: list[Step]) -> Iterator[Stretch]:
+def _open(steps: Steps) -> Iterator[Stretch]:
     """Plane switching, nose compensation and corners: from the line after the one that begins them."""
     plane = nose = corner = 0
     for number, step in enumerate(steps, start=1):

@@ -1,0 +1,217 @@
+"""Moves made many at once are those that are made one by one: every field of every block, every finding."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import chain
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.compose.machine import setup_for
+from core.interpreter.blocks import Block
+from core.interpreter.columns import columns_of, read_columns
+from core.interpreter.plain import read_move
+from core.interpreter.program import read_program
+from core.interpreter.run import Interpreter
+from core.interpreter.series import Series
+from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.steps import LongSteps
+from core.language.diagnostics import Diagnostic
+from core.language.source import Source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from tests.interpreter.mutation import SEEDS, mutated
+from tests.interpreter.programs import body, inches, lines, setup
+
+PROGRAMS = sorted((Path(__file__).parents[1] / "programs").glob("*.nc"))
+NEVER = 10**9
+
+
+@contextmanager
+def at_once(least: int, most: int = 20_000) -> Iterator[None]:
+    """Series from ``least`` moves on, of ``most`` at most; every program is read into columns."""
+    long = NEVER if least == NEVER else 1
+    with (
+        patch("core.interpreter.program.LONG", long),
+        patch("core.interpreter.run.LONG", long),
+        patch("core.interpreter.ahead.LEAST", least),
+        patch("core.interpreter.ahead.MOST", most),
+        patch("core.interpreter.steps.MOST", most),
+        patch("core.interpreter.columns._FEW", 1),
+    ):
+        yield
+
+
+def gone_through(text: str, given: Setup) -> tuple[list[str], list[Diagnostic], int]:
+    """The blocks with all their fields, what was found, and how many series there were."""
+    interpreter = Interpreter(read_program(Source("PART", text)), given)
+    passed = list(interpreter.series())
+    series = sum(isinstance(each, Series) for each in passed)
+    blocks = chain.from_iterable(each if isinstance(each, Series) else [each] for each in passed)
+    return [repr(block) for block in blocks], interpreter.diagnostics, series
+
+
+def assert_same(text: str, given: Setup | None = None, most: int = 20_000) -> int:
+    """Both ways give the same; how many series there were."""
+    given = given or setup()
+    with at_once(NEVER):
+        blocks = [repr(block) for block in Interpreter(read_program(Source("PART", text)), given).blocks()]
+        alone = gone_through(text, given)
+    with at_once(2, most):
+        many = gone_through(text, given)
+    assert alone[0] == blocks
+    assert many[:2] == alone[:2]
+    return many[2]
+
+
+NUMBER = st.one_of(
+    st.sampled_from(["0", "-0", "1.", ".5", "-.00001", "+2", "0.00005", "1.23455", "-0.12345", "9999.99999"]),
+    st.integers(-99999, 99999).map(lambda n: f"{n / 10000:.4f}"),
+    st.integers(-99999, 99999).map(lambda n: f"{n / 10000:.5f}"),
+)
+
+
+def word(letters: str) -> st.SearchStrategy[str]:
+    return st.builds(str.__add__, st.sampled_from(list(letters)), NUMBER)
+
+
+MOVE = st.builds(
+    "{}{}{}{}".format,
+    st.sampled_from(["", "", "", "", "G01", "G00", "g01", "G10", "G09"]),
+    word("Xx") | st.just(""),
+    word("Zz") | st.just(""),
+    st.sampled_from(["", "", "", "F.003", "F20", "F.00300", "F0", "f.003"]),
+)
+OTHERS = (
+    "G90 G91 G70 G71 G72 G73 G95F.003 G94F20 G95F.06 G96S300 G97S500 G00 G01 LS3 LS20 LF T1 T2D1X1Z1 G41 G40 "
+    "G36 G35 M19 M05 (A) X1C.1 X X1Z1X1"
+)
+OTHER = st.sampled_from([*OTHERS.split(" "), ""])
+TAME = st.builds(
+    "{}{}{}".format,
+    word("X"),
+    word("Z") | st.just(""),
+    st.sampled_from(["", "", "", "F.003", "F.0030"]),
+)
+RUN = st.lists(TAME, min_size=1, max_size=9)
+LOOP = st.builds(lambda times, moves: [f"LS{times}", *moves, "LF"], st.integers(1, 40), RUN)
+ODD = st.one_of(MOVE, OTHER).map(lambda text: [text])
+LINES = st.lists(st.one_of(RUN, RUN, RUN, LOOP, ODD), max_size=9).map(
+    lambda each: list(chain.from_iterable(each))
+)
+
+
+@settings(max_examples=400, deadline=None)
+@given(LINES, st.integers(2, 30))
+def test_any_lines(moves: list[str], most: int) -> None:
+    assert_same(body("G95F.003", "X1Z1", *moves), most=most)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(MOVE, min_size=1, max_size=30))
+def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
+    with patch("core.interpreter.columns._FEW", 1):
+        read = read_columns(moves)
+    alone = columns_of([read_move(text) for text in moves])
+    for many, one in zip(read, alone, strict=True):
+        assert np.array_equal(many[alone.known], one[alone.known], equal_nan=True)
+        assert np.array_equal(np.signbit(many[alone.known]), np.signbit(one[alone.known]))
+    assert (read.known == alone.known).all()
+
+
+@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
+def test_programs(path: Path) -> None:
+    secondary = dict.fromkeys(range(1, 5), (-0.015, -0.015, 0.015))
+    assert_same(path.read_text("latin-1"), setup(secondary=secondary), most=5)
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_spoilt_programs(seed: int) -> None:
+    chance = random.Random(seed)
+    text = mutated(chance).split("\n")
+    at = chance.randrange(len(text))
+    text[at:at] = [f"X{chance.uniform(0.1, 1):.4f}Z{chance.uniform(-2, 0):.4f}" for _ in range(8)]
+    assert_same("\n".join(text))
+
+
+def reported(text: str) -> str:
+    machine = load_machine(None)
+    given = setup_for(machine, tools={n: ToolOffset() for n in range(1, 33)}, secondary={})
+    return repr(prove(Source("PART", text), given, machine))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_reports(seed: int) -> None:
+    """Lengths, times, reach and findings of whole programs, soft limits among them."""
+    chance = random.Random(seed)
+    moves = [f"X{chance.uniform(0, 3):.4f}Z{chance.uniform(-9, 1):.4f}" for _ in range(60)]
+    text = body("G95F.003", "X1Z1", *moves, "LS30", "X1.1", "Z-1.23", "X2", "LF", "T1", "G00X1Z1", *moves)
+    text = chance.choice([text, mutated(chance), chance.choice(SEEDS)])
+    with at_once(NEVER):
+        alone = reported(text)
+    with at_once(2):
+        assert reported(text) == alone
+
+
+def test_a_long_program_comes_in_series() -> None:
+    moves = [f"X{1 + k % 7 / 100:.4f}Z{-k / 10000:.4f}" for k in range(20)]
+    assert assert_same(body("G95F.003", "X1Z1", *moves, "M08", *moves)) == 2
+
+
+def test_passes_of_a_loop_come_in_series() -> None:
+    assert assert_same(body("G95F.003", "X1Z1", "G91", "X.01", "LS1000", "X.001", "Z-.001F.003", "LF")) == 1
+
+
+def test_a_loop_that_changes_the_feed_is_gone_through_line_by_line() -> None:
+    assert assert_same(body("G95F.003", "X1Z1", "LS100", "X1.1F.004", "X1F.003", "LF")) == 0
+
+
+def test_words_off_the_step_are_told_until_there_are_too_many() -> None:
+    moves = [f"X1.{k:05d}Z-{k / 7:.5f}" for k in range(300)]
+    assert assert_same(body("G95F.003", "X1Z1", *moves)) == 1
+
+
+def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("core.interpreter.run.MOST_BLOCKS", 77)
+    assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
+    assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
+    monkeypatch.setattr("core.interpreter.run.MOST_LINES", 50)
+    assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
+    assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
+
+
+def test_a_series_is_a_sequence_of_its_blocks() -> None:
+    """X and Z alternate, so that the ends can be said without counting: 1, 1 → 2, 1 → 2, 0 → 1, 0."""
+    with at_once(2):
+        text = lines("G90G94F300", "F20", "X1Z1", "X2", "Z0", "X1", "M30")
+        made = list(Interpreter(read_program(Source("A", text)), setup()).series())
+    row = next(each for each in made if isinstance(each, Series))
+    ends = [inches(x=2, z=1), inches(x=2, z=0), inches(x=1, z=0)]
+    assert [{"x": block.x, "z": block.z} for block in row] == [pytest.approx(end) for end in ends]
+    assert [(block.n, block.line, block.text) for block in row] == [(2, 4, "X2"), (3, 5, "Z0"), (4, 6, "X1")]
+    assert (row[-1].line, row[1].x0, [block.line for block in row[1:]]) == (6, row[0].x, [5, 6])
+    assert isinstance(row[1:], Series)
+    with pytest.raises(IndexError):
+        row[3]
+
+
+def test_lines_of_a_long_program_are_those_of_a_short_one() -> None:
+    texts = ["X1.5Z-2", "", "G01X1F.003", "X1.23456", "M08", "Z3"] * 500
+    with at_once(2):
+        steps = read_program(Source("A", lines(*texts))).steps
+    assert isinstance(steps, LongSteps)
+    assert [read_move(text) for text in texts] == [s if isinstance(s, tuple) else None for s in steps]
+    changed = steps[5]
+    steps[5] = None
+    assert (steps[5], steps[4:6], steps.moves_until(5)) == (None, [steps[4], None], 5)
+    assert changed == (None, 3.0)
+    assert isinstance(
+        next(iter(Interpreter(read_program(Source("A", body("X1F9"))), setup()).series())), Block
+    )
