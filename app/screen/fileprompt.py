@@ -13,7 +13,7 @@ from app.desk.shelf import Entry, Shelf
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
-ROW = 4.6  # units: a fingertip
+ROW = 6.6  # units: a fingertip
 
 
 class FilePrompt(Panel):
@@ -156,7 +156,12 @@ class FilePrompt(Panel):
             self._list(painter)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6))
-        put(painter, foot, LEFT, "RETURN takes the marked program   ESC keeps the present one   F2 shows the list")
+        put(
+            painter,
+            foot,
+            LEFT,
+            "RETURN takes the marked program   ESC keeps the present one   F2 shows the list",
+        )
         put(painter, foot, RIGHT, f"{len(self._entries)} programs")
 
     def _list(self, painter: QPainter) -> None:

@@ -25,6 +25,7 @@ from app.screen.overlay import AlarmList, Notice
 from app.screen.page import AutomaticPage
 from app.screen.pages import Host, Page
 from app.screen.position import PositionPanel
+from app.screen.runline import RunLine
 from app.screen.strip import Strip
 from core.executor.snapshot import Snapshot, State
 
@@ -40,6 +41,7 @@ class Frame(QWidget):
         self.look, self.desk = look, desk
         self.title = TitleLine(look, self)
         self.head = HeadLine(look, self)
+        self.run = RunLine(look, self)
         self.position = PositionPanel(look, self)
         self.feed = FeedGauge(look, "FEED", self)
         self.spindle = SpindleGauge(look, "SPINDLE", self)
@@ -135,8 +137,9 @@ class Frame(QWidget):
         self._docked = with_dock
         over = at.path if large else low.work
         self._stand_readouts(at, large)
-        _stand(self.head, low.head)
-        self.head.setVisible(not large)
+        for part, rect in ((self.head, low.head), (self.run, low.run)):
+            _stand(part, rect)
+            part.setVisible(not large)
         if self.dock is not None:
             self.dock.let_go()
             self.dock.setVisible(with_dock)
@@ -176,6 +179,7 @@ class Frame(QWidget):
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarm)
         else:
             self.head.show_view(view)
+            self.run.show_run(view, self._times(snapshot, view, loaded))
             self.notice.show_notice("", "", None)  # the prompt line tells it: nothing covers an entry
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:

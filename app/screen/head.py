@@ -75,7 +75,11 @@ class HeadLine(Panel):
         feed, spindle = view.feed, view.spindle
         cells = (
             (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.42),
-            (f"SPINDLE {percent(spindle.override)}", f"{tr(spindle.direction)} {spindle.actual}", 0.36),
+            (
+                f"SPINDLE {percent(spindle.override)}",
+                f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
+                0.36,
+            ),
             ("TOOL", f"{view.tool} {view.secondary}", 0.22),
         )
         x = room.x() + 1.6 * u

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 ACROSS, DOWN = 160.0, 90.0
 LEAST = (1024, 600)
+FINGER = 43  # pixels: 9 mm on the smallest screen, 10 inches across the corners
 
 
 class Rect(NamedTuple):
@@ -32,11 +33,12 @@ class Rect(NamedTuple):
 
 
 class LowPlaces(NamedTuple):
-    """Of a page with the readouts in one low row: that row, the lamps below it, the room of the page."""
+    """Of a page with the readouts in one low row: that row, lamps, room of the page, line of the run."""
 
     head: Rect
     strip: Rect
     work: Rect
+    run: Rect
 
 
 class Places(NamedTuple):
@@ -67,6 +69,7 @@ def places(width: int, height: int, dock: bool) -> Places:
     u = unit(width, height)
     gap = _gap(u)
     title_h, strip_h, prompt_h, keys_h = (round(k * u) for k in (4.8, 6.0, 4.6, 6.6))
+    strip_h, keys_h = max(strip_h, FINGER), max(keys_h, FINGER)
     top_h = round(27.2 * u)
     keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)
     prompt = Rect(gap, keys.y - gap - prompt_h, width - 2 * gap, prompt_h)
@@ -108,8 +111,9 @@ def low_places(width: int, height: int, dock: bool) -> LowPlaces:
     gap, wide = _gap(u), at.strip.w
     head = Rect(at.strip.x, at.position.y, wide, round(7.4 * u))
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
-    top = strip.bottom + gap
-    return LowPlaces(head, strip, Rect(head.x, top, wide, at.prompt.y - gap - top))
+    top, high = strip.bottom + gap, round(2.8 * u)
+    run = Rect(head.x, at.prompt.y - gap - high, wide, high)
+    return LowPlaces(head, strip, Rect(head.x, top, wide, run.y - gap - top), run)
 
 
 def _gap(u: float) -> int:

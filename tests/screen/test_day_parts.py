@@ -150,8 +150,6 @@ def search(day: Day, text: str, line: str) -> None:
     if text:
         day.type(text)
         day.key(Key.Key_Return)
-        assert str(model.cursor.line) == line
-        day.key(Key.Key_Escape)
     assert str(model.cursor.line) == line
     day.key(Key.Key_Return)
     model.settle(10.0)

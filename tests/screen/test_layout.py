@@ -53,8 +53,9 @@ def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
 
 def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
     at = places(*LEAST, dock=True)
-    assert at.keys.h >= 40
-    assert at.strip.h >= 36
+    least = 9 / (254 / (1024**2 + 600**2) ** 0.5)  # pixels: 9 mm where the corners are 10 inches apart
+    assert at.keys.h >= least
+    assert at.strip.h >= least
     assert (at.keys.w / 10) >= 80
 
 
@@ -66,7 +67,7 @@ def test_without_a_dock_its_room_goes_to_the_path() -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: bool) -> None:
     at, low = places(*size, dock), low_places(*size, dock)
-    parts = [at.title, low.head, low.strip, low.work, at.prompt, at.keys, *([at.dock] if dock else [])]
+    parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)
-    assert low.work.h >= 54 * unit(*size)
+    assert low.work.h >= 52 * unit(*size) - 1

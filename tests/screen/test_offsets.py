@@ -298,8 +298,8 @@ def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: S
         hands.window.grab()
 
     touch(1)  # a page down
-    hands.sees(lambda: (tools_of(hands).model.number, table.top) == (11, 2))
+    hands.sees(lambda: (tools_of(hands).model.number, table.top) == (9, 2))
     hands.window.grab()
-    touch(2 + 8 * 9 + 4)  # the last row that is shown, wear X
-    hands.sees(lambda: tools_of(hands).asked.asked.question == "T11  WEAR X Ø?")
-    assert all(min(box.width(), box.height()) >= 24 for box, _press in table._places)
+    touch(2 + 8 * 7 + 4)  # the last row that is shown, wear X
+    hands.sees(lambda: tools_of(hands).asked.asked.question == "T9  WEAR X Ø?")
+    assert all(min(box.width(), box.height()) >= 27 for box, _press in table._places)

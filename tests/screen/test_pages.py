@@ -73,3 +73,17 @@ def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     hands.key(Key.Key_Escape)
     assert not hands.frame.log.isVisible()
     assert hands.frame.page.NAME == pages.MENU
+
+
+def test_the_run_stays_in_sight_on_every_other_page(hands: Hands) -> None:
+    hands.load("bushing")
+    assert not hands.frame.run.isVisible()  # the Automatic page has it all in large
+    hands.both_palms()
+    hands.sees(lambda: hands.machine.now.line > 9 and bool(hands.machine.now.comment))
+    for key in (Key.Key_F9, Key.Key_F8, Key.Key_F1):
+        hands.key(key)
+        hands.sees(lambda: hands.frame.run.block.startswith(f"L{hands.machine.now.line}  "))
+        assert hands.frame.run.isVisible()
+        assert hands.frame.run.comment == hands.machine.now.comment
+        assert [name for name, _figure in hands.frame.run.times] == ["PARTS", "CYCLE", "LEFT", "LAST"]
+        hands.frame.run.grab()

@@ -16,6 +16,7 @@ class Cursor:
     lines: Sequence[str] = ()
     line: int = 1
     text: str = ""
+    found: bool = False  # the line was found by the text as it stands
 
     @property
     def number(self) -> int | None:
@@ -29,7 +30,7 @@ class Cursor:
 
     def show(self, lines: Sequence[str], line: int) -> None:
         """Another program, or another line to begin with."""
-        self.lines, self.text = lines, ""
+        self.lines, self.text, self.found = lines, "", False
         self.go(line)
 
     def go(self, line: int) -> None:
@@ -46,6 +47,7 @@ class Cursor:
             self.text = (self.text + key)[:LONGEST]
         else:
             return False
+        self.found = False
         return True
 
     def find(self, way: int) -> bool:
@@ -56,6 +58,6 @@ class Cursor:
         for step in range(1, count + 1):
             at = (self.line - 1 + way * step) % count
             if wanted in self.lines[at].upper():
-                self.line = at + 1
+                self.line, self.found = at + 1, True
                 return True
         return False

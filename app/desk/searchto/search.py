@@ -47,11 +47,11 @@ class SearchDesk(SearchOpening):
         return True
 
     def enter(self) -> None:
-        """A number: that line. A text: the next line that holds it. Nothing: the line of the cursor."""
+        """A number: that line. A text: the next line that holds it. Found, or nothing: the cursor's line."""
         number = self.cursor.number
         if number is not None:
             self.go(number)
-        elif self.cursor.text:
+        elif self.cursor.text and not self.cursor.found:
             self.find(1)
         else:
             self.search()

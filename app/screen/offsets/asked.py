@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import LEFT, Look, put
+from app.screen.look import LEFT, Look, put, put_raw
 from app.screen.panel import Panel
 
 
@@ -42,7 +42,7 @@ class AskedPanel(Panel):
         look, u, asked = self.look, self.look.u, self.asked
         room = self.area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
         painter.setPen(look.colour("text"))
-        painter.setFont(look.font(1.9))
+        painter.setFont(look.fit(asked.which, 1.9, 27 * u))
         put(painter, QRectF(room.x(), room.y(), 27 * u, 3.2 * u), LEFT, asked.which)
         left = 28 * u if asked.which else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
@@ -74,7 +74,7 @@ def draw_entry(painter: QPainter, look: Look, inside: QRectF, text: str, *, curs
     font = look.fit(text, 2.8, inside.width() - u, bold=True)
     painter.setFont(font)
     painter.setPen(look.colour("text"))
-    put(painter, inside, LEFT, text)
+    put_raw(painter, inside, LEFT, text)
     if cursor:
         at = inside.x() + min(QFontMetricsF(font).horizontalAdvance(text), inside.width() - u) + 0.3 * u
         painter.fillRect(QRectF(at, inside.center().y() - 1.5 * u, 0.3 * u, 3.0 * u), look.colour("accent"))

@@ -1,4 +1,4 @@
-"""F8's table: ten of the 32 tools, each field a cell that a finger or the cursor chooses."""
+"""F8's table: eight of the 32 tools, each field a cell that a finger or the cursor chooses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from app.screen.offsets.tip import draw_tip
 from app.screen.panel import Panel
 from core.store.rows import OFFSETS
 
-NUMBER, SCROLL = 5.4, 5.0  # units: width of the column of numbers, of the arrows that leaf
+NUMBER, SCROLL = 5.4, 7.4  # units: width of the column of numbers, of the arrows that leaf
 # Widths of the columns in parts of what is left.
 SHARES = {
     "x": 15.0,

@@ -14,7 +14,8 @@ from app.screen.panel import Press
 from app.screen.path.inks import Ink
 from app.screen.path.plot import Frame, scale_length
 
-BUTTON = (4.8, 4.4, 5.0)  # units: width, height, from one to the next
+BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
+LOW = 5.0  # units: from one to the next at least
 
 
 class Button(NamedTuple):
@@ -35,8 +36,10 @@ def draw_buttons(
     buttons: Sequence[Button],
     place: Callable[[QRectF, Press], None],
 ) -> None:
-    """A column at the right, as many as there is room for."""
+    """A column at the right; in a low pane they are lower, and as many as there is room for."""
     wide, high, step = (k * look.u for k in BUTTON)
+    close = max(LOW * look.u, (room.height() - 3.2 * look.u) / max(1, len(buttons)))
+    high, step = high - max(0.0, step - close), min(step, close)
     for number, (sign, press, lit) in enumerate(buttons):
         box = QRectF(room.right() - wide - look.u, room.y() + 0.8 * look.u + number * step, wide, high)
         if box.bottom() > room.bottom() - 2.4 * look.u:

@@ -92,6 +92,7 @@ def _buttons(view: PathView) -> list[furniture.Button]:
 def _title(painter: QPainter, view: PathView) -> None:
     """The panes have covered the lower half of it."""
     look, u = view.look, view.look.u
-    painter.setFont(look.font(1.7, bold=True))
+    wide = view.width() - 4 * u
+    painter.setFont(look.fit(view.title, 1.7, wide, bold=True))
     painter.setPen(look.colour("soft"))
-    put(painter, QRectF(2.2 * u, 0, 20 * u, 2.0 * u), LEFT, view.title)
+    put(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), LEFT, view.title)

@@ -16,7 +16,7 @@ from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Panel
 
 DIFFERS = "≠"
-_LABEL, _SIGN = 0.3, 0.62  # shares of a row: where the label ends, where the sign stands
+_LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the sign stands
 
 
 @dataclass(frozen=True, slots=True)

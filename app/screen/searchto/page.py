@@ -22,7 +22,7 @@ from app.screen.searchto.beside import Near, StatePanel, StateShown
 from app.screen.searchto.starts import StartsPanel
 from core.executor.snapshot import Snapshot
 
-LIST, STATE, ASKED, STARTS = 0.3, 0.4, 4.6, 19.0  # shares of the width; units of height
+LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # shares of the width; units of height
 
 
 class SearchPage(Page):

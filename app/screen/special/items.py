@@ -13,7 +13,7 @@ from app.desk.special.special import SpecialDesk
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Panel
 
-ROW = 6.2  # units at most: a fingertip
+ROW = 7.0  # units at most: a fingertip
 
 
 class ItemList(Panel):

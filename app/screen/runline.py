@@ -1,0 +1,60 @@
+"""What of the run stays in sight on pages other than Automatic: comment, line and block, parts, times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk.view import View
+from app.desk.words import tr
+from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.panel import Panel
+
+Times = Sequence[tuple[str, str]]
+COMMENT, BLOCK = 0.38, 0.24  # shares of the width; parts and times have the rest
+
+
+class RunLine(Panel):
+    """One low row at the lower left, where the Automatic page has its comment."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.comment, self.block = "", ""
+        self.times: Times = ()
+
+    def show_run(self, view: View, times: Times) -> None:
+        """Redraw when something of it has changed."""
+        block = f"L{view.line}  {view.block_text}" if view.line else ""
+        if (view.comment, block, times) != (self.comment, self.block, self.times):
+            self.comment, self.block, self.times = view.comment, block, times
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        u, wide, high = self.look.u, float(self.width()), float(self.height())
+        comment = QRectF(1.4 * u, 0, COMMENT * wide - 2 * u, high)
+        block = QRectF(COMMENT * wide, 0, BLOCK * wide - u, high)
+        for box, ink, text in ((comment, "accent", self.comment), (block, "text", self.block)):
+            painter.setPen(self.look.colour(ink))
+            painter.setFont(self.look.fit(text, 2.0, box.width(), bold=box is block))
+            put_raw(painter, box, LEFT, text)
+        self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
+
+    def _times(self, painter: QPainter, room: QRectF) -> None:
+        """Name and figure beside each other, each in a column of its own."""
+        u, share = self.look.u, room.width() / max(1, len(self.times))
+        for number, (name, figure) in enumerate(self.times):
+            box = QRectF(room.x() + number * share, 0, share - 0.8 * u, room.height())
+            half = 0.46 * box.width()
+            painter.setPen(self.look.colour("soft"))
+            painter.setFont(self.look.fit(tr(name), 1.5, half, bold=True))
+            put(painter, QRectF(box.x(), 0, half, box.height()), RIGHT, name)
+            painter.setPen(self.look.colour("text"))
+            painter.setFont(self.look.fit(figure, 2.0, box.width() - half - u, bold=True))
+            put_raw(
+                painter, QRectF(box.x() + half + u, 0, box.width() - half - u, box.height()), LEFT, figure
+            )
