@@ -75,6 +75,11 @@ class BlockSink(Protocol):
     ahead: float
 
     @property
+    def fastest(self) -> float:
+        """What the controller itself allows its slides, mm/s: its slowest axis."""
+        ...
+
+    @property
     def caps(self) -> frozenset[str]: ...
 
     def submit(self, op: BlockOp) -> int | None:

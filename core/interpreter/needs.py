@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from core.interpreter.actions import SpindleLock
+from core.interpreter.actions import Action, AskInput, Collet, Coolant, Output, SpindleLock, WaitInput
 from core.interpreter.blocks import Block, Kind
 
 ARC = "arc"
@@ -55,10 +55,11 @@ def first_needs(needs: Iterable[Need]) -> tuple[Need, ...]:
 
 
 def _needs(block: Block, before: Block | None) -> Iterator[str]:
-    if isinstance(block.action, SpindleLock) or (block.moves and block.c != block.c0):
-        yield C_AXIS
-    if not block.moves:
+    if block.action is not None:
+        yield from _of_action(block.action)
         return
+    if block.c != block.c0:
+        yield C_AXIS
     if block.travel is not None or block.kind is Kind.PLANE:
         yield AXES
     elif block.plane is not None:
@@ -69,3 +70,20 @@ def _needs(block: Block, before: Block | None) -> Iterator[str]:
         yield PULL_OUT if before is not None and before.kind is Kind.THREAD else THREAD
     if block.css is not None and block.rpm != 0.0:
         yield SURFACE
+
+
+def _of_action(action: Action) -> Iterator[str]:
+    """Terminals, by name, and the spindle as an axis."""
+    match action:
+        case SpindleLock():
+            yield C_AXIS
+        case Output(name=name):
+            yield f"output {name}"
+        case Collet():
+            yield "output collet"
+        case Coolant():
+            yield "output coolant"
+        case WaitInput(terminal=terminal) | AskInput(terminal=terminal):
+            yield f"input {terminal}"
+        case _:
+            return

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from core.block_port import BlockOp, BlockState, ThreadOp
 from core.ports import DriverError
 from drivers.grblhal import codes, scripts
@@ -12,6 +14,8 @@ from drivers.grblhal.overrides import Overrides
 from drivers.grblhal.report import Report
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
+_ABORT = "abort"
+_LATE = 3  # reports that may still tell of a hold that has just been ended
 
 
 class GrblBlocks:
@@ -30,8 +34,10 @@ class GrblBlocks:
         self._settled = False  # a report since the last line has said that all is done
         self._hold = False  # asked, and not yet taken back
         self._ours = False  # the hold that stands is our own
+        self._released = 0  # reports after which a hold is one again
         self._target: tuple[float, float] | None = None
         self.rest: tuple[float, float] | None = None  # X and Z where the last block has exactly ended
+        self.terminals: Callable[[], frozenset[str]] = frozenset  # what the inputs and outputs can do
         controller.on_report, controller.on_void = self._reported, self._voided
 
     @property
@@ -39,7 +45,13 @@ class GrblBlocks:
         """Threads need the controller's own encoder, which a third speed in its reports tells of."""
         report = self._c.report
         encoder = report is not None and report.measured is not None
-        return frozenset(("arc", "thread")) if encoder else frozenset(("arc",))
+        return self.terminals() | ({"arc", "thread"} if encoder else {"arc"})
+
+    @property
+    def fastest(self) -> float:
+        """By the machine file, or by the controller's settings where these are less."""
+        wired = [axis for axis in self._c.config.axes if axis.wired]
+        return min(min(axis.vmax, scripts.speed_of(self._c, axis.name) or axis.vmax) for axis in wired)
 
     @property
     def quiet(self) -> bool:
@@ -67,6 +79,7 @@ class GrblBlocks:
         """From the last report and what has been sent since."""
         c = self._c
         held = c.report is not None and c.report.state in {"Hold", "Door"} and not c.report.sub
+        held = held and c.reports >= self._released
         resting = self.quiet or c.lost or (c.fault != "" and self._dead())
         return BlockState(self._done, self._active, resting, held and not c.busy, self.hindrance())
 
@@ -84,6 +97,7 @@ class GrblBlocks:
     def hold(self) -> None:
         """0x82; the controller delays it to the end of a thread pass."""
         self._hold = self._ours = True
+        self._released = 0
         self._c.realtime(codes.HOLD)
         self._c.question()
 
@@ -95,8 +109,8 @@ class GrblBlocks:
     def abort(self) -> None:
         """To rest; the tickets are void."""
         self._hold = self._ours = False
-        if not self._c.lost:
-            self._c.run(scripts.abort(self._c))
+        if not self._c.lost and not (self._c.busy and self._c.doing == _ABORT):
+            self._c.run(scripts.abort(self._c), _ABORT)
 
     def override(self, feed: float, rapid: float) -> None:
         """Wanted from now on; sent and verified by ``pump``."""
@@ -114,8 +128,10 @@ class GrblBlocks:
     def jog_to(self, axis: str, target: float, speed: float) -> None:
         """One step."""
         self._demand_ready()
+        place = self.rest or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
         self._jogs.step(axis, target, speed)
         self._settled, self.rest = False, None
+        self._target = (target, place[1]) if axis == "X" else (place[0], target)
 
     def jog_stop(self) -> None:
         """0x85, and lines that it swallowed are settled."""
@@ -191,5 +207,6 @@ class GrblBlocks:
         report = self._c.report
         if self._ours and not self._hold and report is not None and report.state == "Hold" and not report.sub:
             self._ours = False
+            self._released = self._c.reports + _LATE
             self._c.realtime(codes.START)
             self._c.question()

@@ -43,6 +43,7 @@ class Controller:
         self.clock = clock
         self.stream = Stream(self._write)
         self.identity: Identity | None = None
+        self.settings: dict[int, str] = {}  # as read at the connection
         self.report: Report | None = None  # the last one
         self.reports = self.fulls = self.banners = 0  # how many have come
         self.heard_at = clock.now()
@@ -56,6 +57,7 @@ class Controller:
         self.alarm = 0
         self.trusted = True  # the position
         self.ready = False  # modes verified, nothing wrong
+        self.doing = ""  # what the present script is for
         self.index_wait = False  # a thread pass is under way: no report may come for seconds
         self.on_report: Callable[[Report], None] = lambda _: None
         self.on_void: Callable[[], None] = lambda: None
@@ -86,8 +88,9 @@ class Controller:
         """A line for the controller; its answer comes with later pumps."""
         return self.stream.send(line, self.clock.now(), ticket)
 
-    def run(self, script: Script) -> None:
+    def run(self, script: Script, doing: str = "") -> None:
         """Begin a script; one that is under way is given up."""
+        self.doing = doing
         if self._script is not None:
             self._script.close()
         self._script, self.ready, self._expected = script, False, False
@@ -203,7 +206,7 @@ class Controller:
         self.banners += 1
         self.void()
         self.diameter = None
-        if not self._expected:
+        if not self._expected and self.identity is not None:
             self.fail("the controller has been reset; what it was given is void")
 
     def _damaged(self, line: str) -> None:
@@ -234,7 +237,7 @@ class Controller:
         if report.state == "Idle" and report.free is not None:
             self.most_free = max(self.most_free, report.free)
         if not self.diameter:
-            self.position = self._places(report)
+            self.position = self._places(report) or self.position
         self.report, self.heard_at, self._asked_at = report, now, None
         self._mind(report)
         self.on_report(report)

@@ -19,7 +19,8 @@ class Identity(NamedTuple):
     buffer: int
     axes: str
     options: frozenset[str]
-    outputs: int  # auxiliary digital outputs
+    inputs: int  # auxiliary digital inputs
+    outputs: int
 
     @property
     def lathe(self) -> bool:
@@ -44,6 +45,6 @@ def read_identity(lines: Iterable[str]) -> Identity:
         )
     axes = told.get("AXS", "3:XYZ").partition(":")[2]
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
-    outputs = told.get("AUX IO", "").split(",")
-    count = int(outputs[1]) if len(outputs) > 1 and outputs[1].isdecimal() else 0
-    return Identity(told["VER"], blocks, buffer, axes, options, count)
+    ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
+    inputs, outputs = (*ports, 0, 0)[:2]
+    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs)

@@ -9,10 +9,10 @@ from drivers.grblhal import scripts
 from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.config import GrblConfig
 from drivers.grblhal.controller import Controller
+from drivers.grblhal.inputs import GrblInputs, GrblStation, panel_of
 from drivers.grblhal.outputs import GrblIO, GrblSpindle
 from drivers.grblhal.ports import GrblAxes
 from drivers.grblhal.wire import Wire, open_wire
-from drivers.panel_station import PanelStation
 
 _ROUND = 0.005  # s between two looks while it connects
 _CONNECTING = 15.0
@@ -37,8 +37,10 @@ class GrblMachine:
         self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
         self.blocks = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.blocks)
-        self.io = GrblIO(self.controller)
+        self.inputs = GrblInputs(self.controller, self.blocks)
+        self.io = GrblIO(self.controller, self.inputs)
         self.axes = GrblAxes(self.controller, self.blocks, self.pump)
+        self.blocks.terminals = self.io.able
         voided = self.controller.on_void
 
         def void() -> None:
@@ -48,13 +50,13 @@ class GrblMachine:
 
         self.controller.on_void = void
         self._connect()
-        self.panel = PanelStation(clock, lambda: bool(self.io.inputs().get("estop")))
+        self.panel = panel_of(clock, self.inputs)
         self.ports = MachinePorts(
             clock=clock,
             axes=self.axes,
             spindle=self.spindle,
             io=self.io,
-            station=self.panel,
+            station=GrblStation(self.panel, self.inputs),
             warnings=self._warnings(),
             blocks=self.blocks,
         )
@@ -65,6 +67,7 @@ class GrblMachine:
         self.blocks.pump()
         self.spindle.pump()
         self.io.pump()
+        self.inputs.pump()
 
     def close(self) -> None:
         """Nothing is left moving; then the wire goes."""
@@ -87,14 +90,24 @@ class GrblMachine:
             self.pump()
             self._clock.sleep_until(self._clock.now() + _ROUND)
 
+    def _slower(self) -> list[str]:
+        """Where the controller's own settings allow less than the machine file promises."""
+        c = self.controller
+        told = [
+            f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
+            for axis in c.config.axes
+            if axis.wired and 0.0 < (speed := scripts.speed_of(c, axis.name)) < 0.99 * axis.vmax
+        ]
+        highest = float(c.settings.get(30, "0"))
+        if 0.0 < highest < c.config.rpm_max:
+            told.append(f"spindle: $30 allows {highest:g} rpm, the machine file {c.config.rpm_max:g}")
+        return told
+
     def _warnings(self) -> list[str]:
         lacking = {name: self.io.lacking(name) for name in self.controller.config.outputs}
         told = [f"output {name}: {why}" for name, why in lacking.items() if why]
-        told += [
-            f"input {name}: {wired.terminal} is in no status report; it is not read"
-            for name, wired in self.controller.config.inputs.items()
-            if not wired.terminal.startswith("pn.")
-        ]
+        told += [f"input {name}: {why}" for name, why in self.inputs.lacking().items()]
+        told += self._slower()
         if "thread" not in self.blocks.caps:
             told.append("the controller reports no spindle encoder: threads are refused")
         return told

@@ -1,4 +1,4 @@
-"""Spindle, outputs and inputs of the controller: lines at a standstill, override steps while it moves."""
+"""Spindle and outputs of the controller: lines at a standstill, override steps while it moves."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from core.ports import DriverError
 from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import number
+from drivers.grblhal.inputs import GrblInputs
 from drivers.grblhal.overrides import LEAST, MOST
 
 _COOLANT = {"flood": "M8", "mist": "M7"}
-_PIN = "pn."
 _COLLET = "collet"  # stays closed as it was found
 
 
@@ -42,8 +42,10 @@ class GrblSpindle:
         report = self._c.report
         if report is None or report.speeds is None or len(report.speeds) < 2:
             return 0.0
-        rpm = report.speeds[1] if report.measured is None else report.measured
-        return math.copysign(abs(rpm), self._said)
+        if report.measured is not None:
+            return math.copysign(abs(report.measured), self._said)
+        percent = self._c.overrides[2] if self._c.overrides and len(self._c.overrides) > 2 else 100
+        return self._said * percent / 100.0 if report.speeds[1] else 0.0
 
     def angle(self) -> tuple[float, float] | None:
         """The controller keeps it to itself."""
@@ -76,22 +78,18 @@ class GrblSpindle:
 
 
 class GrblIO:
-    """``core.ports.DigitalIO``: flood, mist and auxiliary outputs; pins that the reports tell of."""
+    """``core.ports.DigitalIO``: flood, mist and auxiliary outputs."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: Controller, inputs: GrblInputs) -> None:
         self._c = controller
+        self._inputs = inputs
         outputs = controller.config.outputs
         self._wanted = {name: name == _COLLET for name in outputs}
         self._sent: dict[str, bool] = {}  # what the controller has been told since it last forgot
 
     def inputs(self) -> Mapping[str, bool]:
-        """Pins by the names of the machine file; auxiliary inputs are in no report, and not in here."""
-        pins = self._c.report.pins if self._c.report is not None else ""
-        return {
-            name: (wired.terminal.removeprefix(_PIN) in pins)
-            for name, wired in self._c.config.inputs.items()
-            if wired.terminal.startswith(_PIN)
-        }
+        """By the names of the machine file."""
+        return self._inputs.states()
 
     def outputs(self) -> Mapping[str, bool]:
         """As last asked for."""
@@ -124,6 +122,13 @@ class GrblIO:
         if port.isdecimal() and int(port) < have:
             return ""
         return f"{terminal} is not among the controller's {have} auxiliary outputs"
+
+    def able(self) -> frozenset[str]:
+        """What a program may ask of the terminals, as ``core.interpreter.needs`` names it."""
+        outputs = {f"output {name}" for name in self._wanted if not self.lacking(name)}
+        there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
+        names = there | {self._c.config.inputs[name].terminal for name in there}
+        return frozenset(outputs | {f"input {name}" for name in names})
 
     def voided(self) -> None:
         """A stop or a reset switches coolant off; what auxiliary outputs do then nobody tells."""

@@ -27,6 +27,7 @@ class Report(NamedTuple):
     overrides: tuple[int, ...] | None = None  # per cent: feed, rapid, spindle
     diameter: bool | None = None
     homed: tuple[int, ...] | None = None
+    input: int | None = None  # what M66 has read: 1 on, 0 off, -1 nothing
     full: bool = False
 
     @property
@@ -51,16 +52,14 @@ def read_report(line: str) -> Report | None:
     values: dict[str, object] = {}
     for field in fields:
         name, colon, text = field.partition(":")
-        if not colon or not name.isalnum():
-            return None
         reader = _READERS.get(name)
-        if reader is None:
+        if reader is None or not colon:
             continue
         found = reader(text)
         if found is None:
             return None
         values.update(found)
-    if "position" not in values:
+    if "position" not in values and not values.pop("work", None):
         return None
     return Report(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
 
@@ -94,6 +93,7 @@ def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, 
 
 _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "MPos": _floats("position"),
+    "WPos": lambda text: {"work": True} if _numbers(text) else None,  # until $10 is as it must be
     "FS": _floats("speeds"),
     "WCO": _floats("offset"),
     "Bf": _whole("free", 0),
@@ -101,6 +101,7 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "Ov": _whole("overrides"),
     "H": _whole("homed"),
     "Pn": lambda text: {"pins": text},
+    "In": lambda text: {"input": int(text)} if text in {"-1", "0", "1"} else {},
     "FW": lambda _: {"full": True},
     "D": lambda text: {"diameter": text == "1"} if text in {"0", "1"} else None,
 }

@@ -6,17 +6,20 @@ Each is a generator that the controller's pump carries on; what goes wrong is ra
 from __future__ import annotations
 
 import math
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 
 from core.ports import DriverError
 from drivers.grblhal import codes
 from drivers.grblhal.controller import Controller, Script, ScriptError, Step
 from drivers.grblhal.identity import read_identity
+from drivers.grblhal.stream import Ask
 
 _ANSWER = 2.0  # s for a line
-_STOPPING = 1.5  # s to come to rest
+_LATE = 0.4  # s, beyond its ramp, for a stop to be seen
 _BANNER = 3.0  # s that a reset takes
+_BOOT = 6.0  # s; some boards start when their port is opened
 _HOMING = 120.0
+_TRIES = 3
 _REPORTS = (
     0x7F | 0x400
 )  # $10: machine position, buffers, line numbers, speeds, pins, offsets, overrides, alarm
@@ -26,7 +29,7 @@ _MISSED = "the controller sends no status report"
 
 def connect(c: Controller) -> Script:
     """From an open wire to verified modes; a controller in alarm stays there for the operator."""
-    yield from full_report(c)
+    yield from full_report(c, _BOOT)
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
         yield from _stop(c)
     yield from _fresh(c)
@@ -110,35 +113,57 @@ def jog_end(c: Controller) -> Script:
     began = c.reports
     yield (
         lambda: c.reports > began + 1 and c.report is not None and not c.report.moves,
-        _STOPPING,
+        _ANSWER,
         "a cancelled jog does not end",
     )
     yield from verify(c)
 
 
-def full_report(c: Controller) -> Script:
+def full_report(c: Controller, within: float = _ANSWER) -> Script:
     """A report with everything in it."""
     before = c.fulls
     c.question(full=True)
-    yield lambda: c.fulls > before, _ANSWER, _MISSED
+    yield lambda: c.fulls > before, within, _MISSED
 
 
 def _stop(c: Controller) -> Script:
     """0x19 decelerates and keeps the position; where that does not end: hold, then reset."""
     after = c.reports + 1  # one report may still be on its way from before
-    by = c.clock.now() + _STOPPING
+    by = c.clock.now() + _stopping(c)
     c.realtime(codes.STOP)
 
     def rests() -> bool:
         return c.reports > after and c.report is not None and c.report.state in {"Idle", "Alarm"}
 
-    yield lambda: rests() or c.clock.now() >= by, _STOPPING + 1.0, _MISSED
+    yield lambda: rests() or c.clock.now() >= by, _stopping(c) + 1.0, _MISSED
     if rests():
         return
     c.realtime(codes.HOLD)
-    by = c.clock.now() + _STOPPING
-    yield lambda: _held(c) or c.clock.now() >= by, _STOPPING + 1.0, _MISSED
+    by = c.clock.now() + _stopping(c)
+    yield lambda: _held(c) or c.clock.now() >= by, _stopping(c) + 1.0, _MISSED
     yield from _reset(c)
+
+
+def _stopping(c: Controller) -> float:
+    """Seconds that the slowest slide takes to brake, by the controller's own figures where it tells them."""
+    wired = [axis for axis in c.config.axes if axis.wired]
+    ramps = [axis.vmax / axis.amax for axis in wired]
+    for axis in wired:
+        speed, accel = speed_of(c, axis.name), _figure(c, 120, axis.name)
+        if speed and accel:
+            ramps.append(speed / accel)
+    return _LATE + max(ramps)
+
+
+def speed_of(c: Controller, letter: str) -> float:
+    """The controller's own greatest speed of an axis, mm/s; 0 where it does not tell."""
+    return _figure(c, 110, letter) / 60.0
+
+
+def _figure(c: Controller, first: int, letter: str) -> float:
+    """A setting that there is once for each axis, in their order."""
+    index = _letters(c).find(letter)
+    return float(c.settings.get(first + index, "0")) if index >= 0 else 0.0
 
 
 def _held(c: Controller) -> bool:
@@ -159,9 +184,18 @@ def _reset(c: Controller) -> Script:
 
 def _fresh(c: Controller) -> Script:
     """An empty line ends half a line and a standing error; from ``$G`` on answers count again."""
-    c.stream.void()
-    c.realtime(ord("\n"))
-    yield from _asked(c, "$G")
+    for _ in range(_TRIES):
+        c.stream.void()
+        c.realtime(ord("\n"))
+        ask, by = c.send("$G"), c.clock.now() + _ANSWER / _TRIES
+        yield _by(c, ask, by), _ANSWER, ""
+        if ask.done:
+            return
+    raise ScriptError("the controller does not answer '$G'")
+
+
+def _by(c: Controller, ask: Ask, by: float) -> Callable[[], bool]:
+    return lambda: ask.done or c.clock.now() >= by
 
 
 def _asked(c: Controller, line: str, within: float = _ANSWER) -> Generator[Step, None, list[str]]:
@@ -184,7 +218,7 @@ def _demand_modes(c: Controller) -> Script:
 
 def _settings(c: Controller) -> Script:
     """Write what is not as the machine file says, and read it back."""
-    there = _values((yield from _asked(c, "$$")))
+    there = c.settings = _values((yield from _asked(c, "$$")))
     wanted: dict[int, float | str] = dict(c.config.settings)
     reports = int(float(there.get(10, "0")))
     wanted[10] = (reports | _REPORTS) & ~_PARSER
@@ -193,7 +227,7 @@ def _settings(c: Controller) -> Script:
         return
     for n, value in wrong.items():
         yield from _asked(c, f"${n}={_written(value)}")
-    there = _values((yield from _asked(c, "$$")))
+    there = c.settings = _values((yield from _asked(c, "$$")))
     for n, value in wrong.items():
         if not _same(there.get(n), value):
             raise ScriptError(

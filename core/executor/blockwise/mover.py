@@ -152,7 +152,10 @@ class BlockMover:
         self._hand_over()
 
     def forget(self) -> None:
-        """The stretch is over, or nothing of it holds any more."""
+        """The stretch is over, or nothing of it holds any more: the controller forgets it too."""
+        self._look()
+        if self._sent:
+            self._sink.abort()
         self._empty()
         self._shown = self._last = self._lost = None
         self._thread = self._active = False
@@ -205,7 +208,7 @@ class BlockMover:
     def _hand_over(self) -> None:
         turning = Turning(self._scales.turn, self._bench.spindle.highest)
         while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
-            self._pieces.extend(pieces_of(self._waiting.popleft(), turning))
+            self._pieces.extend(pieces_of(self._waiting.popleft(), turning, self._sink.fastest))
         while self._pieces and self._may(self._pieces[0]):
             ticket = self._sink.submit(self._pieces[0].op)
             if ticket is None:

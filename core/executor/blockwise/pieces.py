@@ -36,11 +36,14 @@ class Turning(NamedTuple):
     highest: float
 
 
-def pieces_of(block: Block, turning: Turning) -> Iterator[Piece]:
-    """The pieces of one moving block. Raises TroubleError for what has no speed or is not X and Z alone."""
+def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iterator[Piece]:
+    """The pieces of one moving block, none faster than ``fastest`` mm/s.
+
+    Raises TroubleError for what has no speed or is not X and Z alone.
+    """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise TroubleError("program", "this controller moves X and Z only", block.line)
-    seconds = nominal(block)
+    seconds = max(nominal(block), _way(block) / fastest)
     if block.kind is Kind.THREAD:
         yield Piece(ThreadOp(block.mx, block.mz, block.feed), block, seconds)
         return
@@ -50,10 +53,13 @@ def pieces_of(block: Block, turning: Turning) -> Iterator[Piece]:
 
 
 def _cuts(block: Block, seconds: float) -> int:
-    way = math.hypot(block.x - block.x0, block.z - block.z0)
+    return max(1, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(_way(block) / _SHORTEST)))
+
+
+def _way(block: Block) -> float:
     if block.kind is Kind.ARC:
-        way = math.hypot(block.x0 - block.cx, block.z0 - block.cz) * abs(_sweep(block)[1])
-    return max(1, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(way / _SHORTEST)))
+        return math.hypot(block.x0 - block.cx, block.z0 - block.cz) * abs(_sweep(block)[1])
+    return math.hypot(block.x - block.x0, block.z - block.z0)
 
 
 def _op(block: Block, begin: float, end: float, turning: Turning) -> BlockOp:

@@ -24,6 +24,7 @@ class Quirks:
     diameter: bool = False  # comes up in G7, as $N0=G7 would make it
     index_missing: bool = False
     outputs: int = 16
+    inputs: int = 8
     lathe: bool = True
     homing: bool = False
     deaf: bool = False  # answers nothing
@@ -42,6 +43,8 @@ class Firmware:
         self.program = Program(self)
         self.outputs: dict[str, bool] = {}
         self.pins = ""
+        self.inputs: dict[int, bool] = {}
+        self.read: int | None = None  # what the last M66 has found
         self.alarm = 11 if self.quirks.homing else 0
         self.homed = not self.quirks.homing
         self.overflowed = 0  # bytes that did not fit
@@ -257,5 +260,6 @@ class Firmware:
             text += (
                 f"|WCO:0.000,0.000,0.000|Ov:{self.feed_percent},{self.rapid_percent},{self.spindle_percent}"
             )
+            text += "" if self.read is None else f"|In:{self.read}"
             text += f"|D:{int(self.program.modes.radius == 'G7')}|H:{int(self.homed)}|T:0|FW:grblHAL"
         self.say(text + ">\r\n")

@@ -124,7 +124,7 @@ class Program:
                 "[OPT:VNML+,100,1024,3,16]",
                 "[AXS:3:XYZ]",
                 f"[NEWOPT:ENUMS,RT+,{lathe}EXPR,TC,SED]",
-                f"[AUX IO:8,{quirks.outputs},0,0]",
+                f"[AUX IO:{quirks.inputs},{quirks.outputs},0,0]",
             ],
             "$$": lambda: [f"${n}={value:g}" for n, value in sorted(self.settings.items())],
             "$G": lambda: [self.modes.told()],
@@ -183,6 +183,8 @@ class Program:
                 if not 0 <= port < machine.quirks.outputs:
                     return 39
                 machine.outputs[f"out.{port}"] = code == "M64"
+            elif code == "M66":
+                machine.read = int(machine.inputs.get(int(words.get("P", -1)), False))
             else:
                 return 20
         return 0

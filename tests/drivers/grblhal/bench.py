@@ -59,9 +59,9 @@ class LoopWire:
         """Nothing to let go."""
 
     def lines(self) -> list[str]:
-        """Whole lines of the host, without real-time bytes."""
+        """Whole lines of the host, without real-time bytes and without asking for inputs."""
         plain = bytes(b for b in self.sent if b < 0x80 and b not in {0x18, 0x19})
-        return [line for line in plain.decode("ascii").split("\n") if line]
+        return [line for line in plain.decode("ascii").split("\n") if line and not line.startswith("M66")]
 
 
 class GrblBench:

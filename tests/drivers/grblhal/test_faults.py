@@ -1,0 +1,226 @@
+"""What goes wrong on the wire and in the controller: stopped, told once, and nothing goes on by itself."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import EnableDrives, FeedOverride, Home, Reset
+from core.executor.snapshot import State
+from core.ports import DriverError
+from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+from tests.drivers.grblhal.test_run import LONG
+
+THREAD = "G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-.5I.025K.05\nG00Z1\nM30\n"
+
+
+def cutting(bench: GrblBench) -> GrblBench:
+    """In the long feed of ``LONG``."""
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    return bench
+
+
+def clear(bench: GrblBench) -> None:
+    """Reset, and drives on again."""
+    bench.until_true(lambda _: not bench.machine.axes.sample().moving, 5.0)
+    bench.post(Reset())
+    bench.run(1.0)
+    bench.post(EnableDrives())
+    bench.run(0.1)
+
+
+def test_a_reset_of_the_controller_ends_the_cycle_and_keeps_what_x_means() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.reset()
+    bench.until(State.FAULT, limit=1.0)
+    assert "reset" in bench.alarms()
+    at = bench.peer.slides.place
+    done = list(bench.peer.program.executed)
+    bench.run(2.0)
+    assert bench.peer.slides.place == at
+    assert bench.peer.program.executed == done
+    bench.post(Reset())
+    bench.run(1.5)
+    assert bench.peer.alarm == 0
+    assert bench.peer.program.modes.plane == "G18"
+    assert bench.shot.demand[0] == pytest.approx(at[0], abs=0.001)  # radius, not diameter
+    assert bench.state is State.DISABLED
+    assert not all(bench.shot.homed)  # it was reset while it moved: ALARM:3
+
+
+def test_a_sticky_error_is_told_once_and_nothing_behind_it_runs() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.program.settings[32] = 0.0
+    bench.peer.quirks.lathe = False
+    done = len(bench.peer.program.executed)
+    bench.peer.program.error = 33  # as a line that it refuses leaves it
+    bench.until(State.FAULT, limit=1.0)
+    assert len(bench.shot.alarms) == 1
+    assert "error:33" in bench.alarms()
+    bench.run(1.0)
+    assert len(bench.peer.program.executed) <= done + 1
+    assert len([text for text in bench.said("alarm") if "error:33" in text]) == 1
+    assert not bench.peer.slides.queue
+
+
+@pytest.mark.parametrize("damage", [b"o", b"k", b"o*", b"okok", b"\xffk"])
+def test_a_damaged_answer_stops_and_moves_no_position(damage: bytes) -> None:
+    bench = cutting(GrblBench())
+    bench.peer.quirks.garble.append(damage)
+    bench.until(State.FAULT, limit=1.0)
+    assert "disturbed" in bench.alarms()
+    bench.until_true(lambda _: not bench.peer.slides.moving, 1.0)
+    bench.run(1.0)
+    assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
+    assert not bench.peer.slides.queue
+
+
+def test_an_answer_that_never_comes_is_missed() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nX.5Z.2\nM30\n")
+    bench.until(State.IDLE)
+    bench.run(0.4)
+    bench.peer.quirks.garble.append(b"")
+    bench.start("G90G94F300\nX.3Z.2\nM30\n")
+    bench.until(State.FAULT, limit=5.0)
+    assert "no answer" in bench.alarms()
+
+
+def test_a_leaping_position_is_not_believed() -> None:
+    bench = cutting(GrblBench())
+    before = bench.shot.actual[0]
+    bench.peer.say("<Run|MPos:-18542.000,0.000,0.000|FS:0,0,0>\r\n")
+    bench.until(State.FAULT, limit=1.0)
+    assert bench.shot.actual[0] == pytest.approx(before, abs=1.0)
+
+
+def test_a_silent_controller_is_told() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.quirks.deaf = True
+    took = bench.until(State.FAULT, limit=3.0)
+    assert took < 1.4
+    assert "does not answer" in bench.alarms()
+
+
+def test_a_cable_that_is_pulled_out_is_final() -> None:
+    bench = cutting(GrblBench())
+    bench.wire.cut = True
+    bench.until(State.FAULT, limit=0.1)
+    assert "connection" in bench.alarms()
+    bench.post(Reset())
+    bench.run(0.5)
+    assert bench.state is State.FAULT
+    with pytest.raises(DriverError, match="start the control again"):
+        bench.machine.axes.clear_fault()
+
+
+def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:
+    bench = cutting(GrblBench())
+    z = bench.peer.slides.place[1]
+    bench.wire.cut = True
+    bench.clock.advance(10.0)  # nobody ticks any more
+    bench.peer.advance()
+    assert not bench.peer.slides.queue
+    assert abs(bench.peer.slides.place[1] - z) < 12.7 * 0.9  # of 50 mm that the block still had
+
+
+def test_estop_at_the_controller() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.pins = "E"
+    bench.peer.raise_alarm(10)
+    bench.until(State.ESTOP, limit=1.0)
+    bench.run(1.0)
+    assert bench.shot.rpm_command == 0.0
+    bench.peer.pins = ""
+    bench.run(1.0)
+    assert bench.state is not State.RUN
+    bench.post(Reset())
+    bench.run(2.0)
+    assert bench.state is State.DISABLED
+    assert bench.peer.alarm == 0
+    assert bench.peer.rpm == 0.0
+
+
+def test_a_thread_is_the_controllers_own() -> None:
+    bench = GrblBench()
+    bench.start(THREAD)
+    bench.until(State.IDLE)
+    threads = [line for line in bench.wire.lines() if "G33" in line]
+    assert len(threads) >= 2
+    assert all(line.endswith("Z-12.7K1.27") for line in threads)
+    assert bench.peer.slides.place[1] == pytest.approx(25.4)
+    assert "G95" not in "".join(bench.wire.lines())
+    assert not bench.said("alarm")
+
+
+def test_a_thread_without_an_index_is_waited_for_and_then_an_alarm() -> None:
+    bench = GrblBench(quirks=quirky(index_missing=True))
+    bench.start(THREAD)
+    bench.until(State.FAULT, limit=20.0)
+    assert "ALARM:14" in bench.alarms()
+    clear(bench)
+    assert bench.state is State.IDLE  # the block that stood in the planner is gone
+    assert not bench.peer.slides.queue
+    bench.run(2.0)
+    assert bench.state is State.IDLE
+
+
+def test_without_an_encoder_threads_are_refused_before_the_start() -> None:
+    bench = GrblBench(quirks=quirky(encoder=False))
+    bench.start(THREAD)
+    assert bench.state is State.IDLE
+    assert "threads" in bench.shot.start_refused
+
+
+def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_reset() -> None:
+    """The look-alike's own habit, and that the recovery gets rid of it."""
+    bench = GrblBench()
+    bench.ready()
+    bench.peer.feed(b"G95\nG1X5F.1\n")
+    bench.run(0.3)
+    assert bench.peer.alarm == 14
+    assert bench.peer.slides.queue
+    bench.until(State.FAULT, limit=1.0)
+    clear(bench)
+    assert bench.peer.alarm == 0
+    assert not bench.peer.slides.queue
+    assert bench.peer.program.modes.feed_mode == "G94"
+
+
+def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None:
+    bench = GrblBench(quirks=quirky(diameter=True))
+    assert bench.peer.program.modes.radius == "G8"
+    assert bench.machine.controller.diameter is False
+
+
+def test_a_controller_that_is_no_lathe_is_refused() -> None:
+    with pytest.raises(DriverError, match=r"G8.*error:20"):
+        GrblBench(quirks=quirky(lathe=False))
+
+
+def test_settings_are_written_once_and_read_back() -> None:
+    bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
+    assert bench.peer.program.settings[110] == 7620.0
+
+
+def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
+    absolute = "absolute = true"
+    machine = grbl_machine()
+    assert absolute  # the shipped axes know their position
+    bench = GrblBench(machine, quirky(homing=True))
+    bench.ready()
+    bench.run(0.5)
+    bench.load(LONG)
+    bench.press()
+    assert "homed" in bench.shot.start_refused
+    bench.post(Home())
+    bench.run(3.0)
+
+
+def test_an_override_that_is_not_taken_is_an_alarm() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.__class__ = type("Stubborn", (type(bench.peer),), {"_override": lambda *_: None})
+    bench.post(FeedOverride(0.5))
+    bench.until(State.FAULT, limit=8.0)
+    assert "override" in bench.alarms()

@@ -1,0 +1,99 @@
+"""Jog by lease: silence is the stop, and nothing goes further than the lease."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import Jog, JogStep, JogStop
+from core.executor.snapshot import State
+from tests.drivers.grblhal.bench import GrblBench
+
+V, LEASE = 40.0, 0.2
+
+
+def ready() -> GrblBench:
+    bench = GrblBench()
+    bench.ready()
+    bench.run(0.5)
+    return bench
+
+
+def hold_key(bench: GrblBench, seconds: float) -> None:
+    """Renewed four times a lease."""
+    end = bench.clock.now() + seconds
+    while bench.clock.now() < end - 1e-9:
+        bench.post(Jog("X", V, LEASE))
+        bench.run(0.04)
+
+
+def test_a_jog_goes_as_long_as_it_is_renewed() -> None:
+    bench = ready()
+    hold_key(bench, 1.0)
+    assert bench.state is State.JOG
+    assert bench.peer.slides.v == pytest.approx(V, abs=1.0)
+    assert bench.peer.slides.place[0] == pytest.approx(V * 1.0, abs=4.0)
+
+
+def test_a_lost_lease_is_the_stop() -> None:
+    bench = ready()
+    hold_key(bench, 1.0)
+    at = bench.peer.slides.place[0]
+    took = bench.until_true(lambda _: not bench.peer.slides.moving, 1.0)
+    assert took <= LEASE + 0.1
+    assert bench.peer.slides.place[0] - at <= V * LEASE + V * V / (2 * 3000.0) + 1e-6
+    bench.until(State.IDLE, limit=0.5)
+
+
+def test_letting_go_stops_at_once() -> None:
+    bench = ready()
+    hold_key(bench, 0.5)
+    at = bench.peer.slides.place[0]
+    bench.post(JogStop())
+    assert bench.until(State.IDLE, limit=0.6) < 0.6
+    assert bench.peer.slides.place[0] - at < V * 0.03 + V * V / (2 * 3000.0)
+    assert 0x85 in bench.wire.sent
+    assert not bench.shot.alarms
+
+
+def test_a_killed_host_stops_within_its_lease() -> None:
+    bench = ready()
+    hold_key(bench, 0.5)
+    at = bench.peer.slides.place[0]
+    bench.clock.advance(5.0)
+    bench.peer.advance()
+    assert not bench.peer.slides.moving
+    assert bench.peer.slides.place[0] - at <= V * LEASE + V * V / (2 * 3000.0) + 1e-6
+
+
+def test_a_jog_ends_at_the_end_of_the_travel() -> None:
+    bench = ready()
+    hold_key(bench, 4.0)  # the travel ends at 101.6 mm
+    assert bench.peer.slides.place[0] == pytest.approx(101.6 - 0.01, abs=1e-4)
+    assert any("end of its travel" in text for text in bench.said("refused"))
+
+
+def test_a_step_is_exact_and_refused_while_it_moves() -> None:
+    bench = ready()
+    bench.post(JogStep("Z", -0.254, 5.0))
+    bench.post(JogStep("Z", -0.254, 5.0))
+    bench.until(State.IDLE, limit=2.0)
+    assert bench.peer.slides.place[1] == pytest.approx(-0.254, abs=1e-6)
+    assert bench.said("refused")
+    assert bench.wire.lines() == ["$J=G53G21G90Z-0.254F300"]
+
+
+def test_many_small_steps_add_up() -> None:
+    bench = ready()
+    for _ in range(20):
+        bench.post(JogStep("X", 0.00127, 5.0))
+        bench.until(State.IDLE, limit=2.0)
+        bench.run(0.05)
+    assert bench.peer.slides.place[0] == pytest.approx(20 * 0.00127, abs=2e-5)
+
+
+def test_a_program_cannot_be_started_in_a_jog() -> None:
+    bench = ready()
+    bench.load("G90G94F300\nX.3\nM30\n")
+    hold_key(bench, 0.3)
+    bench.press()
+    assert "jogged" in bench.shot.start_refused or bench.state is State.JOG

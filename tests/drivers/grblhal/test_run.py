@@ -1,0 +1,259 @@
+"""Programs on the look-alike: what goes out, what waits, what is held, stepped, overridden and refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import FeedHold, FeedOverride, Reset, SetSwitch
+from core.executor.snapshot import State
+from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+
+LONG = "G90G94F300\nM03S1000\nX.5Z.2\nG01Z-2F30\nX1F30\nM30\n"  # 2.2 in and .5 in at 30 in/min: 4.4 s and 1 s
+
+
+def test_the_lines_of_a_small_program() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nX.5Z.2\nG01X.25F60\nG03X.5Z-.05I.5K.2F60\nM08\nX.6F300\nM30\n")
+    bench.until(State.IDLE)
+    # .25 in at 60 in/min take .25 s: two pieces. The arc is 90 degrees about (12.7, 5.08), from X- to Z-,
+    # which in the controller's plane is clockwise; its middle lies 6.35/√2 off the centre.
+    assert bench.wire.lines() == [
+        "N1G0X12.7Z5.08",
+        "N2G1X9.525Z5.08F1524",
+        "N3G1X6.35Z5.08F1524",
+        "N4G2X8.20987Z0.58987I6.35K0F1524",
+        "N5G2X12.7Z-1.27I4.49013K4.49013F1524",
+        "M8",
+        "N6G0X15.24Z-1.27",
+        "M9",
+    ]
+
+
+def test_a_program_ends_where_it_says_and_counts_a_part() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    took = bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+    assert bench.shot.demand[:2] == pytest.approx((25.4, -50.8), abs=1e-9)
+    assert bench.shot.parts == 1
+    assert took == pytest.approx(5.4 + 0.7, abs=0.6)  # and the spindle, which reaches its speed in .7 s
+
+
+def test_the_block_that_is_moved_is_the_one_that_is_shown() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(2.0)
+    assert bench.shot.block_text.startswith("G01Z-2")
+    assert bench.shot.next_text.startswith("X1")
+    bench.until_true(lambda shot: shot.line == 5)
+    assert bench.peer.slides.place[1] == pytest.approx(-50.8, abs=2.0)
+
+
+def test_no_more_than_its_share_of_motion_is_ahead() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(1.0)
+    ahead = []
+    for _ in range(100):
+        bench.tick()
+        ahead.append(sum(block.length for block in bench.peer.slides.queue))
+    # Pieces of .2 s: the one under way, and .4 s rounded up to whole pieces; 12.7 mm/s.
+    assert max(ahead) <= 12.7 * (0.2 + 0.6) + 0.1
+    assert min(ahead) > 12.7 * 0.2
+
+
+def test_many_short_blocks_neither_starve_nor_overflow() -> None:
+    bench = GrblBench()
+    steps = "".join(f"X{0.5 + 0.0005 * (i % 2):.4f}Z{-0.001 * i:.3f}\n" for i in range(1, 1500))
+    bench.start(f"G90G94F300\nX.5Z0\nG01F100\n{steps}M30\n")
+    bench.until_true(lambda shot: shot.line > 50)
+    slowest = min(_speed_of(bench) for _ in range(60))
+    assert slowest > 0.5 * 100 * 25.4 / 60
+    bench.until(State.IDLE)
+    assert bench.peer.overflowed == 0
+    assert bench.peer.slides.place[1] == pytest.approx(-1.499 * 25.4)
+
+
+def _speed_of(bench: GrblBench) -> float:
+    bench.tick()
+    return bench.peer.slides.v
+
+
+def test_hold_and_on() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(FeedHold())
+    assert bench.until(State.HOLD) < 0.3
+    at = bench.peer.slides.place
+    bench.run(3.0)
+    assert bench.peer.slides.place == at
+    assert bench.state is State.HOLD
+    bench.press()
+    assert bench.state is State.RUN
+    bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+
+
+def test_reset_out_of_a_hold_keeps_the_position_and_the_modes() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(FeedHold())
+    bench.until(State.HOLD)
+    at = bench.peer.slides.place
+    bench.post(Reset())
+    bench.until(State.IDLE)
+    bench.run(0.5)
+    assert bench.peer.slides.place == at
+    assert bench.peer.program.modes.plane == "G18"
+    assert bench.peer.rpm == 0.0
+    bench.start("G90G94F300\nX.3Z.3\nM30\n")
+    bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((7.62, 7.62))
+
+
+def test_reset_in_motion_brakes_and_starts_nothing() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(Reset())
+    bench.until(State.IDLE, limit=3.0)
+    assert not bench.shot.alarms
+    bench.run(0.5)
+    bench.wire.sent.clear()
+    bench.run(2.0)
+    assert bench.wire.lines() == []
+    assert not bench.peer.slides.queue
+
+
+def test_a_stop_that_the_controller_does_not_know_falls_back_to_hold_and_reset() -> None:
+    bench = GrblBench(quirks=quirky(stop_broken=True))
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(FeedOverride(0.1))
+    bench.run(0.5)
+    bench.wire.sent.clear()
+    bench.post(Reset())
+    bench.until(State.IDLE, limit=8.0)
+    sent = bytes(bench.wire.sent)
+    assert sent.index(0x19) < sent.index(0x82) < sent.index(0x18)
+    assert bench.peer.alarm == 0  # it was at rest when it was reset: the position is kept
+    assert bench.peer.program.modes.plane == "G18"
+
+
+def test_single_block_stops_behind_each_block() -> None:
+    bench = GrblBench()
+    bench.ready()
+    bench.post(SetSwitch("single_block", True))
+    bench.start("G90G94F300\nX.5Z.2\nG01X.25F60\nX.1\nM30\n")
+    places = []
+    for _ in range(3):
+        bench.until(State.BLOCK_END)
+        places.append(bench.peer.slides.place)
+        bench.run(0.4)
+        bench.press()
+    assert places[1:] == [pytest.approx((6.35, 5.08)), pytest.approx((2.54, 5.08))] or places[:2] == [
+        pytest.approx((12.7, 5.08)),
+        pytest.approx((6.35, 5.08)),
+    ]
+
+
+@pytest.mark.parametrize("fraction", [0.83, 0.1, 1.5, 0.37])
+def test_overrides_are_reset_and_steps_and_read_back(fraction: float) -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.post(FeedOverride(fraction))
+    bench.run(1.0)
+    assert bench.peer.feed_percent == round(100 * fraction)
+    assert not bench.shot.alarms
+
+
+def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(FeedOverride(0.0))
+    bench.until(State.WAIT, limit=1.0)
+    assert bench.shot.waiting_for == "FEED OVERRIDE AT 0"
+    at = bench.peer.slides.place
+    bench.run(1.0)
+    assert bench.peer.slides.place == at
+    bench.post(FeedOverride(0.5))
+    bench.until(State.RUN, limit=1.0)
+    bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("M03S1000\nG96S300\nG01X.2F10", "constant surface speed"),
+        ("M19\nC90", "the C axis"),
+        ("M25", "output catcher"),
+        ("M13\nM12", "output collet"),
+        ("M91", "input TB2-5"),
+    ],
+)
+def test_what_the_controller_cannot_do_is_refused_before_the_start(text: str, expected: str) -> None:
+    bench = GrblBench(
+        grbl_machine(("enabled = false\nvmax", "enabled = true\nvmax")),
+        quirky(encoder=False, outputs=0, inputs=0),
+    )
+    bench.start(f"G90G94F300\nX.5Z.2\n{text}\nM30\n")
+    assert bench.state is State.IDLE
+    assert expected in bench.shot.start_refused
+    assert bench.wire.lines() == []
+
+
+def test_a_feed_per_turn_goes_out_as_a_feed_of_the_commanded_speed() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nM03S600\nX.5Z.2\nG01G95F.005X.45\nM30\n")
+    bench.until(State.IDLE)
+    # .005 in a turn at 600 rpm are 3 in/min, 76.2 mm/min
+    assert all(line.endswith("F76.2") for line in bench.wire.lines() if "G1" in line)
+
+
+def test_a_thread_with_a_pull_out_is_refused_before_the_start() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-.5I.025K.05P\nG00Z1\nM30\n")
+    assert bench.state is State.IDLE
+    assert "pulls out" in bench.shot.start_refused
+
+
+def test_outputs_are_switched_and_inputs_are_waited_for() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nX.5Z.2\nM25\nM92\nM26\nM30\n")
+    bench.until(State.WAIT)
+    bench.run(1.0)
+    assert bench.state is State.WAIT
+    assert bench.peer.outputs["out.1"]
+    bench.peer.inputs[4] = True
+    bench.until(State.IDLE, limit=3.0)
+    assert not bench.peer.outputs["out.1"]
+    assert bench.shot.parts == 1
+
+
+def test_pins_of_the_controller_hold_and_start() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.peer.pins = "H"
+    bench.until(State.HOLD, limit=0.5)
+    bench.press()
+    assert bench.state is State.HOLD
+    bench.peer.pins = ""
+    bench.run(0.5)
+    bench.peer.pins = "S"
+    bench.until(State.RUN, limit=0.5)
+    bench.peer.pins = ""
+    bench.until(State.IDLE)
+    assert bench.shot.parts == 1
