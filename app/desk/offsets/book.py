@@ -2,54 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
 
-from core.store.errors import StoreError
+from app.desk.offsets.kept import KeptBook
 from core.store.rows import Change, Kind, Row, SecondaryRow, ToolRow, Value
 from core.store.toolset import Touch
 
-if TYPE_CHECKING:
-    from core.store.store import Store
-
-
-class Waiting(Protocol):
-    """The answer of the store's writer, as far as a screen asks for it."""
-
-    def done(self) -> bool: ...
-
-    def exception(self) -> BaseException | None: ...
-
-
-Write = Callable[["Store"], Waiting]
 NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
-SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 
 @dataclass(slots=True)
-class OffsetBook:
-    """Present offsets by number, mm, X a radius.
+class OffsetBook(KeptBook):
+    """Present offsets by number, mm, X a radius."""
 
-    Without ``store`` nothing can be changed, and ``locked`` says why. A change is posted to the store's
-    writer and shown when it is on the disk; ``poll`` is called once a frame.
-    """
-
-    store: Store | None = None
-    locked: str = ""
     tools: dict[int, ToolRow] = field(default_factory=dict)
     secondary: dict[int, SecondaryRow] = field(default_factory=dict)
-    changes: int = 0  # how many were saved
-    _waiting: Waiting | None = None
-    _reopened: tuple[Store | None, str] | None = None  # by another thread, for the next poll
-
-    def __post_init__(self) -> None:
-        self._read()
-
-    @property
-    def busy(self) -> bool:
-        """Whether a change is on its way to the disk."""
-        return self._waiting is not None
 
     @property
     def master(self) -> int:
@@ -86,48 +54,6 @@ class OffsetBook:
             return ()
         return self.store.history(kind, limit)
 
-    def reopen(self, store: Store | None, trouble: str) -> None:
-        """Another store is in the place of the one before; None: ``trouble`` says why. From any thread."""
-        self._reopened = store, trouble
-
-    def poll(self) -> str:
-        """Look whether the change is on the disk; the answer is what went wrong, or nothing."""
-        if self._reopened is not None:
-            return self._turn_to(*self._reopened)
-        waiting = self._waiting
-        if waiting is None or not waiting.done():
-            return ""
-        self._waiting = None
-        error = waiting.exception()
-        if error is None:
-            self.changes += 1
-        try:
-            self._read()
-        except StoreError as unread:
-            return str(unread)
-        return str(error) if error is not None else ""
-
-    def _turn_to(self, store: Store | None, trouble: str) -> str:
-        self._reopened, self._waiting = None, None
-        self.store = store
-        self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
-        self.changes += 1
-        try:
-            self._read()
-        except StoreError as unread:
-            return str(unread)
-        return ""
-
-    def _post(self, write: Write) -> str:
-        if self.store is None or self.busy:
-            return self.locked or SAVING
-        try:
-            self._waiting = write(self.store)
-        except StoreError as error:
-            return str(error)
-        return ""
-
     def _read(self) -> None:
-        """The values of the store; it answers at once, also while it is being written."""
         if self.store is not None:
             self.tools, self.secondary = self.store.tools(), self.store.secondary()
