@@ -28,6 +28,13 @@ def findings(text: str) -> tuple[Finding, ...]:
     return caught.value.errors
 
 
+def assert_refused(text: str, path: str, expected: str) -> None:
+    every = findings(text)
+    found = [finding for finding in every if finding.path == path]
+    assert found, every
+    assert expected in str(found[0])
+
+
 def test_shipped_bus_in_model_units() -> None:
     machine = parse_machine(CAN, "can")
     bus = machine.hardware.canopen
@@ -135,9 +142,7 @@ def test_addresses_of_terminals() -> None:
     ],
 )
 def test_refused(old: str, new: str, path: str, expected: str) -> None:
-    found = [finding for finding in findings(changed(old, new)) if finding.path == path]
-    assert found, findings(changed(old, new))
-    assert expected in str(found[0])
+    assert_refused(changed(old, new), path, expected)
 
 
 @pytest.mark.parametrize(
@@ -160,9 +165,7 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
     ],
 )
 def test_refused_on_the_simulated_lathe(old: str, new: str, path: str, expected: str) -> None:
-    found = [finding for finding in findings(changed(old, new, SHIPPED)) if finding.path == path]
-    assert found, findings(changed(old, new, SHIPPED))
-    assert expected in str(found[0])
+    assert_refused(changed(old, new, SHIPPED), path, expected)
 
 
 def test_a_bus_without_io_names_every_signal() -> None:
