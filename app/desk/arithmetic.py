@@ -28,6 +28,15 @@ def value_of(entry: str) -> float:
     return value
 
 
+def line_of(entry: str) -> int | None:
+    """The number of a line that ``entry`` comes to, such as ``20+5``; None when it comes to none."""
+    try:
+        value = value_of(entry)
+    except EntryError:
+        return None
+    return int(value) if value == int(value) and value >= 1 else None
+
+
 class _Reader:
     """One entry, read from left to right: sum, product, sign, number or bracket."""
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.desk.arithmetic import EntryError, value_of
+from app.desk.arithmetic import EntryError, line_of, value_of
 
 
 @pytest.mark.parametrize(
@@ -79,3 +79,20 @@ def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
         sentence = "a number"
     assert sentence
     assert "\n" not in sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "line"),
+    [
+        ("7", 7),
+        ("20+5", 25),
+        (" 3*4 ", 12),
+        ("1.5", None),
+        ("0", None),
+        ("-3", None),
+        ("X1", None),
+        ("", None),
+    ],
+)
+def test_a_line_is_a_whole_number_from_one(entry: str, line: int | None) -> None:
+    assert line_of(entry) == line

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from app.desk.arithmetic import line_of
+
 LONGEST = 60  # characters of what is typed
 _QUOTE = '"'
 
@@ -20,8 +22,8 @@ class Cursor:
 
     @property
     def number(self) -> int | None:
-        """What was typed as the number of a line; None when it is a text to look for."""
-        return int(self.text) if self.text.isdecimal() else None
+        """The number of a line that was typed, a sum too; None when it is a text to look for."""
+        return line_of(self.text)
 
     @property
     def wanted(self) -> str:

@@ -12,6 +12,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.arithmetic import line_of
 from app.desk.editing import words
 from app.desk.editing.editor import Editor, Stage
 from app.desk.editing.entering import enter
@@ -264,12 +265,12 @@ class EditorPage(Page):
             self.editor.take_name(entry)
 
     def _go_to_typed(self, entry: str) -> None:
-        number = entry.strip()
-        if not (number.isascii() and number.isdigit()) or not 1 <= int(number) <= self.field.blockCount():
+        number = line_of(entry)
+        if number is None or number > self.field.blockCount():
             self.ask.say(f"A NUMBER FROM 1 TO {self.field.blockCount()}")
             return
         self.enter(Mode.TEXT)
-        self.go_to(int(number))
+        self.go_to(number)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 

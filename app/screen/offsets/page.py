@@ -20,7 +20,7 @@ from app.screen.offsets.keypad import KeyPad
 from app.screen.pages import Doings, Host, Page
 from core.executor.snapshot import Snapshot
 
-PAD, ASKED = 24.0, 12.4  # units: width of the pad, height of the dialogue
+PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the dialogue
 
 
 class OffsetModel(Protocol):

@@ -19,7 +19,7 @@ from app.screen.pages import Doings, Host, Page
 from app.screen.zero_offsets.table import ZeroTable
 from core.executor.snapshot import Snapshot
 
-PAD, ASKED = 24.0, 12.4  # units: width of the pad, height of the entry
+PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the entry
 
 
 class ZeroPage(Page):
