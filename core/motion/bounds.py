@@ -6,6 +6,8 @@ a plan made from a moving state meets the same limits as the plan it replaces.
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from core.motion.chords import Asked, asked_over_intervals
@@ -65,8 +67,12 @@ def _least_ratio(limit: FloatArray, direction: FloatArray) -> FloatArray:
     """Smallest of limit / |direction| over the axes; endless for an axis that does not move."""
     share = np.abs(direction)
     ratios = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0)
-    least: FloatArray = ratios.min(axis=1)
-    return least
+    return _least(ratios)
+
+
+def _least(table: FloatArray) -> FloatArray:
+    """Least (n,) of each row; three long columns are compared faster than a million short rows."""
+    return reduce(np.minimum, table.T)
 
 
 def corner_turns(pieces: Pieces) -> FloatArray:
@@ -87,7 +93,7 @@ def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> Flo
     """
     sharp = np.full(turns.shape, np.inf)
     np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
-    caps: FloatArray = np.maximum(sharp.min(axis=1) - 0.5 * limits.interval * along, 0.0) ** 2
+    caps: FloatArray = np.maximum(_least(sharp) - 0.5 * limits.interval * along, 0.0) ** 2
     return caps
 
 
@@ -103,8 +109,7 @@ def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Float
     share = limits.accelerations * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
     curved = np.full(turns.shape, np.inf)
     np.divide(share, turns, out=curved, where=turns > 0.0)
-    caps: FloatArray = curved.min(axis=1)
-    return caps
+    return _least(curved)
 
 
 def _asked(
@@ -160,5 +165,5 @@ def spare_for_chords(
     left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)
     share = np.abs(pieces.direction[short])
     ratio = np.divide(left, share, out=np.full(share.shape, np.inf), where=share > 0.0)
-    spare[short] = ratio.min(axis=1)
+    spare[short] = _least(ratio)
     return spare

@@ -9,6 +9,7 @@ and turns of other axes stay where they are written.
 from __future__ import annotations
 
 import dataclasses
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,7 +34,7 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
     allowed = np.zeros(len(free))
     allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    joints[:, :2] = _eased(joints[:, :2], s, _clear(free), allowed[:, None])
+    joints[:, :2] = _eased(joints[:, :2].T.copy(), s, _clear(free), allowed).T
     return moved(pieces, joints, free)
 
 
@@ -100,49 +101,60 @@ def _clear(free: BoolArray) -> IntArray:
     return clear
 
 
+class _Window(NamedTuple):
+    """Neighbours of each of n+1 joints: sums up to ``behind`` less those up to ``first`` are of ``size``."""
+
+    first: IntArray
+    behind: IntArray
+    size: IntArray
+
+    @classmethod
+    def of(cls, around: IntArray) -> _Window:
+        """So many (n+1,) joints on either side of each."""
+        at = np.arange(len(around))
+        return cls(at - around, at + around + 1, 2 * around + 1)
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Mean (k, n+1) of the values around each."""
+        base = values[:, :1]
+        sums = np.zeros((len(values), values.shape[1] + 1))
+        np.cumsum(values - base, axis=1, out=sums[:, 1:])
+        mean: FloatArray = base + (sums.take(self.behind, axis=1) - sums.take(self.first, axis=1)) / self.size
+        return mean
+
+
 def _eased(joints: FloatArray, s: FloatArray, clear: IntArray, allowed: FloatArray) -> FloatArray:
-    """Joints (n+1, 2) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most."""
-    around, back = np.minimum(clear, _AROUND), np.minimum(clear, _BACK)
-    once = _mean(_mean(joints, s, around), s, around)
+    """Joints (2, n+1) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most."""
+    around, back = _Window.of(np.minimum(clear, _AROUND)), _Window.of(np.minimum(clear, _BACK))
+    span = np.maximum(s[around.behind - 1] - s[around.first], 1e-12)
+    off = s - around.mean(s[None])[0]
+
+    def mean(of: FloatArray) -> FloatArray:
+        """Mean of the joints around each, carried along their line to its own distance: a line stays one."""
+        slope = (of.take(around.behind - 1, axis=1) - of.take(around.first, axis=1)) / span
+        carried: FloatArray = around.mean(of) + slope * off
+        return carried
+
+    once = mean(mean(joints))
     # A mean cuts the curve short by some height; what the mean of the mean cuts off more is as much.
-    eased = 2.0 * once - _mean(_mean(once, s, around), s, around)
+    eased = 2.0 * once - mean(mean(once))
     for _ in range(2):
         over = np.clip(eased, joints - allowed, joints + allowed) - eased
         if not over.any():
             return eased
         for sign in (1.0, -1.0):
             most = _largest(np.maximum(sign * over, 0.0), _BACK)
-            eased = eased + sign * _window_mean(most, back)
+            eased = eased + sign * back.mean(most)
     return np.clip(eased, joints - allowed, joints + allowed)
-
-
-def _mean(joints: FloatArray, s: FloatArray, around: IntArray) -> FloatArray:
-    """Mean of the joints ``around`` each, carried along their line to its own distance: a line stays one."""
-    at = np.arange(len(s))
-    low, high = at - around, at + around
-    span = np.maximum(s[high] - s[low], 1e-12)
-    slope = (joints[high] - joints[low]) / span[:, None]
-    off = s - _window_mean(s[:, None], around)[:, 0]
-    carried: FloatArray = _window_mean(joints, around) + slope * off[:, None]
-    return carried
-
-
-def _window_mean(values: FloatArray, around: IntArray) -> FloatArray:
-    """Mean (k, m) of the values ``around`` each."""
-    base = values[0]
-    sums = np.vstack([np.zeros_like(base)[None], np.cumsum(values - base, axis=0)])
-    at = np.arange(len(values))
-    mean: FloatArray = base + (sums[at + around + 1] - sums[at - around]) / (2 * around + 1)[:, None]
-    return mean
 
 
 def _largest(values: FloatArray, around: int) -> FloatArray:
     """Largest (k, m) of the values, none below 0, ``around`` each: of two, four, … neighbours at a time."""
     width, reach = 2 * around + 1, 1
-    largest = np.zeros((len(values) + 2 * around, values.shape[1]))
-    largest[around : around + len(values)] = values
+    largest = np.zeros((len(values), values.shape[1] + 2 * around))
+    largest[:, around : around + values.shape[1]] = values
     while reach < width:
         step = min(reach, width - reach)
-        largest = np.maximum(largest[:-step], largest[step:])
+        largest = np.maximum(largest[:, :-step], largest[:, step:])
         reach += step
     return largest
