@@ -13,7 +13,7 @@ from core.interpreter.statement import Step
 MOST = 20_000
 """Lines that are read, and handed on, at once."""
 
-_PAGE = 1024
+_PAGE, _PAGES = 1024, 32
 
 
 class LongSteps(Sequence[Step]):
@@ -59,6 +59,8 @@ class LongSteps(Sequence[Step]):
 
     def _page(self, number: int) -> list[Step]:
         if number not in self._pages:
+            if len(self._pages) >= _PAGES:
+                del self._pages[next(iter(self._pages))]
             self._pages[number] = self._made(number)
         return self._pages[number]
 
