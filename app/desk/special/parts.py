@@ -6,10 +6,9 @@ from collections.abc import Callable, Mapping
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.desk import Desk
 from app.desk.special.counter import MOST, PartCounter
-from app.desk.special.entry import Entry
-from app.desk.special.sheet import Key, Row, Section, Sheet
+from app.desk.special.figure import FigureSection
+from app.desk.special.sheet import Key, Row, Sheet
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.store.errors import StoreError
@@ -18,15 +17,11 @@ RESET = "PRESS F4 ONCE MORE TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
-class PartsSection(Section):
+class PartsSection(FigureSection):
     """Of the program on the desk."""
 
     name = "PARTS COUNTER"
     use = "parts made, stop at a number, times"
-
-    def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
-        self.entry = Entry()
 
     @property
     def counter(self) -> PartCounter:
@@ -60,20 +55,6 @@ class PartsSection(Section):
         """F4 puts the count to nought."""
         return {"F4": Key("RESET", self.reset)}
 
-    def takes(self, key: str) -> bool:
-        """Figures and signs."""
-        return self.entry.takes(key)
-
-    def typed(self, key: str) -> bool:
-        """Figures, then Return."""
-        if key == "Enter":
-            self._enter()
-            return True
-        if self.entry.type(key):
-            self.desk.clear()
-            return True
-        return False
-
     def reset(self) -> None:
         """Count to nought, after asking."""
         if not self.counter.program:
@@ -83,7 +64,8 @@ class PartsSection(Section):
         elif self.sure(RESET):
             self._kept(self.counter.reset)
 
-    def _enter(self) -> None:
+    def enter(self) -> None:
+        """The target, from the count on; 0 takes it away."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
             return
@@ -110,15 +92,6 @@ class PartsSection(Section):
     def prompt(self) -> str:
         """How to set the target."""
         return "TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST"
-
-    def escape(self) -> bool:
-        """An entry that was begun."""
-        begun, self.entry.text = bool(self.entry.text), ""
-        return begun
-
-    def left(self) -> None:
-        """Nothing stays typed."""
-        self.entry.text = ""
 
 
 def _whole(text: str) -> int:

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.special.entry import Entry
-from app.desk.special.sheet import Key, Row, Section, Sheet
+from app.desk.special.figure import FigureSection
+from app.desk.special.sheet import Key, Row, Sheet
 from app.desk.words import tr
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
@@ -17,7 +17,7 @@ from core.machine.model import SpindleModel
 LIFT = "PRESS F4 ONCE MORE TO LIFT THE LIMIT, ESC TO KEEP IT"
 
 
-class SpeedSection(Section):
+class SpeedSection(FigureSection):
     """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
 
     name = "MAXIMUM SPINDLE SPEED"
@@ -26,7 +26,6 @@ class SpeedSection(Section):
     def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
         super().__init__(desk)
         self.spindle = spindle
-        self.entry = Entry()
 
     def sheet(self, snapshot: Snapshot) -> Sheet:
         """The machine's speed, the limit, and what turns now."""
@@ -58,20 +57,6 @@ class SpeedSection(Section):
         """F4 lifts the limit."""
         return {"F4": Key("NO LIMIT", self.lift)}
 
-    def takes(self, key: str) -> bool:
-        """Figures and signs."""
-        return self.entry.takes(key)
-
-    def typed(self, key: str) -> bool:
-        """Figures, then Return."""
-        if key == "Enter":
-            self._enter()
-            return True
-        if self.entry.type(key):
-            self.desk.clear()
-            return True
-        return False
-
     def lift(self) -> None:
         """The machine's own maximum again; asked once, because something may be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
@@ -79,7 +64,8 @@ class SpeedSection(Section):
         elif self.sure(LIFT):
             self.desk.post(SpindleLimit(None))
 
-    def _enter(self) -> None:
+    def enter(self) -> None:
+        """The limit, where this spindle can turn at it."""
         try:
             rpm = value_of(self.entry.text)
             self._check(rpm)
@@ -100,12 +86,3 @@ class SpeedSection(Section):
     def prompt(self) -> str:
         """How to set it."""
         return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"
-
-    def escape(self) -> bool:
-        """An entry that was begun."""
-        begun, self.entry.text = bool(self.entry.text), ""
-        return begun
-
-    def left(self) -> None:
-        """Nothing stays typed."""
-        self.entry.text = ""

@@ -14,9 +14,10 @@ from app.desk.session import Loaded
 from app.desk.swivel.telling import at_line
 from app.desk.view import View
 from app.screen.files.record import RecordPanel
-from app.screen.pages import Doings, Host, Page
+from app.screen.pages import Doings, Host
 from app.screen.pathview import PathView
 from app.screen.special.letters import LetterPad
+from app.screen.special.listpage import ListPage
 from app.screen.special.table import SheetPanel
 from app.screen.swivel.view import SwivelView
 from core.executor.snapshot import Snapshot
@@ -39,14 +40,14 @@ class PreviewSpace(SwivelView):
     title = "PREVIEW"
 
 
-class FilesPage(Page):
+class FilesPage(ListPage):
     """The model decides; this shows it and hands the keys on."""
 
     NAME = pages.PROGRAMS
+    model: FilesDesk
 
     def __init__(self, host: Host, model: FilesDesk, parent: QWidget) -> None:
-        super().__init__(host, parent)
-        self.model = model
+        super().__init__(host, model, parent)
         self.table = SheetPanel(self.look, self._chosen, self)
         self.path = PreviewPath(self.look, self)
         self.space = PreviewSpace(self.look, self)
@@ -56,9 +57,8 @@ class FilesPage(Page):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
-        own = {"F1": "MENU", "F7": "ALARMS", "F3": "" if self.model.traffic.open else "EDIT"}
-        own.update((name, key.label) for name, key in self.model.keys().items())
-        return tuple(own.get(f"F{number}", "") for number in range(1, 11))
+        own = {"F3": "" if self.model.traffic.open else "EDIT"}
+        return self.labels_of(own, self.model.keys())
 
     def doings(self) -> Doings:
         """The keys of this moment."""
@@ -98,30 +98,6 @@ class FilesPage(Page):
                 self.host.go(pages.AUTOMATIC)
             return True
         return model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """As the model says."""
-        return self.model.takes(key)
-
-    def prompt(self) -> str:
-        """From the model."""
-        return self.model.prompt()
-
-    def opened(self) -> None:
-        """Read the folders."""
-        self.model.opened()
-
-    def leave(self) -> bool:
-        """Nothing stays half asked."""
-        self.desk.clear()
-        self.model.leave()
-        return True
-
-    def escape(self) -> bool:
-        """One step back, and from the list to the Automatic page."""
-        if not self.model.escape():
-            self.host.go(pages.AUTOMATIC)
-        return True
 
     def dress(self) -> None:
         """The path is drawn anew."""

@@ -12,9 +12,10 @@ from app.desk.session import Loaded
 from app.desk.special.special import SpecialDesk
 from app.desk.view import View
 from app.screen.offsets.keypad import KeyPad
-from app.screen.pages import Doings, Host, Page
+from app.screen.pages import Doings, Host
 from app.screen.special.items import ItemList
 from app.screen.special.letters import LetterPad
+from app.screen.special.listpage import ListPage
 from app.screen.special.table import SheetPanel
 from core.executor.snapshot import Snapshot
 
@@ -22,14 +23,14 @@ LIST, PAD = 34.0, 28.4  # units: widths
 LETTERS = 24.0  # units: height
 
 
-class SpecialPage(Page):
+class SpecialPage(ListPage):
     """The models decide; this shows them and hands the keys on."""
 
     NAME = pages.SPECIAL
+    model: SpecialDesk
 
     def __init__(self, host: Host, model: SpecialDesk, parent: QWidget) -> None:
-        super().__init__(host, parent)
-        self.model = model
+        super().__init__(host, model, parent)
         self.items = ItemList(self.look, model, self._enter, self)
         self.table = SheetPanel(self.look, self._chosen, self)
         self.pad = KeyPad(self.look, self._touched, own=None, parent=self)
@@ -51,9 +52,7 @@ class SpecialPage(Page):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the function that is shown, beside the page's own."""
-        own = {"F1": "MENU", "F7": "ALARMS"}
-        own.update((name, key.label) for name, key in self.model.section.keys().items())
-        return tuple(own.get(f"F{number}", "") for number in range(1, 11))
+        return self.labels_of({}, self.model.section.keys())
 
     def doings(self) -> Doings:
         """The keys of the function that is shown; pressing one goes into it."""
@@ -63,34 +62,6 @@ class SpecialPage(Page):
     def _do(self, name: str) -> None:
         self.model.inside = True
         self.model.section.keys()[name].action()
-
-    def typed(self, key: str) -> bool:
-        """To the list, or to what is open."""
-        return self.model.typed(key)
-
-    def takes(self, key: str) -> bool:
-        """As the model says."""
-        return self.model.takes(key)
-
-    def prompt(self) -> str:
-        """From the model."""
-        return self.model.prompt()
-
-    def opened(self) -> None:
-        """With the list."""
-        self.model.opened()
-
-    def leave(self) -> bool:
-        """Nothing stays half entered or half asked."""
-        self.desk.clear()
-        self.model.leave()
-        return True
-
-    def escape(self) -> bool:
-        """One step back, and from the list to the Automatic page."""
-        if not self.model.escape():
-            self.host.go(pages.AUTOMATIC)
-        return True
 
     def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
         """The table of this snapshot."""
