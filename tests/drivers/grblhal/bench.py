@@ -99,6 +99,13 @@ class GrblBench:
         while self.clock.now() < end - 1e-9:
             self.tick()
 
+    def alone(self, seconds: float) -> None:
+        """Let time pass for the driver without an executor."""
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.clock.advance(TICK)
+            self.machine.pump()
+
     def until(self, *states: State, limit: float = 60.0) -> float:
         return self.until_true(lambda shot: shot.state in states, limit)
 

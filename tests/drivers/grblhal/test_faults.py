@@ -205,17 +205,37 @@ def test_settings_are_written_once_and_read_back() -> None:
 
 
 def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
-    absolute = "absolute = true"
-    machine = grbl_machine()
-    assert absolute  # the shipped axes know their position
-    bench = GrblBench(machine, quirky(homing=True))
+    x = (
+        "absolute = true                 # false",
+        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
+    )
+    z = ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]")
+    bench = GrblBench(grbl_machine(x, z), quirky(homing=True))
     bench.ready()
     bench.run(0.5)
-    bench.load(LONG)
+    bench.load("G90G94F300\nX.3\nM30\n")
     bench.press()
     assert "homed" in bench.shot.start_refused
     bench.post(Home())
-    bench.run(3.0)
+    bench.until(State.IDLE, limit=10.0)
+    assert all(bench.shot.homed)
+    assert [line for line in bench.wire.lines() if line.startswith("$H")] == ["$HZ", "$HX"]
+    assert bench.peer.program.modes.plane == "G18"
+    bench.run(0.4)
+    bench.press()
+    bench.until(State.RUN, limit=1.0)
+    bench.until(State.IDLE)
+    assert bench.shot.parts == 1
+
+
+def test_homing_that_the_controller_does_not_know_is_told() -> None:
+    bench = GrblBench()
+    bench.ready()
+    bench.run(0.5)
+    bench.machine.axes.home("X")
+    bench.until(State.FAULT, limit=2.0)
+    assert "$22" in bench.alarms()
+    assert not bench.shot.homed[0]
 
 
 def test_an_override_that_is_not_taken_is_an_alarm() -> None:

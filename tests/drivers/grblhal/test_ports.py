@@ -1,0 +1,112 @@
+"""What every driver does and refuses, as far as a controller that plans by itself can."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.block_port import LineOp
+from core.ports import DriverError, Segments, Stop
+from tests.drivers.grblhal.bench import GrblBench
+
+
+def powered() -> GrblBench:
+    bench = GrblBench()
+    bench.machine.axes.enable(True)
+    bench.alone(0.3)
+    return bench
+
+
+def test_setpoints_are_refused() -> None:
+    bench = powered()
+    still = np.zeros((1, 3))
+    with pytest.raises(DriverError, match="takes blocks"):
+        bench.machine.axes.splice(Segments(np.zeros(1), np.zeros(1), still, still, still))
+
+
+def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
+    bench = powered()
+    ticket = bench.machine.blocks.submit(LineOp(3.14159, -2.71828, 20.0))
+    assert ticket == 1
+    assert not bench.machine.blocks.state().resting
+    bench.alone(1.0)
+    assert bench.machine.blocks.state().done == 1
+    assert bench.machine.axes.sample().actual[:2] == (3.14159, -2.71828)
+
+
+@pytest.mark.parametrize("how", [Stop.OFF, Stop.RAMP_OFF, Stop.RAMP_HOLD])
+def test_stops_brake_and_void_what_was_handed_over(how: Stop) -> None:
+    bench = powered()
+    bench.machine.blocks.submit(LineOp(50.0, 0.0, 40.0))
+    bench.alone(0.5)
+    x = bench.peer.slides.place[0]
+    bench.machine.axes.stop(how)
+    bench.alone(1.5)
+    assert bench.peer.slides.place[0] - x < 1.0
+    assert not bench.peer.slides.queue
+    assert bench.machine.axes.sample().enabled is (how is Stop.RAMP_HOLD)
+    assert not bench.machine.axes.sample().moving
+    assert bench.machine.blocks.state().hindrance == ""
+
+
+def test_the_spindle_turns_and_stops() -> None:
+    bench = powered()
+    bench.machine.spindle.run(-600.0)
+    bench.alone(1.5)
+    assert bench.machine.spindle.speed() == pytest.approx(-600.0, abs=1.0)
+    assert "M4S600" in bench.peer.program.executed
+    bench.machine.spindle.run(0.0)
+    bench.alone(1.5)
+    assert bench.machine.spindle.speed() == 0.0
+    assert bench.machine.spindle.fault() == ""
+
+
+def test_in_motion_the_spindle_follows_by_its_override() -> None:
+    bench = powered()
+    bench.machine.spindle.run(1000.0)
+    bench.alone(1.5)
+    bench.machine.blocks.submit(LineOp(20.0, 0.0, 10.0))
+    bench.alone(0.3)
+    bench.wire.sent.clear()
+    bench.machine.spindle.run(870.0)
+    bench.alone(0.8)
+    assert bench.peer.spindle_percent == 87
+    assert bench.wire.lines() == []
+    bench.alone(2.0)  # at rest it is said as a speed, and the override goes back
+    assert (bench.peer.rpm, bench.peer.spindle_percent) == (870.0, 100)
+
+
+def test_outputs_go_out_and_fall_safe() -> None:
+    bench = powered()
+    io = bench.machine.io
+    io.write("coolant", True)
+    io.write("collet", True)
+    bench.alone(0.1)
+    assert bench.peer.outputs["flood"]
+    io.safe()
+    bench.alone(0.1)
+    assert not bench.peer.outputs["flood"]
+    assert bench.peer.outputs["out.0"]  # "keep"
+    with pytest.raises(DriverError, match="output 'laser' is not in the machine file"):
+        io.write("laser", True)
+
+
+def test_an_output_that_could_not_be_said_is_said_later() -> None:
+    bench = powered()
+    bench.machine.io.write("catcher", True)
+    bench.alone(0.1)
+    bench.peer.raise_alarm(1)
+    bench.alone(0.3)
+    bench.machine.io.safe()
+    assert bench.peer.outputs["out.1"]
+    bench.machine.axes.clear_fault()
+    bench.alone(1.5)
+    assert not bench.peer.outputs["out.1"]
+    assert not all(bench.machine.axes.sample().homed)  # a hard limit: nobody knows where it stands
+
+
+def test_a_block_is_refused_while_the_modes_are_verified() -> None:
+    bench = powered()
+    bench.machine.blocks.abort()
+    with pytest.raises(DriverError, match="modes are being verified"):
+        bench.machine.blocks.submit(LineOp(1.0, 0.0, 1.0))

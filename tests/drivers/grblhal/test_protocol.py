@@ -1,0 +1,201 @@
+"""Byte for byte: the handshake, reports, override steps, numbers, and the count of unanswered bytes."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.grblhal import grblhal_config
+from core.block_port import ArcOp, LineOp, RapidOp, ThreadOp
+from core.ports import DriverError
+from drivers.grblhal.gcode import jog_line, line_of, number
+from drivers.grblhal.identity import read_identity
+from drivers.grblhal.machine import GrblMachine
+from drivers.grblhal.overrides import steps_to
+from drivers.grblhal.report import read_report
+from drivers.grblhal.stream import Stream
+from drivers.simulated import StepClock
+from tests.drivers.grblhal.bench import grbl_machine
+
+FULL = (
+    b"<Idle|MPos:1.000,0.000,-2.500|Bf:100,1023|FS:0,0,0|WCO:0.000,0.000,0.000|Ov:100,100,100|D:0|H:0|T:0"
+    b"|FW:grblHAL>\r\n"
+)
+MODES = b"[GC:G0 G54 G18 G21 G90 G94 G8 G49 G98 G50 M5 M9 T0 F0 S0.]\r\nok\r\n"
+IDENTITY = (
+    b"[VER:1.1f.20260817:]\r\n[OPT:VNML+,100,1024,3,16]\r\n[AXS:3:XYZ]\r\n[NEWOPT:ENUMS,LATHE,EXPR,TC,SED]\r\n"
+    b"[DRIVER:Simulator]\r\nok\r\n"
+)
+
+
+class ScriptedWire:
+    """Answers what it expects, in order; anything else is a failure. Status polls in between are ignored."""
+
+    def __init__(self, *conversation: tuple[bytes, bytes]) -> None:
+        self.left = list(conversation)
+        self._answers = b""
+
+    def read(self) -> bytes:
+        data, self._answers = self._answers, b""
+        return data
+
+    def write(self, data: bytes) -> None:
+        if not self.left:
+            return
+        expected, answer = self.left.pop(0)
+        assert data == expected
+        self._answers += answer
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+
+def test_the_handshake_byte_for_byte() -> None:
+    wire = ScriptedWire(
+        (b"\x87", FULL),
+        (b"\n", b"ok\r\n"),
+        (b"$G\n", MODES),
+        (b"$I\n", IDENTITY),
+        (b"$$\n", b"$10=511\r\n$13=1\r\n$32=2\r\nok\r\n"),
+        (b"$13=0\n", b"ok\r\n"),
+        (b"$10=1535\n", b"ok\r\n"),
+        (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=2\r\nok\r\n"),
+        (b"\x87", FULL),
+        (b"\n", b"ok\r\n"),
+        (b"$G\n", MODES),
+        (b"G8G18G21G90G94G54\n", b"ok\r\n"),
+        (b"$G\n", MODES),
+        (b"\x87", FULL),
+    )
+    machine = GrblMachine(grblhal_config(grbl_machine()), StepClock(), wire)
+    assert not wire.left
+    assert machine.controller.ready
+    assert machine.axes.sample().actual == (1.0, -2.5, 0.0)
+    assert machine.controller.stream.room == 924  # of 1024 bytes, 100 are never used
+
+
+def test_a_setting_that_does_not_stay_is_refused() -> None:
+    wire = ScriptedWire(
+        (b"\x87", FULL),
+        (b"\n", b"ok\r\n"),
+        (b"$G\n", MODES),
+        (b"$I\n", IDENTITY),
+        (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=0\r\nok\r\n"),
+        (b"$32=2\n", b"ok\r\n"),
+        (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=0\r\nok\r\n"),
+    )
+    with pytest.raises(DriverError, match=r"\$32=2 was written and reads 0"):
+        GrblMachine(grblhal_config(grbl_machine()), StepClock(), wire)
+
+
+@pytest.mark.parametrize("answer", [b"", b"hello\r\n", b"<Idle>\r\n"])
+def test_what_is_no_controller_is_refused(answer: bytes) -> None:
+    with pytest.raises(DriverError, match="/dev/ttyACM0: the controller sends no status report"):
+        GrblMachine(grblhal_config(grbl_machine()), StepClock(), ScriptedWire((b"\x87", answer)))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "<Idle|MPos:1.0,0.0,2.0",
+        "<Idlw|MPos:1.0,0.0,2.0>",
+        "<Idle|MPos:1.0,0.O,2.0>",
+        "<Idle|MPos:1.0,0.0,2..0>",
+        "<Idle|MP0s:1.0,0.0,2.0>",
+        "<Idle|MPos:1.0,0.0,2.0|Bf:1x,3>",
+        "<Run|MPos:1.0,0.0,2.0|Ln:>",
+        "<Idle|MPos:nan,0.0,2.0>",
+        "<Hold:x|MPos:1.0,0.0,2.0>",
+        "<Idle|MPos:1.0,0.0,2.0|D:7>",
+    ],
+)
+def test_a_damaged_report_is_none(line: str) -> None:
+    assert read_report(line) is None
+
+
+def test_a_whole_report() -> None:
+    report = read_report(
+        "<Hold:1|MPos:-1.234,0.000,5.600|Bf:98,1000|Ln:33|FS:500,1000,998|Pn:EH|Ov:83,50,100|D:1>"
+    )
+    assert report is not None
+    assert (report.state, report.sub, report.moves) == ("Hold", 1, True)
+    assert report.position == (-1.234, 0.0, 5.6)
+    assert (report.free, report.line, report.measured, report.pins) == (98, 33, 998.0, "EH")
+    assert (report.overrides, report.diameter) == ((83, 50, 100), True)
+
+
+@pytest.mark.parametrize(
+    ("percent", "expected"),
+    [
+        (100, "90"),
+        (83, "90 92 92 93 93 93"),
+        (120, "90 91 91"),
+        (147, "90 91 91 91 91 91 94 94 94"),
+        (10, "90 92 92 92 92 92 92 92 92 92"),
+    ],
+)
+def test_steps_to_a_pot(percent: int, expected: str) -> None:
+    assert steps_to(percent) == bytes.fromhex(expected)
+
+
+def test_every_override_fits_into_the_controllers_queue() -> None:
+    worth = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
+    for percent in range(10, 201):
+        reset, *steps = steps_to(percent)
+        assert reset == 0x90
+        assert 100 + sum(worth[step] for step in steps) == percent
+        assert len(steps) < 16
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (-1e-9, "0"), (25.4, "25.4"), (0.00127, "0.00127"), (-101.6, "-101.6"), (1 / 3, "0.33333")],
+)
+def test_numbers_keep_a_hundredth_of_a_micrometre(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+def test_lines_of_blocks() -> None:
+    assert line_of(RapidOp(1.0, 2.0, 127.0), 7, 127.0, 1.0) == "N7G0X1Z2"
+    assert line_of(RapidOp(1.0, 2.0, 50.0), 7, 127.0, 1.0) == "N7G1X1Z2F3000"
+    assert (
+        line_of(RapidOp(1.0, 2.0, 50.0), 7, 127.0, 1.25) == "N7G1X1Z2F2400"
+    )  # no override speeds up a rapid
+    assert line_of(LineOp(1.0, -2.0, 0.5), 8, 127.0, 1.5) == "N8G1X1Z-2F30"
+    assert line_of(ThreadOp(1.0, -2.0, 1.27), 9, 127.0, 1.0) == "N9G33X1Z-2K1.27"
+    # From Z+ towards X+ is counter-clockwise in the plane of Z and X: G3.
+    assert line_of(ArcOp(0.0, 1.0, 1.0, 0.0, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0) == "N1G3X1Z0I0K-1F60"
+    assert line_of(ArcOp(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, False, 1.0), 1, 127.0, 1.0) == "N1G2X0Z1I-1K0F60"
+    assert line_of(LineOp(0.0, 0.0, 1.0), 9_000_001, 127.0, 1.0).startswith("N1G1")
+    assert jog_line("X", -1.5, 10.0) == "$J=G53G21G90X-1.5F600"
+
+
+def test_no_more_bytes_are_unanswered_than_fit() -> None:
+    sent: list[bytes] = []
+    stream = Stream(sent.append)
+    stream.use(300)  # of which 200 may be used
+    line = "N1G1X1.00000Z1.00000F100"  # 25 bytes with its end
+    for _ in range(20):
+        stream.send(line, 0.0)
+    assert len(sent) == 8
+    assert not stream.fits("x")
+    stream.answered(0)
+    stream.pump(0.0)
+    assert len(sent) == 9
+
+
+def test_an_answer_to_nothing_is_told() -> None:
+    stream = Stream(lambda _: None)
+    assert stream.answered(0) is None
+
+
+@pytest.mark.parametrize(
+    ("lines", "expected"),
+    [
+        ([], "no grblHAL"),
+        (["[VER:1.1f:]", "[OPT:V]"], "no grblHAL"),
+        (["[VER:1:]", "[OPT:V,16,128]"], "128 bytes"),
+    ],
+)
+def test_an_identity_is_demanded(lines: list[str], expected: str) -> None:
+    with pytest.raises(DriverError, match=expected):
+        read_identity(lines)

@@ -1,0 +1,64 @@
+"""The command line against the look-alike on a pseudo terminal and on TCP, in real time."""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from core.ports import DriverError
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.grblhal.peer.serve import PtyEnd, TcpEnd, serve
+from drivers.grblhal.wire import open_wire
+from drivers.simulated import RealClock
+from tests.drivers.grblhal.bench import SHIPPED
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(params=["pty", "tcp"])
+def machine_file(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Path]:
+    """A machine file whose controller answers."""
+    end: PtyEnd | TcpEnd = PtyEnd() if request.param == "pty" else TcpEnd("127.0.0.1", 0)
+    over = threading.Event()
+    peer = threading.Thread(target=serve, args=(end, Firmware(RealClock()), lambda: not over.is_set()))
+    peer.start()
+    file = tmp_path / "grblhal.toml"
+    file.write_text(SHIPPED.replace("/dev/ttyACM0", end.name), encoding="utf-8")
+    yield file
+    over.set()
+    peer.join(5.0)
+    assert not peer.is_alive()
+
+
+def test_check_and_run(
+    machine_file: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    assert main(["machine", "check", "--json", str(machine_file)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["backend"] == "grblhal"
+    assert {"name": "X", "state": "ok", "detail": "homed True, at 0.0000"} in told["ports"]
+    program = tmp_path / "part.nc"
+    program.write_text("G90G94F300\nX.1Z.1\nG01X.05F60\nM08\nM30\n", encoding="utf-8")
+    assert main(["run", str(program), "--headless", "--json", "--machine", str(machine_file)]) == 0
+    outcome = json.loads(capsys.readouterr().out)
+    assert outcome["state"] == "complete"
+    assert (outcome["final"]["x"], outcome["final"]["z"]) == pytest.approx((0.05, 0.1))
+
+
+def test_nobody_there_is_one_sentence(tmp_path: Path, capsys: Captured) -> None:
+    file = tmp_path / "grblhal.toml"
+    file.write_text(SHIPPED.replace("/dev/ttyACM0", "/dev/nothing-here"), encoding="utf-8")
+    assert main(["machine", "check", str(file)]) == 1
+    assert "/dev/nothing-here cannot be opened" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("port", ["tcp://127.0.0.1", "tcp://:23", "tcp://host:a"])
+def test_a_bad_address_is_refused(port: str) -> None:
+    with pytest.raises(DriverError, match=r"expected tcp://host:port"):
+        open_wire(port, 115_200)
