@@ -205,3 +205,25 @@ def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Ope
     assert loaded.job is not None
     assert loaded.job.setup.metric
     assert any(found.code == "units-unnamed" for found in loaded.diagnostics)
+
+
+def test_a_line_is_typed_by_a_finger_alone(at_mdi: Operator) -> None:
+    page = page_of(at_mdi)
+    at_mdi.window.grab()
+    page.line._places[0][1]()
+    assert page.letters.isVisible()
+    at_mdi.window.grab()
+    names = (*"1234567890qwertyuiopasdfghjkl-zxcvbnm._ ", "Esc", "Back", "Enter")
+    keys = dict(zip(names, page.letters._places, strict=True))
+    for key in (*"g91x.1f50", "Back", "Back", "8", "Enter"):
+        box, press = keys[key]
+        assert min(box.width(), box.height()) >= 42  # 9 mm
+        press()
+    at_mdi.mdi.settle(5.0)
+    at_mdi.pause(0.05)
+    assert page_of(at_mdi).line.ready
+    at_mdi.palms()
+    at_mdi.reaches(State.IDLE)
+    assert at_mdi.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
+    page.line._places[0][1]()
+    assert page.letters.isHidden()

@@ -8,17 +8,18 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.words import tr
 from app.screen.look import LEFT, Look, put, put_raw
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Press
 from core.language.diagnostics import Diagnostic, Severity
 
 Shown = tuple[str, int, tuple[Diagnostic, ...], bool]
 
 
 class LinePanel(Panel):
-    """Draws from what it was shown last, and only when that has changed."""
+    """Draws from what it was shown last, and only when that has changed. A finger on it asks for letters."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, look: Look, touched: Press, parent: QWidget) -> None:
         super().__init__(look, parent)
+        self._touched = touched
         self.text, self.at, self.ready = "", 0, False
         self.found: tuple[Diagnostic, ...] = ()
         self._shown: Shown | None = None
@@ -46,6 +47,7 @@ class LinePanel(Panel):
         title = tr("LINE  ·  READY, CYCLE START RUNS IT") if self.ready else tr("LINE")
         self.frame(painter, title, "lit" if self.ready else "frame", 0.3 if self.ready else 0.16)
         room = self.inside()
+        self.place(self.area(), self._touched)
         font = look.fit(self.text, 4.4, room.width() - 2 * u, bold=True)
         metrics = QFontMetricsF(font)
         row = QRectF(room.x(), room.y(), room.width(), 5.6 * u)

@@ -14,6 +14,7 @@ from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel
 from app.screen.pages import Doings, Host, Page
+from app.screen.special.letters import LetterPad
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.interpreter.begin import Checkpoint
@@ -31,8 +32,9 @@ class MdiPage(Page):
     def __init__(self, host: Host, model: MdiDesk, parent: QWidget) -> None:
         super().__init__(host, parent)
         self.model = model
-        self.line = LinePanel(self.look, self)
+        self.line = LinePanel(self.look, self._other_hand, self)
         self.history = HistoryPanel(self.look, self._recall, self)
+        self.letters = LetterPad(self.look, self._touched, self)
         self.inforce = InForcePanel(self.look, self)
 
     def doings(self) -> Doings:
@@ -50,6 +52,17 @@ class MdiPage(Page):
     def _recall(self, back: int) -> None:
         if self.desk.snapshot().state is State.IDLE:
             self.model.recall(back)
+
+    def _other_hand(self) -> None:
+        """A finger on the line: letters to touch in the place of the history, or the history again."""
+        self.letters.setVisible(self.letters.isHidden())
+        self.letters.raise_()
+
+    def _touched(self, key: str) -> None:
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
 
     def typed(self, key: str) -> bool:
         """At rest, text; while a line is under way the letters are the keys they are everywhere."""
@@ -96,5 +109,6 @@ class MdiPage(Page):
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap
         self.line.setGeometry(0, 0, wide, high)
-        self.history.setGeometry(0, high + gap, wide, self.height() - high - gap)
+        for part in (self.history, self.letters):
+            part.setGeometry(0, high + gap, wide, self.height() - high - gap)
         self.inforce.setGeometry(wide + gap, 0, state, self.height())
