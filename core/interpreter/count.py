@@ -10,6 +10,7 @@ from core.interpreter import codes
 from core.interpreter.log import refusal
 from core.interpreter.program import Program
 from core.interpreter.statement import Statement
+from core.interpreter.steps import LongSteps, Steps
 from core.interpreter.structure import call_target
 from core.language.diagnostics import Diagnostic
 
@@ -70,10 +71,14 @@ class _Counter:
         loop_ends, steps = self._program.structure.loop_ends, self._program.steps
         at = start
         while at < end:
+            moves = _moves(steps, at, end)
+            if moves:
+                total = Count(total.blocks + moves, total.lines + moves, total.worst)
+                at += moves
+                continue
             step = steps[at]
-            if isinstance(step, tuple):
-                total = Count(total.blocks + 1, total.lines + 1, total.worst)
-            elif step is not None:
+            assert not isinstance(step, tuple)
+            if step is not None:
                 if step.flow == "LS" and at in loop_ends:
                     open_loops.append((loop_ends[at], int(step.value("LS") or 1), total))
                     total = Count()
@@ -109,6 +114,13 @@ class _Counter:
             end = structure.subroutine_ends.get(number, start)
             self._known[key] = self.region(start, end, depth)
         return self._known[key]
+
+
+def _moves(steps: Steps, at: int, end: int) -> int:
+    """How many lines from this one on are known to be plain moves: 0 where it is none."""
+    if isinstance(steps, LongSteps) and steps.moves_until(at) > at:
+        return min(steps.moves_until(at), end) - at
+    return int(isinstance(steps[at], tuple))
 
 
 def _sum(a: Count, b: Count) -> Count:

@@ -98,7 +98,8 @@ class _Proof:
     def _need(self, blocks: Part) -> None:
         """Only a controller that plans by itself can lack what a program needs."""
         if blocks and self._machine.backend == "grblhal":
-            self._needs = first_needs((*self._needs, *needs_of(blocks, self._before)))
+            unlike = blocks[:1] if isinstance(blocks, Series) else blocks  # what one needs, all need
+            self._needs = first_needs((*self._needs, *needs_of(unlike, self._before)))
             self._before = blocks[-1]
 
     def _rested(self, stretch: Rested) -> None:

@@ -1,4 +1,4 @@
-"""B2 and the 100 000-block figure: proving from a cold process and warm.
+"""B1, B2 and B3: interpreting, proving from a cold process and warm, up to a million blocks and in loops.
 
 Run with ``python -m tests.benchmarks.bench_prove``.
 """
@@ -10,11 +10,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import deque
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from app.compose.machine import read_machine, setup_for
-from core.interpreter.setup import ToolOffset
+from core.interpreter.dialects import interpretation, passed_on
+from core.interpreter.setup import Setup, ToolOffset
 from core.language.source import Source
 from core.proving.prove import prove
 
@@ -22,10 +25,24 @@ RUNS = 7
 HEAD = "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\n"
 
 
+def cuts(moves: int) -> str:
+    """Lines of so many cutting moves: steps down in Z, in and out in X."""
+    return "".join(f"X{0.5 + k % 7 * 0.01:.4f}Z{-0.0001 * k:.4f}\n" for k in range(moves))
+
+
 def program(moves: int) -> str:
-    """A turned part of this many cutting moves: steps down in Z, in and out in X."""
-    body = "".join(f"X{0.5 + k % 7 * 0.01:.4f}Z{-0.0001 * k:.4f}\n" for k in range(moves))
-    return f"{HEAD}{body}G00X1\nZ1\nM30\n"
+    """A turned part of this many cutting moves."""
+    return f"{HEAD}{cuts(moves)}G00X1\nZ1\nM30\n"
+
+
+def loop(passes: int) -> str:
+    """900 of them, gone through so often."""
+    return f"{HEAD}X.5Z0\nLS{passes}\n{cuts(900)}LF\nG00X1\nZ1\nM30\n"
+
+
+def interpreted(source: Source, setup: Setup) -> None:
+    """Go through all blocks, and do nothing with them."""
+    deque(passed_on(interpretation(source, setup)), maxlen=0)
 
 
 def median_of(work: Callable[[], object]) -> float:
@@ -56,9 +73,12 @@ def main() -> None:
                 median_of(lambda: subprocess.run(command, check=True, stdout=subprocess.DEVNULL)),
             ),
         ]
-    for moves in (200, 10_000, 100_000):
+    for moves in (200, 10_000, 100_000, 1_000_000):
         source = Source("bench", program(moves))
-        rows.append((f"prove {moves:,} blocks, warm", median_of(lambda s=source: prove(s, setup, machine))))  # type: ignore[misc]
+        rows.append((f"prove {moves:,} blocks, warm", median_of(partial(prove, source, setup, machine))))
+    rows.append((f"interpret {moves:,} blocks", median_of(partial(interpreted, source, setup))))
+    source = Source("bench", loop(2000))
+    rows.append(("prove a loop of 1,800,000 blocks", median_of(partial(prove, source, setup, machine))))
     for name, seconds in rows:
         sys.stdout.write(f"{name:34s} {seconds * 1000:10.1f} ms\n")
 
