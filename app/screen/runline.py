@@ -24,25 +24,39 @@ class RunLine(Panel):
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self.comment, self.block = "", ""
+        self.comment, self.block, self.message = "", "", ""
         self.times: Times = ()
 
     def show_run(self, view: View, times: Times) -> None:
         """Redraw when something of it has changed."""
         block = f"L{view.line}  {view.block_text}" if view.line else ""
-        if (view.comment, block, times) != (self.comment, self.block, self.times):
-            self.comment, self.block, self.times = view.comment, block, times
+        shown = (view.comment, block, view.message, times)
+        if shown != (self.comment, self.block, self.message, self.times):
+            self.comment, self.block, self.message, self.times = shown
             self.update()
 
     def draw(self, painter: QPainter) -> None:
         u, wide, high = self.look.u, float(self.width()), float(self.height())
         comment = QRectF(1.4 * u, 0, COMMENT * wide - 2 * u, high)
         block = QRectF(COMMENT * wide, 0, BLOCK * wide - u, high)
-        for box, ink, text in ((comment, "accent", self.comment), (block, "text", self.block)):
-            painter.setPen(self.look.colour(ink))
-            painter.setFont(self.look.fit(text, 2.0, box.width(), bold=box is block))
-            put_raw(painter, box, LEFT, text)
+        if self.message:
+            self._stop(painter, comment.united(block))
+        else:
+            self._text(painter, comment, "accent", self.comment)
+            self._text(painter, block, "text", self.block)
         self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
+
+    def _text(self, painter: QPainter, box: QRectF, ink: str, text: str) -> None:
+        painter.setPen(self.look.colour(ink))
+        painter.setFont(self.look.fit(text, 2.0, box.width(), bold=ink == "text"))
+        put_raw(painter, box, LEFT, text)
+
+    def _stop(self, painter: QPainter, box: QRectF) -> None:
+        """What the operator must do now: filled, over comment and block, as long as an M00 or M01 lasts."""
+        painter.fillRect(box.adjusted(-1.4 * self.look.u, 0, 0, 0), self.look.colour("pause"))
+        painter.setPen(self.look.colour("on_state"))
+        painter.setFont(self.look.fit(self.message, 2.4, box.width(), bold=True))
+        put_raw(painter, box, LEFT, self.message)
 
     def _times(self, painter: QPainter, room: QRectF) -> None:
         """Name and figure beside each other, each in a column of its own."""

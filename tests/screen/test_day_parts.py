@@ -71,6 +71,11 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     assert day.shot.cycle_repeat
     day.key(Key.Key_O)
     day.reaches(State.PROGRAM_STOP)  # the optional stop of the third part
+    day.key(Key.Key_F1)
+    day.run(0.05)
+    assert day.frame.run.message == "GAUGE THE .9 AND CORRECT D1"  # on every page
+    day.frame.run.grab()
+    day.key(Key.Key_F2)
     correct(day, "-.001")
     day.key(Key.Key_O)
     day.sees(lambda: not day.shot.cycle_repeat)  # or a part would follow with the old correction
