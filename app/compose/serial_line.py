@@ -9,7 +9,10 @@ MISSING = "serial lines need pyserial: pip install pyserial"
 
 
 def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
-    """A port for us alone; ``watch`` counts damaged characters. Raises DriverError; one that names the library where it is missing."""
+    """A port for us alone; ``watch`` counts damaged characters.
+
+    Raises DriverError; it names the library where that is missing.
+    """
     try:
         from drivers.serial_wire import SerialWire
     except ImportError as error:

@@ -23,7 +23,7 @@ _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 class Source:
     """Program text. ``name`` is what messages and the screen call it; ``said`` its dialect, where told.
 
-    ``subprograms`` are the files that it calls, read at the same time as it was: what was proved is what runs.
+    ``subprograms`` are the files that it calls, read when it was: what was proved is what runs.
     """
 
     name: str
