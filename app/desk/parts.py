@@ -14,13 +14,13 @@ from app.desk.files.record import RunRecord
 from app.desk.hands import StationHands
 from app.desk.offsets.book import NONE_KEPT, OffsetBook
 from app.desk.pulse import Pulse
+from app.desk.readout import Readout
 from app.desk.rebuilding import Rebuilding
 from app.desk.session import Phase, Session
 from app.desk.settings import SettingsBook
 from app.desk.shelf import Shelf
 from app.desk.special.counter import PartCounter
 from app.desk.station import StationPanel
-from app.desk.view import Readout
 from app.desk.zero_offsets.book import NONE_KEPT as NO_ZERO
 from app.desk.zero_offsets.book import ZeroBook
 from core.executor.commands import Command

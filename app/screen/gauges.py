@@ -7,7 +7,7 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
-from app.desk.view import FeedView, SpindleView
+from app.desk.motion import FeedView, SpindleView
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 

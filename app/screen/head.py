@@ -7,7 +7,8 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import percent
-from app.desk.view import AxisView, View
+from app.desk.readout import AxisView
+from app.desk.view import View
 from app.desk.words import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk.view import AxisView, PositionView
+from app.desk.readout import AxisView, PositionView
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.view import Readout, Tone, coordinates, view_of
+from app.desk.readout import Readout, coordinates
+from app.desk.view import Tone, view_of
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal import Modal
 

@@ -9,11 +9,12 @@ import pytest
 
 from app.desk.lamps import lamps_of
 from app.desk.picture import sketched
+from app.desk.readout import Readout
 from app.desk.swivel.camera import ASPECTS, Camera
 from app.desk.swivel.figure import Figure, camera_for, figure
 from app.desk.swivel.scene import Ink, Scene
 from app.desk.swivel.telling import Instant, at_line, plane_words, running
-from app.desk.view import Readout, view_of
+from app.desk.view import view_of
 from core.executor.snapshot import Snapshot
 from core.interpreter.blocks import Block
 from core.interpreter.modal import Modal

@@ -11,8 +11,9 @@ from app.compose.journal import Journal
 from app.compose.offsets import stored_offsets
 from app.compose.screen import desk_and_executor, step_clock
 from app.desk.desk import Desk
+from app.desk.readout import Readout
 from app.desk.session import Phase
-from app.desk.view import Readout, view_of
+from app.desk.view import view_of
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from drivers.simulated import StepClock
