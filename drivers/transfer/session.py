@@ -16,6 +16,8 @@ HELD = 1.0  # s without a byte going out after which the line counts as held
 PATIENCE = 120.0  # s that the other side may hold the line
 AGAIN = 5.0  # s after which DC1 is said again while nothing comes
 LAST = 0.5  # s of silence behind a last % without a line end
+# What a transfer waits for: the screen has the words.
+HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME = "held", "dc1", "sender", "frame"
 QUIET = 10.0  # s of silence within a program after which it will not go on
 
 
@@ -25,7 +27,7 @@ class CancelledError(DriverError):
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """How far it has come. ``total`` 0: nobody knows."""
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: one of the words above."""
 
     done: int = 0
     total: int = 0
@@ -75,7 +77,7 @@ class Sending(_Transfer):
 
     def _wait_for_start(self) -> None:
         until = self._clock.now() + PATIENCE
-        self._tell(0, "WAITING FOR THE OTHER SIDE (DC1)")
+        self._tell(0, FOR_DC1)
         while DC1[0] not in {character & 0x7F for character in self._wire.receive(TICK)}:
             self._go_on()
             if self._clock.now() > until:
@@ -106,7 +108,7 @@ class Sending(_Transfer):
             raise DriverError(
                 f"the other side has held the line for 2 minutes after {out} bytes; look whether it is ready"
             )
-        self._tell(out, "HELD BY THE OTHER SIDE" if still > HELD else "")
+        self._tell(out, HELD_BACK if still > HELD else "")
 
     def _pause(self, waiting: int) -> None:
         """As long as what waits takes to go out, or until something comes back, which nobody asked for."""
@@ -155,7 +157,7 @@ class Receiving(_Transfer):
                 f"a damaged character in line {incoming.lines}: nothing is kept. Look at the line settings, "
                 "at shield and earth of the cable, and send it again"
             )
-        what = "" if incoming.phase is not Phase.WAITING else f"WAITING FOR THE FIRST {self._settings.wrap}"
+        what = "" if incoming.phase is not Phase.WAITING else FOR_FRAME
         self.reach = Reach(incoming.count, 0, incoming.lines, what)
 
     def _ended(self, incoming: Incoming, *, gone: bool) -> None:
@@ -169,7 +171,7 @@ class Receiving(_Transfer):
                 raise
 
     def _ask(self) -> None:
-        self.reach = Reach(what="WAITING FOR THE OTHER SIDE")
+        self.reach = Reach(what=FOR_SENDER)
         self._say(DC1)
 
     def _say(self, code: bytes) -> None:

@@ -33,7 +33,7 @@ class Reach:
     done: int = 640
     total: int = 1280
     lines: int = 20
-    what: str = "HELD BY THE OTHER SIDE"
+    what: str = "held"
 
 
 class Script:
@@ -150,7 +150,7 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
 ) -> None:
     lines.answer = CAME
     hands.key(Key.Key_F5)
-    hands.sees(lambda: cells(hands).get("WAITS") == "HELD BY THE OTHER SIDE")
+    hands.sees(lambda: cells(hands).get("WAITS") == "HELD BY THE OTHER SIDE (XOFF)")
     assert cells(hands)["DONE"] == "50%"
     assert lines.job is not None
     posted = len(hands.machine.posted)

@@ -13,7 +13,7 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class Reach(Protocol):
-    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for, in English."""
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: held, dc1, sender or frame."""
 
     @property
     def done(self) -> int: ...

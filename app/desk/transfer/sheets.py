@@ -31,10 +31,21 @@ def progress_sheet(reach: Reach, settings: DncModel, sends: str) -> Sheet:
         Row((tr("BYTES"), f"{reach.done}" + (f" / {reach.total}" if reach.total else ""))),
         Row((tr("LINES"), f"{reach.lines}")),
         Row((tr("DONE"), share)),
-        Row((tr("WAITS"), tr(reach.what) if reach.what else "—"), bool(reach.what), Tone.WAIT),
+        Row((tr("WAITS"), _waits(reach.what)), bool(reach.what), Tone.WAIT),
     )
     words = f"{settings.port}  {settings.baud} {settings.bits}{settings.parity}{settings.stop}"
     return Sheet(TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), raw=frozenset({0, 1}))
+
+
+def _waits(what: str) -> str:
+    """For whom or what."""
+    words = {
+        "held": tr("HELD BY THE OTHER SIDE (XOFF)"),
+        "dc1": tr("FOR DC1 FROM THE OTHER SIDE"),
+        "sender": tr("FOR THE OTHER SIDE TO SEND"),
+        "frame": tr("FOR THE FIRST %"),
+    }
+    return words.get(what, "—")
 
 
 def received_sheet(received: Received, name: str) -> Sheet:
