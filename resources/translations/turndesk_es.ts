@@ -40,11 +40,6 @@
     </message>
     <message>
       <location filename="app/compose/journal.py" />
-      <source>OFFSETS CANNOT BE KEPT: %1</source>
-      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
-    </message>
-    <message>
-      <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
     </message>
@@ -1609,6 +1604,16 @@
       <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
     </message>
     <message>
+      <location filename="app/desk/offsets/kept.py" />
+      <source>OFFSETS CANNOT BE KEPT: %1</source>
+      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/kept.py" />
+      <source>STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN</source>
+      <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
+    </message>
+    <message>
       <location filename="app/desk/offsets/ledger.py" />
       <source>SAVED</source>
       <translation>GUARDADO</translation>
@@ -2019,6 +2024,41 @@
       <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
     </message>
     <message>
+      <location filename="app/desk/readout.py" />
+      <source>%1  ·  CONTROL IN %2</source>
+      <translation>%1  ·  CONTROL EN %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>DISTANCE TO GO</source>
+      <translation>DISTANCIA POR RECORRER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>MM</source>
+      <translation>MM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>POSITION</source>
+      <translation>POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>X IS A DIAMETER</source>
+      <translation>X ES DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readout.py" />
+      <source>X IS A RADIUS</source>
+      <translation>X ES RADIO</translation>
+    </message>
+    <message>
       <location filename="app/desk/searchto/opening.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
@@ -2177,26 +2217,6 @@
       <location filename="app/desk/settings.py" />
       <source>AS THE PROGRAM</source>
       <translation>COMO EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/settings.py" />
-      <source>DISTANCE TO GO</source>
-      <translation>DISTANCIA POR RECORRER</translation>
-    </message>
-    <message>
-      <location filename="app/desk/settings.py" />
-      <source>INCH</source>
-      <translation>PULGADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/settings.py" />
-      <source>MM</source>
-      <translation>MM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/settings.py" />
-      <source>POSITION</source>
-      <translation>POSICIÓN</translation>
     </message>
     <message>
       <location filename="app/desk/special/counter.py" />
@@ -2854,9 +2874,279 @@
       <translation>PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/view.py" />
-      <source>%1  ·  CONTROL IN %2</source>
-      <translation>%1  ·  CONTROL EN %2</translation>
+      <location filename="app/desk/transfer/form.py" />
+      <source>BITS, PARITY, STOP BITS</source>
+      <translation>BITS, PARIDAD, BITS DE PARADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>CR LF</source>
+      <translation>CR LF</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>DC CODES</source>
+      <translation>CÓDIGOS DC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>FLOW CONTROL</source>
+      <translation>CONTROL DE FLUJO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>FRAME</source>
+      <translation>MARCO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>LEADER OF NULS</source>
+      <translation>CABECERA DE NULOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>LINE END</source>
+      <translation>FIN DE LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>NO</source>
+      <translation>NO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>PORT</source>
+      <translation>PUERTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>WAIT FOR DC1 TO SEND</source>
+      <translation>ESPERAR DC1 PARA ENVIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/form.py" />
+      <source>YES</source>
+      <translation>SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP</source>
+      <translation>HAY UNA TRANSFERENCIA EN CURSO: ESPERE A QUE TERMINE, O F6 LA ABANDONA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>A WHOLE PROGRAM HAS COME: {lines} LINES</source>
+      <translation>HA LLEGADO UN PROGRAMA COMPLETO: {lines} LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE</source>
+      <translation>LAS FLECHAS MARCAN UN AJUSTE, RETURN LO CAMBIA; F4 ENVÍA EL PROGRAMA CARGADO, F5 RECIBE UNO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>CANCEL</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>DISCARD</source>
+      <translation>DESECHAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN</source>
+      <translation>F6 ABANDONA LA TRANSFERENCIA; CONTINÚA MIENTRAS SE VEN OTRAS PÁGINAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE</source>
+      <translation>NO HAY PUERTO: RETURN EN LA PRIMERA LÍNEA ELIGE UNO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)</source>
+      <translation>NO HAY PROGRAMA CARGADO: ELIJA ANTES EL QUE SE ENVÍA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>NOTHING IS KEPT: {why}</source>
+      <translation>NO SE GUARDA NADA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>PORTS</source>
+      <translation>PUERTOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>PRESS F6 ONCE MORE TO THROW THE RECEIVED PROGRAM AWAY, RETURN TO STORE IT</source>
+      <translation>OPRIMA F6 OTRA VEZ PARA DESECHAR EL PROGRAMA RECIBIDO, RETURN PARA GUARDARLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>RECEIVE</source>
+      <translation>RECIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY</source>
+      <translation>RETURN LO GUARDA COMO PROGRAMA NUEVO Y NO ARRANCA NADA; F6 LO DESECHA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>SEND</source>
+      <translation>ENVIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED</source>
+      <translation>GUARDADO COMO PROGRAMA NUEVO: {name}. NO SE HA ARRANCADO NADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>THE RECEIVED PROGRAM IS THROWN AWAY</source>
+      <translation>EL PROGRAMA RECIBIDO SE HA DESECHADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>programs over the serial line</source>
+      <translation>programas por la línea serie</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
+      <source>{name} IS SENT: {count} BYTES</source>
+      <translation>{name} ENVIADO: {count} BYTES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>7 BITS, EVEN PARITY, FOUND OUT</source>
+      <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>AS SET</source>
+      <translation>COMO SE AJUSTÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>BYTES</source>
+      <translation>BYTES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>CALLS ITSELF</source>
+      <translation>SE LLAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>CHARACTERS</source>
+      <translation>CARACTERES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>DONE</source>
+      <translation>HECHO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>F4 sends: {program}</source>
+      <translation>F4 envía: {program}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>FOR DC1 FROM THE OTHER SIDE</source>
+      <translation>DC1 DEL OTRO LADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>FOR THE FIRST %</source>
+      <translation>EL PRIMER %</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>FOR THE OTHER SIDE TO SEND</source>
+      <translation>QUE EL OTRO LADO ENVÍE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>HELD BY THE OTHER SIDE (XOFF)</source>
+      <translation>DETENIDA POR EL OTRO LADO (XOFF)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>It replaces nothing and starts nothing.</source>
+      <translation>No reemplaza ni arranca nada.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>LINES</source>
+      <translation>LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>NAME OF THE NEW PROGRAM?</source>
+      <translation>¿NOMBRE DEL PROGRAMA NUEVO?</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>NO ERROR</source>
+      <translation>SIN ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>RECEIVING</source>
+      <translation>RECIBIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>SENDING</source>
+      <translation>ENVIANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>SETTING</source>
+      <translation>AJUSTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>SHA-256</source>
+      <translation>SHA-256</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>SKIPPED BEFORE IT</source>
+      <translation>OMITIDOS ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>VALUE</source>
+      <translation>VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>WAITS</source>
+      <translation>ESPERA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>WHOLE</source>
+      <translation>COMPLETA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>{count} ERRORS</source>
+      <translation>{count} ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/sheets.py" />
+      <source>{count} LINES</source>
+      <translation>{count} LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/storing.py" />
+      <source>RECEIVED</source>
+      <translation>RECIBIDO</translation>
     </message>
     <message>
       <location filename="app/desk/view.py" />
@@ -2867,16 +3157,6 @@
       <location filename="app/desk/view.py" />
       <source>WAITING: %1</source>
       <translation>ESPERANDO: %1</translation>
-    </message>
-    <message>
-      <location filename="app/desk/view.py" />
-      <source>X IS A DIAMETER</source>
-      <translation>X ES DIÁMETRO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/view.py" />
-      <source>X IS A RADIUS</source>
-      <translation>X ES RADIO</translation>
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
@@ -3125,11 +3405,6 @@
     </message>
     <message>
       <location filename="app/screen/editor/doings.py" />
-      <source>WHOLE</source>
-      <translation>COMPLETA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/doings.py" />
       <source>go to</source>
       <translation>ir a</translation>
     </message>
@@ -3190,11 +3465,6 @@
     </message>
     <message>
       <location filename="app/screen/editor/page.py" />
-      <source>LINE %1 OF %2  ·  %3</source>
-      <translation>LÍNEA %1 DE %2  ·  %3</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
     </message>
@@ -3212,6 +3482,11 @@
       <location filename="app/screen/editor/page.py" />
       <source>SAVE AS</source>
       <translation>GUARDAR COMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/parts.py" />
+      <source>LINE %1 OF %2  ·  %3</source>
+      <translation>LÍNEA %1 DE %2  ·  %3</translation>
     </message>
     <message>
       <location filename="app/screen/editor/versions.py" />
@@ -5935,6 +6210,11 @@
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
+      <source>input %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
       <source>milling in a switched plane</source>
       <translation>fresado en un plano cambiado</translation>
     </message>
@@ -5942,6 +6222,21 @@
       <location filename="core/interpreter/needs.py" />
       <source>more axes than X and Z</source>
       <translation>más ejes que X y Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>output %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>output collet</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/interpreter/needs.py" />
+      <source>output coolant</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
@@ -7622,11 +7917,6 @@
       <location filename="core/language/klartext/faults.py" />
       <source>Program it with L moves and PLANE, or run the program on a control that has it.</source>
       <translation>Prográmelo con movimientos L y PLANE, o corra el programa en un control que lo tenga.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/faults.py" />
-      <source>Program start undefined</source>
-      <translation>Inicio de programa sin definir</translation>
     </message>
     <message>
       <location filename="core/language/klartext/faults.py" />
