@@ -7,6 +7,7 @@ from collections.abc import Callable
 from core.block_port import BlockOp, BlockState, ThreadOp
 from core.ports import DriverError
 from drivers.grblhal import codes, scripts
+from drivers.grblhal.asking import speed_of
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import line_number, line_of
 from drivers.grblhal.jog import Jogs
@@ -51,7 +52,7 @@ class GrblBlocks:
     def fastest(self) -> float:
         """By the machine file, or by the controller's settings where these are less."""
         wired = [axis for axis in self._c.config.axes if axis.wired]
-        return min(min(axis.vmax, scripts.speed_of(self._c, axis.name) or axis.vmax) for axis in wired)
+        return min(min(axis.vmax, speed_of(self._c, axis.name) or axis.vmax) for axis in wired)
 
     @property
     def quiet(self) -> bool:
@@ -102,8 +103,8 @@ class GrblBlocks:
         self._c.question()
 
     def resume(self) -> None:
-        """0x81, at once where it rests, or as soon as it does."""
-        self._hold = False
+        """0x81, at once where it rests, or as soon as it does; the operator's word ends any hold."""
+        self._hold, self._ours = False, True
         self._go_on()
 
     def abort(self) -> None:
@@ -203,7 +204,7 @@ class GrblBlocks:
         self._jogs.forget()
 
     def _go_on(self) -> None:
-        """Out of a hold of our own once it rests and is no longer wanted; never out of another's."""
+        """Out of a hold once it rests and somebody has said so; never out of another's by itself."""
         report = self._c.report
         if self._ours and not self._hold and report is not None and report.state == "Hold" and not report.sub:
             self._ours = False

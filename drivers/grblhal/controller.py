@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 
 from core.ports import Clock
 from drivers.grblhal import codes
 from drivers.grblhal.config import GrblConfig
-from drivers.grblhal.identity import Identity
+from drivers.grblhal.known import Known
 from drivers.grblhal.report import Report, read_report
+from drivers.grblhal.scripting import Runner, Script
 from drivers.grblhal.stream import Ask, Stream
 from drivers.grblhal.wire import Wire, WireLostError
 
@@ -22,50 +23,29 @@ _SILENT = 1.0  # s without a report
 _INDEX = 8.0  # s in which a thread may wait for its index without answering
 _UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
 _GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
-_LEAP = 1.0  # mm beyond what the slides can do between two reports
 _SETTING = re.compile(r"\$\d+=.*")
 _ANSWER = re.compile(r"error:(\d+)")
 _ALARM = re.compile(r"ALARM:(\d+)")
 
-Step = tuple[Callable[[], bool], float, str]  # until, within s, what is told when it takes longer
-Script = Generator[Step, None, None]
 
-
-class ScriptError(Exception):
-    """What a script was begun for cannot be done; the sentence becomes the fault."""
-
-
-class Controller:
+class Controller(Known):
     """One wire and what is known of its other end."""
 
     def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
-        self.config = config
-        self.clock = clock
+        super().__init__(config, clock)
         self.stream = Stream(self._write)
-        self.identity: Identity | None = None
-        self.settings: dict[int, str] = {}  # as read at the connection
-        self.report: Report | None = None  # the last one
-        self.reports = self.fulls = self.banners = 0  # how many have come
-        self.heard_at = clock.now()
-        self.position: dict[str, float] = {}  # mm by axis letter, X a radius
-        self.offset: tuple[float, ...] = ()
-        self.overrides: tuple[int, ...] | None = None
-        self.diameter: bool | None = None
-        self.most_free = 0  # blocks of its planner when that is empty
+        self.banners = 0  # how many resets have been told
         self.fault = ""
         self.lost = False  # for good: start the control again
         self.alarm = 0
         self.trusted = True  # the position
         self.ready = False  # modes verified, nothing wrong
-        self.doing = ""  # what the present script is for
         self.index_wait = False  # a thread pass is under way: no report may come for seconds
         self.on_report: Callable[[Report], None] = lambda _: None
         self.on_void: Callable[[], None] = lambda: None
         self._wire = wire
         self._inbox = b""
-        self._script: Script | None = None
-        self._step: Step = (lambda: True, 0.0, "")
-        self._until = 0.0
+        self._runner = Runner()
         self._expected = False  # a reset of our own
         self._asked_at: float | None = None
         self._next_question = 0.0
@@ -78,7 +58,7 @@ class Controller:
     @property
     def busy(self) -> bool:
         """Whether a script is under way."""
-        return self._script is not None
+        return self._runner.busy
 
     def realtime(self, *codes_: int) -> None:
         """Bytes that bypass every buffer."""
@@ -90,13 +70,14 @@ class Controller:
 
     def run(self, script: Script, doing: str = "") -> None:
         """Begin a script; one that is under way is given up."""
-        self.doing = doing
-        if self._script is not None:
-            self._script.close()
-        self._script, self.ready, self._expected = script, False, False
-        self._until = self.clock.now()
-        self._step = (lambda: True, 0.0, "")
+        self.ready, self._expected = False, False
+        self._runner.begin(script, doing, self.clock.now())
         self._advance()
+
+    @property
+    def doing(self) -> str:
+        """What the present script is for."""
+        return self._runner.doing
 
     def expect_reset(self) -> None:
         """The next banner is that of a reset of our own."""
@@ -151,7 +132,8 @@ class Controller:
             self._gone(error)
 
     def _gone(self, error: WireLostError) -> None:
-        self.lost, self._script = True, None
+        self.lost = True
+        self._runner.drop()
         self.fail(f"the connection to the controller is lost: {error}; it moves what it has, then rests")
         self.void()
 
@@ -223,22 +205,14 @@ class Controller:
             self.question(full=True)
 
     def _reported(self, report: Report | None, line: str) -> None:
-        if report is None or not self._plausible(report):
+        fit = report is not None and (self.busy or not self.ready or self.plausible(report))
+        if report is None or not fit:
             self._damaged(line)
             return
-        now = self.clock.now()
-        self.reports, self.fulls = self.reports + 1, self.fulls + report.full
-        if report.diameter is not None:
-            self.diameter = report.diameter
+        self.keep(report)
         if report.diameter and self.ready:
             self.fail("X counts in diameter (D:1): the controller has lost its modes")
-        self.offset = report.offset if report.offset is not None else self.offset
-        self.overrides = report.overrides if report.overrides is not None else self.overrides
-        if report.state == "Idle" and report.free is not None:
-            self.most_free = max(self.most_free, report.free)
-        if not self.diameter:
-            self.position = self._places(report) or self.position
-        self.report, self.heard_at, self._asked_at = report, now, None
+        self._asked_at = None
         self._mind(report)
         self.on_report(report)
 
@@ -254,46 +228,12 @@ class Controller:
         elif report.state != "Alarm":
             self.alarm = 0
 
-    def _places(self, report: Report) -> dict[str, float]:
-        axes = self.identity.axes if self.identity is not None else "XYZ"
-        return dict(zip(axes, report.position or (), strict=False))
-
-    def _plausible(self, report: Report) -> bool:
-        """No slide leaps; a controller that homes or was reset may count anew."""
-        if self.report is None or self.busy or not self.ready or self.diameter:
-            return True
-        passed = self.clock.now() - self.heard_at
-        places = self._places(report)
-        for axis in self.config.axes:
-            before, now = self.position.get(axis.name), places.get(axis.name)
-            if before is None or now is None:
-                continue
-            if abs(now - before) > 1.5 * axis.vmax * passed + _LEAP:
-                return False
-        return True
-
     def _advance(self) -> None:
-        """Let the script go on as far as it can."""
-        while self._script is not None:
-            until, _, why = self._step
-            now = self.clock.now()
-            if not until():
-                if now <= self._until:
-                    return
-                self._script = None
-                self.fail(why)
-                return
-            try:
-                self._step = next(self._script)
-            except StopIteration:
-                self._script = None
-                self._expected = False
-            except ScriptError as error:
-                self._script = None
-                self._expected = False
-                self.fail(str(error))
-            else:
-                self._until = now + self._step[1]
+        """Let the script go on; why it fails is the fault."""
+        why = self._runner.go_on(self.clock.now())
+        self._expected = self._expected and self.busy
+        if why:
+            self.fail(why)
 
     def _interval(self) -> float:
         if self.busy:

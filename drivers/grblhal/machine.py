@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from core.ports import Clock, DriverError, MachinePorts, Stop
 from drivers.grblhal import scripts
+from drivers.grblhal.asking import speed_of
 from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.config import GrblConfig
 from drivers.grblhal.controller import Controller
@@ -96,7 +97,7 @@ class GrblMachine:
         told = [
             f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
             for axis in c.config.axes
-            if axis.wired and 0.0 < (speed := scripts.speed_of(c, axis.name)) < 0.99 * axis.vmax
+            if axis.wired and 0.0 < (speed := speed_of(c, axis.name)) < 0.99 * axis.vmax
         ]
         highest = float(c.settings.get(30, "0"))
         if 0.0 < highest < c.config.rpm_max:

@@ -257,3 +257,17 @@ def test_pins_of_the_controller_hold_and_start() -> None:
     bench.peer.pins = ""
     bench.until(State.IDLE)
     assert bench.shot.parts == 1
+
+
+def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.peer.feed(b"\x82")  # a button at the controller, pressed between two reports
+    bench.until(State.HOLD, limit=0.5)
+    assert bench.shot.waiting_for == "THE CONTROLLER HOLDS"
+    bench.run(1.0)
+    assert bench.state is State.HOLD
+    bench.press()
+    bench.until(State.IDLE)
+    assert bench.shot.parts == 1

@@ -1,0 +1,100 @@
+"""Blocks in pieces for a controller that plans by itself: on their own line or circle, each short in time."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.block_port import ArcOp, LineOp, RapidOp, ThreadOp
+from core.executor.alarms import TroubleError
+from core.executor.blockwise.pieces import LONGEST, Turning, pieces_of
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.interpreter.needs import first_needs, needs_of
+
+FULL = Turning(1.0, 3500.0)
+
+
+def block(kind: Kind, **words: object) -> Block:
+    """From X 0, Z 0 of a frame that lies at X 1, Z 2 of the machine."""
+    values: dict[str, object] = {
+        **{"x0": 0.0, "z0": 0.0, "c0": 0.0, "x": 0.0, "z": 0.0, "c": 0.0, "offset_x": 1.0, "offset_z": 2.0},
+        **{"n": 1, "line": 7, "text": "", "modal": Modal(), "feed": 10.0, "kind": kind},
+    }
+    return Block(**{**values, **words})  # type: ignore[arg-type]
+
+
+def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
+    pieces = list(pieces_of(block(Kind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
+    assert [piece.seconds for piece in pieces] == pytest.approx([0.5 / 3] * 3)
+    ops = [piece.op for piece in pieces]
+    assert all(isinstance(op, LineOp) for op in ops)
+    assert [(op.x, op.z) for op in ops] == [
+        pytest.approx((2.0, 2.0 - 4.0 / 3)),
+        pytest.approx((3.0, 2.0 - 8.0 / 3)),
+        (4.0, -2.0),  # exactly the end of the block
+    ]
+
+
+def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
+    arc = block(Kind.ARC, x=10.0, z=-10.0, cx=10.0, cz=0.0, feed=20.0)  # a quarter of 15.7 mm, 0.79 s
+    ops = [piece.op for piece in pieces_of(arc, FULL)]
+    assert len(ops) == 4
+    before = (1.0, 2.0)
+    for op in ops:
+        assert isinstance(op, ArcOp)
+        assert (op.x0, op.z0) == before
+        assert math.hypot(op.x - op.cx, op.z - op.cz) == pytest.approx(10.0)
+        assert (op.cx, op.cz, op.clockwise) == (11.0, 2.0, False)
+        before = (op.x, op.z)
+    assert before == (11.0, -8.0)
+
+
+def test_a_slow_controller_makes_the_pieces_shorter() -> None:
+    rapid = block(Kind.RAPID, z=-100.0, feed=127.0)
+    assert len(list(pieces_of(rapid, FULL))) == 4
+    slow = list(pieces_of(rapid, FULL, fastest=10.0))
+    assert len(slow) == 50
+    assert all(piece.seconds <= LONGEST + 1e-9 for piece in slow)
+    assert isinstance(slow[0].op, RapidOp)
+
+
+def test_a_thread_is_one_piece() -> None:
+    (piece,) = pieces_of(block(Kind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
+    assert piece.op == ThreadOp(1.0, -98.0, 1.5)
+
+
+def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> None:
+    cut = block(Kind.FEED, z=-0.1, feed=0.1, per_rev=True, rpm=-1200.0)
+    (piece,) = pieces_of(cut, Turning(0.5, 3500.0))
+    assert isinstance(piece.op, LineOp)
+    assert piece.op.feed == pytest.approx(0.1 * 1200 / 60 * 0.5)
+    (piece,) = pieces_of(cut, Turning(1.0, 600.0))
+    assert isinstance(piece.op, LineOp)
+    assert piece.op.feed == pytest.approx(0.1 * 600 / 60)
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"), [({"c": 90.0}, "X and Z only"), ({"x": 1.0, "feed": 0.0}, "no feed")]
+)
+def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
+    with pytest.raises(TroubleError, match=expected):
+        list(pieces_of(block(Kind.FEED, **words), FULL))
+
+
+def test_needs_are_told_once_with_their_first_line() -> None:
+    blocks = [
+        block(Kind.ARC, x=1.0, z=-1.0, cx=1.0, line=3),
+        block(Kind.ARC, x=1.0, z=-1.0, cx=1.0, line=4),
+        block(Kind.THREAD, z=-1.0, line=5),
+        block(Kind.THREAD, z=-1.0, line=6),
+        block(Kind.FEED, z=-1.0, css=100.0, rpm=500.0, line=7),
+    ]
+    needs = first_needs(needs_of(blocks))
+    assert [(need.what, need.line) for need in needs] == [
+        ("arc", 3),
+        ("thread", 5),
+        ("pull-out", 6),
+        ("surface-speed", 7),
+    ]
