@@ -49,7 +49,7 @@ def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
         return {1: Doing("CREATE", page.editor.create), 10: Doing("ABORT", page.editor.abort)}
     if mode is Mode.TEXT:
         return _text(page)
-    return {2: Doing("SAVE" if mode is Mode.NAME else "GO", page.take), 10: Doing("BACK", page.back)}
+    return {2: Doing("SAVE" if mode is Mode.NAME else "GO", page.asking.take), 10: Doing("BACK", page.back)}
 
 
 def _text(page: EditorPage) -> dict[int, Doing]:

@@ -50,7 +50,7 @@ def _panning(page: EditorPage) -> Actions:
 
 
 def _asking(page: EditorPage, *, back: bool) -> Actions:
-    enter = (lambda: page.finder.step(-1)) if back else page.take
+    enter = (lambda: page.finder.step(-1)) if back else page.asking.take
     tab = page.ask.other_field
     return {Key.Key_Return: enter, Key.Key_Enter: enter, Key.Key_Tab: tab, Key.Key_Backtab: tab}
 

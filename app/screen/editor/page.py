@@ -5,64 +5,37 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from PySide6.QtCore import QEvent, QObject
-from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
-from app.desk.arithmetic import line_of
 from app.desk.editing import words
 from app.desk.editing.editor import Editor, Stage
 from app.desk.editing.entering import enter
-from app.desk.editing.history import History
 from app.desk.prompts import MOVING
 from app.desk.session import Loaded
-from app.desk.swivel.telling import at_line, plane_words
 from app.desk.view import View
-from app.screen.editor.ask import AskLine
+from app.screen.editor.asking import Asking
 from app.screen.editor.doings import PROMPTS, Doing, Mode, doings
-from app.screen.editor.draft import Draft
-from app.screen.editor.drawn import EditedPath
-from app.screen.editor.finder import Finder
-from app.screen.editor.findings import FindingList
-from app.screen.editor.heading import Heading, HeadLine
-from app.screen.editor.keyboard import ASKING, action_of
-from app.screen.editor.layout import editor_places
+from app.screen.editor.keyboard import action_of
 from app.screen.editor.looking import Looking
-from app.screen.editor.textfield import TextField
-from app.screen.editor.versions import VersionList
-from app.screen.pages import Doings, Host, Page
-from app.screen.swivel.view import SwivelView
+from app.screen.editor.parts import EditorParts
+from app.screen.pages import Doings, Host
 from core.executor.snapshot import Snapshot
 
-if TYPE_CHECKING:
-    from app.desk.picture import Picture
 
-
-class EditorPage(Page):
+class EditorPage(EditorParts):
     """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed."""
 
     NAME = pages.EDITOR
 
     def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
-        super().__init__(host, parent)
-        look, self.editor = host.look, editor
-        self._mode = Mode.TEXT
+        super().__init__(host, editor, parent)
         self._target = pages.AUTOMATIC  # where leaving leads to
         self._moving = False
-        self.head = HeadLine(look, self)
-        self.field = TextField(look, self)
-        self.path = EditedPath(look, self.go_to, self)
-        self.space = SwivelView(look, self)  # takes the path's place where the program is for a mill
-        self.findings = FindingList(look, self.go_to, self)
-        self.history = History(editor.bench.archive, editor.worker)
-        self.versions = VersionList(look, self.history, self)
-        self.ask = AskLine(look, self, self)
-        self.finder = Finder(self.field, self.ask)
+        self.asking = Asking(self)
         self.looking = Looking(self)
-        self.draft = Draft(self.field, self.editor)
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -135,28 +108,9 @@ class EditorPage(Page):
             return
         self.draft.refresh()
         self._follow_stage()
-        line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
-        place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
-        self.head.show_heading(Heading(editor.name, self.draft.mark, place))
-        findings = editor.checker.now
-        self.field.show_findings(findings.by_line)
-        self.findings.show_findings(findings, line)
-        self._show_path(findings.picture, line)
+        self.show_text()
         self.looking.refresh()
         self.versions.refresh()
-
-    def _show_path(self, picture: Picture | None, line: int) -> None:
-        """The path up to the line of the cursor; on a mill the plane of that line in space."""
-        scene = picture.scene if picture is not None else None
-        self.space.show_scene(scene)
-        self.space.setVisible(scene is not None and self._mode is not Mode.OFFER)
-        self.path.show_picture(picture if scene is None else None)
-        if scene is not None:
-            here = at_line(scene, line)
-            self.space.show_instant(here, plane_words(here.swivel))
-            return
-        self.path.follow(line)
-        self.path.advance()
 
     def _follow_stage(self) -> None:
         """The questions that the editor asks of itself."""
@@ -170,31 +124,14 @@ class EditorPage(Page):
 
     # --- what keys do --------------------------------------------------------------------------------
 
-    @property
-    def mode(self) -> Mode:
-        """What the keys are for now."""
-        return self._mode
-
     def _doings(self) -> dict[int, Doing]:
         return doings(self, self._mode)
 
     def enter(self, mode: Mode) -> None:
         """From now on the keys are for this."""
         self._mode = mode
-        if mode is Mode.FIND:
-            self.ask.ask("FIND", "REPLACE BY", entry=self.finder.start())
-            self.finder.look()
-        elif mode is Mode.GO_TO:
-            self.ask.ask("GO TO LINE", entry=str(self.field.line))
-        elif mode is Mode.NAME:
-            self.ask.ask("SAVE AS", entry=self.editor.name)
-        else:
-            self.ask.hide()
-        self.path.measure(on=mode is Mode.LOOK)
-        self.versions.setVisible(mode is Mode.HISTORY)
-        for part in (self.field, self.path, self.findings):
-            part.setVisible(mode is not Mode.OFFER)  # what was edited last is not the file that is offered
-        self._lay_out()
+        self.asking.show(mode)
+        self.show_mode()
         if mode is Mode.HISTORY:
             self.versions.raise_()
             self.history.look(self.editor.name, self.draft.now())
@@ -224,8 +161,7 @@ class EditorPage(Page):
         """The cursor to a place of the program."""
         if self._mode is Mode.LOOK:
             self.enter(Mode.TEXT)
-        self.field.go_to(max(1, line), column)
-        self.field.setFocus()
+        super().go_to(line, column)
 
     def next_finding(self) -> None:
         """The cursor to the next line that something was found in."""
@@ -254,24 +190,6 @@ class EditorPage(Page):
             self.editor.restore(self.history.text, self.history.number)
             self.enter(Mode.TEXT)
 
-    def take(self) -> None:
-        """Return in the line that asks."""
-        entry = self.ask.first.text()
-        if self._mode is Mode.FIND:
-            self.finder.step(1)
-        elif self._mode is Mode.GO_TO:
-            self._go_to_typed(entry)
-        elif self._mode is Mode.NAME:
-            self.editor.take_name(entry)
-
-    def _go_to_typed(self, entry: str) -> None:
-        number = line_of(entry)
-        if number is None or number > self.field.blockCount():
-            self.ask.say(f"A NUMBER FROM 1 TO {self.field.blockCount()}")
-            return
-        self.enter(Mode.TEXT)
-        self.go_to(number)
-
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
@@ -290,31 +208,6 @@ class EditorPage(Page):
         if action is not None:
             action()
         return action is not None
-
-    def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Everything again, in the new unit."""
-        self._lay_out()
-        self.dress()
-
-    def _lay_out(self) -> None:
-        at = editor_places(self.width(), self.height(), self.look.u, asking=self._mode in ASKING)
-        for part, rect in (
-            (self.head, at.head),
-            (self.field, at.text),
-            (self.path, at.path),
-            (self.space, at.path),
-            (self.findings, at.findings),
-            (self.versions, at.body),
-            (self.ask, at.ask),
-        ):
-            part.setGeometry(*rect)
-            part.update()
-
-    def dress(self) -> None:
-        """Everything in the colours and sizes that are in force now."""
-        self.field.dress()
-        self.ask.dress()
-        self.path.restart()
 
     def _go(self) -> None:
         """The editor has been left."""
