@@ -181,9 +181,9 @@ def workshop(
 
     def draw(job: Job, watch: Watch) -> Picture:
         from app.desk.picture import sketched
-        from core.proving.timeline import Timeline, timed_blocks
+        from core.proving.timeline import Timeline, timed_series
 
-        return sketched(timed_blocks(Timeline.of(job.source, job.setup, machine)), watch)
+        return sketched(timed_series(Timeline.of(job.source, job.setup, machine)), watch)
 
     return Workshop(_read, new_job, prove_job, draw)
 

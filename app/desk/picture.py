@@ -16,20 +16,20 @@ import numpy as np
 import numpy.typing as npt
 
 from app.desk.drawing.chords import arc_pieces
-from app.desk.drawing.trail import SAME, Pencil, Stroke, Trail, bounds_of
+from app.desk.drawing.trail import SAME, Floats, Pencil, Stroke, Trail, bounds_of
 from app.desk.drawing.turned import TurnedSketch, way_of
 from app.desk.swivel.scene import Scene, SceneSketch
 from core.geometry.extent import arc_sweep
 from core.geometry.face import Face
-from core.interpreter.blocks import Kind
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.series import Series, TimedSeries
 
 if TYPE_CHECKING:
     from core.geometry.mill import PlaneMove, Spot
-    from core.interpreter.blocks import Block
 
 WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 
-Timed = tuple["Block", float, float]
+Timed = tuple[Block, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +107,21 @@ class Sketch:
         self._metric = block.modal.metric
         self._chord.append(_chord(block) if block.moves else 0.0)
 
+    def add_series(self, series: Series, ends: Floats) -> None:
+        """Append straight moves that end ``ends`` (m,) seconds into the program."""
+        like = series.pattern
+        if self._turned is not None or like.modal.c_locked:
+            for block, end in zip(series, ends.tolist(), strict=True):
+                self.add(block, end)
+            return
+        dx, dz = like.offset_x - like.modal.tool_x, like.offset_z - like.modal.tool_z
+        self._pencil.start(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
+        self._pencil.row(series.z + dz, series.x + dx, _stroke(like))
+        self._ends.frombytes(ends.tobytes())
+        self._line.frombytes(series.line.tobytes())
+        self._chord.frombytes(np.hypot(series.x - series.x0, series.z - series.z0).tobytes())
+        self._metric = like.modal.metric
+
     def picture(self) -> Picture:
         """The picture of what was added."""
         z, x, stroke, first = self._pencil.arrays()
@@ -172,12 +187,18 @@ class Sketch:
                 self._pencil.start(*at)
 
 
-def sketched(blocks: Iterable[Timed], watch: Callable[[int], None]) -> Picture:
+def sketched(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
     """The picture of all blocks; ``watch`` is told the count now and then and may raise to give up."""
-    sketch = Sketch()
-    for count, (block, _start, end) in enumerate(blocks, 1):
-        sketch.add(block, end)
-        if count % WATCHED == 0:
+    sketch, count, told = Sketch(), 0, 0
+    for each in blocks:
+        if isinstance(each, TimedSeries):
+            sketch.add_series(each.series, each.t1)
+            count += len(each.series)
+        else:
+            sketch.add(each[0], each[2])
+            count += 1
+        if count - told >= WATCHED:
+            told = count
             watch(count)
     return sketch.picture()
 

@@ -6,7 +6,7 @@ Nearly all of a long program is such moves, and a block of its own costs more th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import overload
+from typing import NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -63,3 +63,11 @@ class Series(Sequence[Block]):
             self.pattern, self.texts, self.n[at], self.line[at],
             x0=self.x0[at], z0=self.z0[at], x=self.x[at], z=self.z[at],
         )  # fmt: skip
+
+
+class TimedSeries(NamedTuple):
+    """Moves with the starts and ends (m,) of each on the program's clock, s."""
+
+    series: Series
+    t0: Floats
+    t1: Floats

@@ -18,8 +18,9 @@ from core.machine.model import Machine
 from core.proving.interlock import c_findings
 from core.proving.passing import Part
 from core.proving.report import MillFigures, Report, Times
+from core.proving.stretches import Moved, Rested
 from core.proving.tally import Tally
-from core.proving.timeline import Moved, Rested, Timeline
+from core.proving.timeline import Timeline
 from core.proving.travel import travel_findings
 
 _AT_ONCE = 1000  # blocks that are looked at together

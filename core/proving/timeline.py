@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import chain
-from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.dialects import Interpretation, interpretation, passed_on
-from core.interpreter.series import Series
+from core.interpreter.series import Series, TimedSeries
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
@@ -20,47 +18,10 @@ from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.timeline import Chunk, ChunkPlanner
 from core.proving.forecast import SETTLING, THREAD_EARLY, SpindleForecast
-from core.proving.passing import Part, Passing
+from core.proving.passing import Passing
+from core.proving.stretches import Moved, Rested, TimedBlock
 
 _AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
-
-
-class Moved(NamedTuple):
-    """A stretch of motion from ``t0`` on, and the blocks that end in it with when they start and end."""
-
-    t0: float
-    chunk: Chunk
-    parts: tuple[Part, ...]
-
-    @property
-    def blocks(self) -> list[Block]:
-        """Each block, those of series made for whoever asks."""
-        return list(chain.from_iterable(self.parts))
-
-    @property
-    def last(self) -> Block | None:
-        """The last block that ends in it."""
-        return self.parts[-1][-1] if self.parts else None
-
-    @property
-    def t1(self) -> float:
-        """When the stretch ends; the next one may go on without a stop."""
-        return self.t0 + self.chunk.profile.duration
-
-    def times(self) -> Iterator[tuple[Block, float, float]]:
-        """Each block with its start and end on the program's clock."""
-        shift = self.t0 - self.chunk.t
-        blocks = chain.from_iterable(self.parts)
-        for block, t0, t1 in zip(blocks, self.chunk.t0.tolist(), self.chunk.t1.tolist(), strict=True):
-            yield block, t0 + shift, t1 + shift
-
-
-class Rested(NamedTuple):
-    """At rest from ``t0`` to ``t1``: a block that does not move, or (None) a wait before the next motion."""
-
-    t0: float
-    t1: float
-    block: Block | None
 
 
 class Timeline:
@@ -234,10 +195,19 @@ def _like(each: Block | Series) -> Block:
     return each.pattern if isinstance(each, Series) else each
 
 
-def timed_blocks(timeline: Timeline) -> Iterator[tuple[Block, float, float]]:
+def timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
     """Every elementary block with its start and end, s; waits belong to no block."""
     for stretch in timeline.spans():
         if isinstance(stretch, Moved):
             yield from stretch.times()
+        elif stretch.block is not None:
+            yield stretch.block, stretch.t0, stretch.t1
+
+
+def timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
+    """The same, series of moves in one."""
+    for stretch in timeline.spans():
+        if isinstance(stretch, Moved):
+            yield from stretch.times_of_parts()
         elif stretch.block is not None:
             yield stretch.block, stretch.t0, stretch.t1

@@ -10,7 +10,8 @@ import numpy as np
 from core.geometry.spindle import surface_rpm
 from core.interpreter.blocks import Block
 from core.motion.timeline import sample_positions
-from core.proving.timeline import Moved, Rested, Timeline
+from core.proving.stretches import Moved, Rested
+from core.proving.timeline import Timeline
 
 Row = tuple[float, tuple[float, ...], float, int]  # t, all axes, spindle degrees, line
 

@@ -13,6 +13,7 @@ from app.desk.picture import Sketch, sketched
 from core.interpreter.actions import SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
+from core.interpreter.series import Series, TimedSeries
 
 TURNING = Modal(spindle=1, tool=1)
 
@@ -111,3 +112,21 @@ def test_the_watch_may_give_up() -> None:
     blocks = ((move(n, Kind.FEED, (5, 0), (5, -1)), 0.0, 1.0) for n in range(1, 5000))
     with pytest.raises(EnoughError):
         sketched(blocks, watch)
+
+
+def test_series_are_drawn_as_their_blocks_are() -> None:
+    """A jump to the start, and each move a point and a block of its own."""
+    moves = [move(n, Kind.FEED, (10 - n, n), (9 - n, n + 1)) for n in range(1, 6)]
+    ends = [1.0, 2.5, 3.0, 4.0, 7.0]
+    columns = [np.array([getattr(b, name) for b in moves], dtype=float) for name in ("x0", "z0", "x", "z")]
+    numbers = np.arange(1, 6)
+    x0, z0, x, z = columns
+    series = Series(moves[0], [""] * 5, numbers, numbers, x0=x0, z0=z0, x=x, z=z)
+    told: list[int] = []
+    rows = sketched([TimedSeries(series, np.array([0.0, *ends[:-1]]), np.array(ends))], told.append)
+    single = sketched([(b, 0.0, end) for b, end in zip(moves, ends, strict=True)], told.append)
+    for name in ("z", "x", "stroke", "first", "ends", "line"):
+        assert getattr(rows, name).tolist() == getattr(single, name).tolist()
+    assert rows.chord == pytest.approx(single.chord)
+    assert rows.first.tolist() == [0, 2, 3, 4, 5, 6]
+    assert rows.bounds == (1, 6, 4, 9)

@@ -11,7 +11,8 @@ from core.language.source import Source
 from core.machine.load import load_machine
 from core.proving.forecast import SpindleForecast
 from core.proving.prove import prove
-from core.proving.timeline import Moved, Timeline, timed_blocks
+from core.proving.stretches import Moved
+from core.proving.timeline import Timeline, timed_blocks
 from core.proving.trace import setpoints
 
 MACHINE = load_machine()

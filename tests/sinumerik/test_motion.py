@@ -20,7 +20,8 @@ from core.language.dialect import Dialect
 from core.language.source import Source
 from core.machine.model import Machine
 from core.proving.prove import prove
-from core.proving.timeline import Moved, Timeline
+from core.proving.stretches import Moved
+from core.proving.timeline import Timeline
 from drivers.simulated import StepClock
 from tests.sinumerik.lathe import LINEAR, MODULO, setup, source
 

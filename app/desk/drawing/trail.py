@@ -77,6 +77,14 @@ class Pencil:
         self.x.append(x)
         self.stroke.append(stroke)
 
+    def row(self, z: Floats, x: Floats, stroke: int) -> None:
+        """Draw on from point to point, each the end of a block of its own."""
+        first = len(self.z)
+        self.z.frombytes(z.tobytes())
+        self.x.frombytes(x.tobytes())
+        self.stroke.frombytes(bytes([stroke]) * len(z))
+        self.first.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
+
     def end_block(self) -> None:
         """What was drawn since the last call was one block."""
         self.first.append(len(self.z))
