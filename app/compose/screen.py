@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
-from app.compose.backends import connect, played
+from app.compose.backends import Connected, connect, played
 from app.compose.effect import drawer
 from app.compose.inverter import has_inverter
 from app.compose.journal import Journal
@@ -92,11 +92,9 @@ def desk_and_executor(
 ) -> tuple[Desk, Executor]:
     """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
     machine = read_machine(machine_file)
-    try:
-        connected = connect(machine, clock)
-    except DriverError as error:
-        raise CommandError(str(error)) from error
+    connected = _connected(machine, clock)
     heard: list[Desk] = []
+    keep = journal or NothingKept()
 
     def hear(event: Event) -> None:
         for desk in heard:
@@ -105,14 +103,13 @@ def desk_and_executor(
             journal.hear(event)
 
     executor = Executor(machine, connected.ports, hear)
-
-    def left() -> Modal:
-        return executor.snapshot.modal
-
     desk = Desk(
         post=executor.post,
         snapshot=lambda: executor.snapshot,
-        session=Session(workshop(machine, offsets, journal, zero=zero, left=left), executor.post),
+        session=Session(
+            workshop(machine, offsets, journal, zero=zero, left=lambda: executor.snapshot.modal),
+            executor.post,
+        ),
         shelf=Shelf((home() / "programs", samples())),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
@@ -124,14 +121,21 @@ def desk_and_executor(
         zero=zero_book(zero, journal),
         editor=_editor(workshop(machine, offsets, zero=zero), journal),
     )
-    furnish(desk, machine, journal or NothingKept(), workshop(machine, offsets, zero=zero))
-    give_mdi(desk, machine, offsets, journal or NothingKept())
+    furnish(desk, machine, keep, workshop(machine, offsets, zero=zero))
+    give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)
     heard.append(desk)
     desk.shut = connected.close
     for warning in connected.ports.warnings:
         hear(Event(clock.now(), "warning", warning))
     return desk, executor
+
+
+def _connected(machine: Machine, clock: Clock) -> Connected:
+    try:
+        return connect(machine, clock)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
 
 
 def _drives(machine: Machine) -> str:

@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 import math
+from typing import TypedDict
 
 from core.executor.bench import Bench
 from core.executor.conductor import Conductor
+from core.executor.cycle import Cycle
 from core.executor.snapshot import Snapshot
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
 from core.interpreter.swivel import Swivel
 from core.ports import AxisSample
+
+
+class _Played(TypedDict):
+    """What a snapshot has of the block that is played."""
+
+    line: int
+    block: int
+    block_text: str
+    block_end: tuple[float, ...]
+    offset: tuple[float, float]
+    feed: float
+    rapid: bool
+    turns: bool
 
 
 class Publisher:
@@ -25,31 +40,23 @@ class Publisher:
         """The snapshot of this tick."""
         cycle, standing, counters = conductor.cycle, conductor.standing, conductor.counters
         block = cycle.current if cycle else None
-        following = cycle.next_block if cycle else None
         job, modal = standing.job, conductor.modal
         self._swivel = self._system(block, under_way=cycle is not None)
         return Snapshot(
+            **_played(block, modal, bench.sample),
+            next_text=_next_text(cycle),
             t=bench.now,
             state=standing.state,
             waiting_for=cycle.waiting_for if cycle else "",
             program=job.source.name if job else "",
-            line=block.line if block else 0,
-            block=block.n if block else 0,
-            block_text=block.text if block else "",
-            next_text=following.text if following else "",
             axes=tuple(axis.name for axis in bench.machine.axes),
             demand=bench.sample.demand,
             actual=bench.sample.actual,
             following_error=bench.sample.following_error,
             homed=bench.sample.homed,
-            block_end=block.machine_end if block else bench.sample.demand,
-            offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
             modal=modal,
             swivel=self._swivel,
             velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
-            feed=_feed(block, modal),
-            rapid=block.rapid if block else modal.rapid,
-            turns=_turns(block, modal),
             rpm_command=bench.spindle.command,
             rpm_actual=bench.spindle.measured,
             spindle_asked=bench.spindle.asked_rpm,
@@ -96,6 +103,26 @@ class Publisher:
         if dt > 0.0:
             self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
         return self._velocity
+
+
+def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
+    """Without a block what is in force, and the slides stand at its end."""
+    return _Played(
+        line=block.line if block else 0,
+        block=block.n if block else 0,
+        block_text=block.text if block else "",
+        block_end=block.machine_end if block else sample.demand,
+        offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
+        feed=_feed(block, modal),
+        rapid=block.rapid if block else modal.rapid,
+        turns=_turns(block, modal),
+    )
+
+
+def _next_text(cycle: Cycle | None) -> str:
+    """Of the block that comes after the one that is played."""
+    following = cycle.next_block if cycle else None
+    return following.text if following else ""
 
 
 def _interrupted(conductor: Conductor) -> int:
