@@ -81,9 +81,9 @@ def _ports() -> int:
 def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     from dataclasses import replace
 
-    from core.machine.hardware.model import DncModel
+    from app.compose.transfer import PLAIN
 
-    model = machine.hardware.dnc or DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
+    model = machine.hardware.dnc or PLAIN
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")
     said = {name: value for name in names if (value := getattr(args, name)) is not None}
     if args.eol:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.compose.transfer import SerialLines, proving
+from app.compose.transfer import PLAIN, SerialLines, proving
 from app.desk.desk import Desk
 from app.desk.editing.worker import Worker
 from app.desk.files.chooser import Chooser
@@ -44,13 +44,11 @@ def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Worker) -> Secti
     return section
 
 
-def _transfer(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path) -> list[Section]:
-    """RS-232, where the machine file has a line for it. A program that comes in is proved as an import is."""
-    model = machine.hardware.dnc
-    if model is None:
-        return []
+def _transfer(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path) -> Section:
+    """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
     ending = {"mill": ".h"}.get(machine.kind, ".nc")
-    return [TransferSection(desk, keep, SerialLines(proving(workshop), ending), model, own)]
+    lines = SerialLines(proving(workshop), ending)
+    return TransferSection(desk, keep, lines, machine.hardware.dnc or PLAIN, own)
 
 
 # One line for each special function, in the order of the list; one whose hardware is not there has none.
@@ -76,7 +74,7 @@ def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: P
     worker = Worker()
     own = own or home() / "programs"
     sections = [make(desk, machine, keep, worker) for make in ITEMS]
-    sections += _transfer(desk, machine, keep, workshop, own)
+    sections.append(_transfer(desk, machine, keep, workshop, own))
     desk.special = SpecialDesk(sections, worker)
     desk.files = _files(desk, keep, workshop, own)
 

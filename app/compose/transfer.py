@@ -20,6 +20,8 @@ from drivers.transfer.session import Reach, Receiving, Sending
 from drivers.transfer.settings import TransferSettings
 from drivers.wire import LineSettings
 
+# A line as most controls have it; the port is for the operator to choose.
+PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
 Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time in s
 
 

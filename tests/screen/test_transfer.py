@@ -101,7 +101,9 @@ def hands(
     desk = desk_on(machine, keep=journal)
     assert desk.special is not None
     section = TransferSection(desk, journal, lines, DEFAULT, tmp_path / "own")
-    desk.special.sections = [*desk.special.sections, section]
+    *others, last = desk.special.sections
+    last.close()
+    desk.special.sections = [*others, section]
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

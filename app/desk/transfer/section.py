@@ -51,10 +51,13 @@ class TransferSection(Section):
 
     def opened(self) -> None:
         """Look for ports."""
-        self.worker.ask(lambda: [device for device, _ in self.lines.ports()], self._found, self._failed)
+        self.worker.ask(lambda: [device for device, _ in self.lines.ports()], self._found, self._no_ports)
 
     def _found(self, ports: list[str]) -> None:
         self.ports = ports
+
+    def _no_ports(self, why: str) -> None:
+        self.desk.say(f"REFUSED: {why}")
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """The face of this moment."""
