@@ -56,4 +56,4 @@ def play_grblhal(machine: Machine, going: Callable[[], bool], say: Callable[[str
 
 
 def _axis(axis: Axis) -> GrblAxis:
-    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.travel, axis.absolute, axis.name in _WIRED)
+    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED)

@@ -13,7 +13,6 @@ class GrblAxis:
     name: str
     vmax: float
     amax: float
-    travel: tuple[float, float] | None
     absolute: bool
     wired: bool
 

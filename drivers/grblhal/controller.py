@@ -18,6 +18,7 @@ from drivers.grblhal.scripting import Runner, Script
 from drivers.grblhal.stream import Ask, Stream
 from drivers.grblhal.wire import Wire, WireLostError
 
+_LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
 _SILENT = 1.0  # s without a report
 _INDEX = 8.0  # s in which a thread may wait for its index without answering
@@ -139,6 +140,9 @@ class Controller(Known):
 
     def _read(self) -> None:
         *lines, self._inbox = (self._inbox + self._wire.read()).split(b"\n")
+        if len(self._inbox) > _LINE:
+            self._inbox = b""
+            self._damaged("a line without an end")
         for line in lines:
             self._hear(line.decode("ascii", "replace").strip("\r"))
 

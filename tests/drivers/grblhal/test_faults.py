@@ -244,3 +244,10 @@ def test_an_override_that_is_not_taken_is_an_alarm() -> None:
     bench.post(FeedOverride(0.5))
     bench.until(State.FAULT, limit=8.0)
     assert "override" in bench.alarms()
+
+
+def test_a_line_that_never_ends_is_a_disturbed_line() -> None:
+    bench = cutting(GrblBench())
+    bench.peer.say("x" * 1500)
+    bench.until(State.FAULT, limit=1.0)
+    assert "disturbed" in bench.alarms()
