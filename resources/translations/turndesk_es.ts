@@ -2930,6 +2930,11 @@
     </message>
     <message>
       <location filename="app/desk/transfer/section.py" />
+      <source>A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST</source>
+      <translation>HAY UN PROGRAMA EN CURSO: RETURN LO GUARDA CON ESE NOMBRE; OTRO SE ESCRIBE EN REPOSO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/transfer/section.py" />
       <source>A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP</source>
       <translation>HAY UNA TRANSFERENCIA EN CURSO: ESPERE A QUE TERMINE, O F6 LA ABANDONA</translation>
     </message>
@@ -3274,6 +3279,26 @@
       <translation>GIRE</translation>
     </message>
     <message>
+      <location filename="app/screen/editor/asking.py" />
+      <source>A NUMBER FROM 1 TO %1</source>
+      <translation>UN NÚMERO DE 1 A %1</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/asking.py" />
+      <source>GO TO LINE</source>
+      <translation>IR A LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/asking.py" />
+      <source>REPLACE BY</source>
+      <translation>CAMBIAR POR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/asking.py" />
+      <source>SAVE AS</source>
+      <translation>GUARDAR COMO</translation>
+    </message>
+    <message>
       <location filename="app/screen/editor/doings.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
@@ -3455,16 +3480,6 @@
     </message>
     <message>
       <location filename="app/screen/editor/page.py" />
-      <source>A NUMBER FROM 1 TO %1</source>
-      <translation>UN NÚMERO DE 1 A %1</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
-      <source>GO TO LINE</source>
-      <translation>IR A LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
     </message>
@@ -3472,16 +3487,6 @@
       <location filename="app/screen/editor/page.py" />
       <source>NOTHING WAS FOUND THAT IS WRONG</source>
       <translation>NO SE HALLÓ NADA MAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
-      <source>REPLACE BY</source>
-      <translation>CAMBIAR POR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
-      <source>SAVE AS</source>
-      <translation>GUARDAR COMO</translation>
     </message>
     <message>
       <location filename="app/screen/editor/parts.py" />

@@ -171,3 +171,8 @@ def test_refused_on_the_simulated_lathe(old: str, new: str, path: str, expected:
 def test_a_bus_without_io_names_every_signal() -> None:
     found = findings(changed("io = { id = 10, profile = 401 }", ""))
     assert len(found) == len(re.findall(r'at = "401', CAN))
+
+
+def test_a_serial_port_has_one_owner() -> None:
+    text = resources.machine_file("gt75-vfd.toml").replace('"/dev/ttyUSB1"', '"/dev/ttyUSB0"')
+    assert_refused(text, "dnc.port", "spindle.vfd.port has it")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +17,8 @@ from app.screen.look import Look
 from app.screen.special.page import SpecialPage
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
+from core.executor.commands import FeedHold
+from core.executor.snapshot import State
 from core.machine.hardware.model import DncModel
 from core.ports import DriverError
 from tests.screen.desks import desk_on
@@ -252,3 +254,19 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F10)
     hands.type("8")
     hands.sees(lambda: page(hands).table.sheet.question != "")
+
+
+def test_while_a_program_runs_letters_keep_their_meaning(
+    hands: Hands, lines: FakeLines, tmp_path: Path
+) -> None:
+    lines.answer = CAME
+    hands.key(Key.Key_F5)
+    assert lines.job is not None
+    lines.job.go.set()
+    hands.sees(lambda: page(hands).table.sheet.question != "")
+    hands.machine.now = replace(hands.machine.now, state=State.WAIT)
+    hands.sees(lambda: "UNDER WAY" in page(hands).prompt())
+    hands.key(Key.Key_H)
+    hands.sees(lambda: FeedHold() in hands.machine.posted)
+    assert page(hands).table.sheet.text == "O77.nc"
+    hands.machine.idle()

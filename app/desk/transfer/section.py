@@ -10,6 +10,7 @@ from app.desk.desk import Desk
 from app.desk.editing.worker import Worker
 from app.desk.files.changes import FileError
 from app.desk.keep import Keep
+from app.desk.prompts import UNDER_WAY
 from app.desk.special.entry import Entry
 from app.desk.special.sheet import Key, Section, Sheet
 from app.desk.transfer.form import ROWS, form_of, kept_form
@@ -23,6 +24,7 @@ from core.store.errors import StoreError
 
 KEPT = "rs232"
 BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
+UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
 THROW_AWAY = "PRESS F6 ONCE MORE TO THROW THE RECEIVED PROGRAM AWAY, RETURN TO STORE IT"
 
 
@@ -81,8 +83,11 @@ class TransferSection(Section):
         }
 
     def takes(self, key: str) -> bool:
-        """Letters of the new name."""
-        return self.received is not None and self.entry.takes(key)
+        """Letters of the new name; while a program is under way they keep their meaning: H holds."""
+        return self.received is not None and self._at_rest() and self.entry.takes(key)
+
+    def _at_rest(self) -> bool:
+        return self.desk.snapshot().state not in UNDER_WAY
 
     def typed(self, key: str) -> bool:
         """Arrows mark a setting, Return steps it on; or the name of what has come."""
@@ -105,6 +110,8 @@ class TransferSection(Section):
 
     def prompt(self) -> str:
         """What the keys do."""
+        if self.received is not None and not self._at_rest():
+            return UNDER_WAY_NAME
         if self.received is not None:
             return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
         if self.under_way is not None:
@@ -178,10 +185,10 @@ class TransferSection(Section):
         if key == "Enter":
             self._store()
             return True
-        if self.entry.type(key):
-            self.desk.clear()
-            return True
-        return False
+        if not self._at_rest() or not self.entry.type(key):
+            return False
+        self.desk.clear()
+        return True
 
     def _store(self) -> None:
         assert self.received is not None

@@ -55,11 +55,11 @@ def received_sheet(received: Received, name: str) -> Sheet:
     result = tr("{count} ERRORS").format(count=errors) if errors else tr("NO ERROR")
     rows = (
         Row((tr("WHOLE"), tr("{count} LINES").format(count=received.lines)), True, Tone.RUN),
+        Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
         Row((tr("CALLS ITSELF"), received.name or "—")),
         Row((tr("SHA-256"), received.digest[:32] + " …")),
         Row((tr("CHARACTERS"), code)),
         Row((tr("SKIPPED BEFORE IT"), f"{received.skipped}")),
-        Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
         *(Row(("", text)) for text in received.findings[:SHOWN]),
     )
     return Sheet(
@@ -69,6 +69,6 @@ def received_sheet(received: Received, name: str) -> Sheet:
         rows,
         question="NAME OF THE NEW PROGRAM?",
         text=name,
-        notes=("It replaces nothing and starts nothing.",),
+        notes=(*received.findings[:1], "It replaces nothing and starts nothing."),
         raw=frozenset({0, 1}),
     )

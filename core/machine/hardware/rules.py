@@ -23,6 +23,7 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, s
     yield from _pots(reading, signals)
     yield from _faults(reading, axes)
     yield from _renewed(reading.values, signals)
+    yield from _ports(reading.values)
     if "canopen" in reading.tables:
         yield from _bus_times(reading.values)
         yield from _nodes(reading, axes)
@@ -33,6 +34,17 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, s
     if reading.settings.get(13, 0) != 0:
         expected = "expected 0: reports in mm; in inches they have too few decimals"
         yield Finding("grblhal.settings.13", written(reading.settings[13]), expected)
+
+
+def _ports(values: Values) -> Iterator[Finding]:
+    """A serial port has one owner."""
+    taken: dict[str, str] = {}
+    for path in ("spindle.vfd.port", "grblhal.port", "dnc.port"):
+        if values.has(path):
+            port = values.text(path)
+            first = taken.setdefault(port, path)
+            if first != path:
+                yield Finding(path, written(port), f"expected a port of its own; {first} has it")
 
 
 def _is(values: Values, path: str, text: str) -> bool:
