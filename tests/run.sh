@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs everything that must hold: format, lint, types, import contracts, tests. Does all the set-up it needs.
-# Usage: sh tests/run.sh [arguments for pytest]
+# Usage: sh tests/run.sh [arguments for pytest, such as --cov --cov-report=term]
 set -eu
 . "$(dirname -- "$0")/../resources/setup/environment.sh"
 
@@ -16,5 +16,4 @@ ruff format --check --quiet .
 ruff check --quiet .
 mypy
 lint-imports
-coverage erase
-pytest -n 2 --cov --cov-report=term "$@"
+pytest -n 2 "$@"
