@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import chain
+from typing import TYPE_CHECKING
 
 from core.interpreter import codes
 from core.interpreter.actions import AskInput, ProgramEnd
-from core.interpreter.ahead import Ahead
 from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import looks_ahead
@@ -32,6 +32,9 @@ from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.omniturn import lex_line
+
+if TYPE_CHECKING:
+    from core.interpreter.ahead import Ahead
 
 _AHEAD = 8
 
@@ -104,6 +107,8 @@ class Interpreter:
     def series(self) -> Iterator[Block | Series]:
         """The same, whole series of straight moves in one: for whoever goes through all of a program."""
         if self._program.structure.loop_ends or len(self._program.steps) >= LONG:
+            from core.interpreter.ahead import Ahead
+
             self._ahead = Ahead(self._state, self._program, self._flow)
         return (each for each in chain(self._way(), self._pass()) if not self._stopped)
 
