@@ -45,7 +45,7 @@ def with_inverter(
         attended.connect()
     except DriverError as error:
         attended.close()
-        raise DriverError(f"{machine.source}: inverter {config.family} on {line.port}: {error}") from error
+        raise DriverError(f"inverter {config.family} on {line.port}: {error}") from error
     keeper.start()
     encoder = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
     spindle = InverterSpindle(
