@@ -28,7 +28,7 @@ ROOMS = (
 )
 # Scripts and tables that no screen shows.
 APART = frozenset(
-    {"pictures.py", "book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
+    {"pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
 )
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
@@ -65,7 +65,9 @@ def texts() -> dict[str, str]:
     for room in ROOMS:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
-            if path.name not in APART and (room != COMPOSING or path.name in COMPOSED):
+            if not {path.name, f"{path.parent.name}/{path.name}"} & APART and (
+                room != COMPOSING or path.name in COMPOSED
+            ):
                 tree = ast.parse(path.read_text(encoding="utf-8"))
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):

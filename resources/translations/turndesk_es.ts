@@ -1081,7 +1081,7 @@
     <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
-      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X Y Z LA TOCAN</translation>
+      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1427,6 +1427,16 @@
       <location filename="app/desk/offsets/allowed.py" />
       <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
       <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/book.py" />
+      <source>C: all offsets cleared</source>
+      <translation>C: todas las compensaciones a cero</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/book.py" />
+      <source>NO OFFSETS ARE KEPT HERE</source>
+      <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/cells.py" />
@@ -3162,6 +3172,11 @@
       <location filename="app/desk/view.py" />
       <source>WAITING: %1</source>
       <translation>ESPERANDO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/zero_offsets/book.py" />
+      <source>NO ZERO OFFSETS ARE KEPT HERE</source>
+      <translation>AQUÍ NO SE GUARDAN ORÍGENES</translation>
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
@@ -6216,7 +6231,7 @@
     <message>
       <location filename="core/interpreter/needs.py" />
       <source>input %1</source>
-      <translation type="unfinished" />
+      <translation>la entrada %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
@@ -6231,17 +6246,17 @@
     <message>
       <location filename="core/interpreter/needs.py" />
       <source>output %1</source>
-      <translation type="unfinished" />
+      <translation>la salida %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
       <source>output collet</source>
-      <translation type="unfinished" />
+      <translation>la salida de la boquilla</translation>
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
       <source>output coolant</source>
-      <translation type="unfinished" />
+      <translation>la salida del refrigerante</translation>
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
