@@ -3176,7 +3176,7 @@
     <message>
       <location filename="app/desk/zero_offsets/book.py" />
       <source>NO ZERO OFFSETS ARE KEPT HERE</source>
-      <translation>AQUÍ NO SE GUARDAN ORÍGENES</translation>
+      <translation>AQUÍ NO SE GUARDAN CEROS DE PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
