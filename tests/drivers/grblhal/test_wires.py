@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +17,7 @@ from drivers.grblhal.peer.serve import PtyEnd, TcpEnd, serve
 from drivers.grblhal.wire import open_wire
 from drivers.simulated import RealClock
 from tests.drivers.grblhal.bench import SHIPPED
+from tests.drivers.ptys import open_pty
 
 Captured = pytest.CaptureFixture[str]
 
@@ -23,6 +25,9 @@ Captured = pytest.CaptureFixture[str]
 @pytest.fixture(params=["pty", "tcp"])
 def machine_file(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Path]:
     """A machine file whose controller answers."""
+    if request.param == "pty":
+        for handle in open_pty():
+            os.close(handle)
     end: PtyEnd | TcpEnd = PtyEnd() if request.param == "pty" else TcpEnd("127.0.0.1", 0)
     over = threading.Event()
     peer = threading.Thread(target=serve, args=(end, Firmware(RealClock()), lambda: not over.is_set()))

@@ -22,6 +22,7 @@ from tests.drivers.inverter.peers import (
     Inverter,
     RefusedByDeviceError,
 )
+from tests.drivers.ptys import open_pty
 
 WAIT = 20.0  # s for what must happen at once on a computer that is not busy
 
@@ -37,7 +38,7 @@ class Pair:
         self._slaves: list[int] = []
         names = []
         for _ in range(2):
-            master, slave = os.openpty()
+            master, slave = open_pty()
             tty.setraw(master)
             tty.setraw(slave)
             self._masters.append(master)

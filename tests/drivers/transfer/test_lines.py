@@ -22,6 +22,7 @@ from drivers.transfer.session import CancelledError, Receiving, Sending
 from drivers.transfer.settings import TransferSettings
 from drivers.wire import LineSettings, WireError
 from tests.drivers.inverter.lines import WAIT, Pair, until
+from tests.drivers.ptys import open_pty
 
 TEXT = b"".join(b"N%d X1.2345 Z-.5\n" % n for n in range(400))
 
@@ -30,7 +31,7 @@ class FarEnd:
     """The other side by hand: what it has heard, and what it says."""
 
     def __init__(self) -> None:
-        self.handle, self._slave = os.openpty()
+        self.handle, self._slave = open_pty()
         tty.setraw(self._slave)
         self.port = os.ttyname(self._slave)
         self.heard = bytearray()
