@@ -142,7 +142,7 @@ class Receiving(_Transfer):
                 heard = now
                 self._take(incoming, come)
             elif incoming.phase is Phase.WAITING:
-                if now - asked >= AGAIN and not incoming.count:
+                if now - max(asked, heard) >= AGAIN:
                     asked = now
                     self._ask()
             elif now - heard >= LAST:

@@ -8,7 +8,6 @@ import threading
 import tty
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -131,24 +130,6 @@ def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool:
     future: Future[Program] = pool.submit(job.run)
     feed(far, b"%\n(\xff\xfe\x94)\nM30\n%\n")
     assert future.result(WAIT).text == b"(\xff\xfe\x94)\nM30\n"
-
-
-def test_from_one_command_to_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Two of us on the two ends of a cable."""
-    source, target = tmp_path / "PIN.nc", tmp_path / "in" / "PIN.nc"
-    source.write_bytes(b"%\nO77 (PIN)\nG90G72\nG00X1.Z.1\nM30\n%\n")
-    with Pair() as cable, ThreadPoolExecutor(1) as pool:
-        receive = ["serial", "receive", "--port", cable.far, "--out", str(target)]
-        future = pool.submit(main, receive)
-        # DC1 is the receiver's first word: only then the sender begins.
-        assert main(["serial", "send", str(source), "--port", cable.near, "--wait", "--eol", "cr"]) == 0
-        status = future.result(WAIT)
-    told = capsys.readouterr()
-    text = target.read_bytes()
-    assert text == b"O77 (PIN)\nG90G72\nG00X1.Z.1\nM30\n"
-    assert sha256(text).hexdigest() in told.out
-    assert "4 lines, whole" in told.out
-    assert status == (1 if told.err else 0)
 
 
 def test_a_received_program_overwrites_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
