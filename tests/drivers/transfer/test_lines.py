@@ -25,6 +25,8 @@ from tests.drivers.ptys import open_pty
 
 TEXT = b"".join(b"N%d X1.2345 Z-.5\n" % n for n in range(400))
 
+LONG = TEXT * (400_000 // len(TEXT))  # more than a pseudo terminal holds: nobody reads, nobody is done
+
 
 class FarEnd:
     """The other side by hand: what it has heard, and what it says."""
@@ -65,7 +67,7 @@ def pool() -> Iterator[ThreadPoolExecutor]:
 
 def sent(port: str, pool: ThreadPoolExecutor, flow: str = "xonxoff") -> tuple[Sending, bytes, Future[int]]:
     settings = TransferSettings(LineSettings(port, flow=flow), eol="\n")
-    data = outgoing(TEXT, settings)
+    data = outgoing(LONG, settings)
     job = Sending(SerialWire(settings.sending), RealClock(), settings, data)
     return job, data, pool.submit(job.run)
 
