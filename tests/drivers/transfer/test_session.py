@@ -120,6 +120,13 @@ def test_dc1_is_said_again_while_nothing_comes() -> None:
     assert bytes(side.taken) == b"\x11\x11\x11\x13"  # at 0, 5 and 10 s
 
 
+def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
+    """One stray character at 1 s: DC1 is said at 0, and 5 s after each last word, at 6 and 11."""
+    side = OtherSide(StepClock(), [(1.0, b"?"), (12.0, DATA)])
+    assert receiving(side).run().text == TEXT
+    assert bytes(side.taken) == b"\x11\x11\x11\x13"
+
+
 def test_nothing_is_said_where_no_codes_are_used() -> None:
     side = OtherSide(StepClock(), [(1.0, DATA)])
     receiving(side, dataclasses.replace(SETTINGS, line=LineSettings("bench"))).run()
