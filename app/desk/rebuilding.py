@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.force import use_offsets
+from app.desk.offsets.force import secondary_offsets, tool_offsets
 from app.desk.prompts import UNDER_WAY
 from app.desk.session import Phase, Session
 from app.desk.zero_offsets.book import ZeroBook
-from core.executor.commands import Command, SetSwitch
+from core.executor.commands import Command, SetSwitch, UseOffsets
 from core.executor.job import outdated
 from core.executor.snapshot import Snapshot, State
 
@@ -38,7 +38,8 @@ class Rebuilding:
             self.wanted = True
         if self.wanted and snapshot.state not in UNDER_WAY and not (book.busy or zero.busy):
             self.wanted = False
-            post(use_offsets(book.tools, book.secondary))  # at once, for the loaded tool
+            # Active at once, for the loaded tool too.
+            post(UseOffsets(tool_offsets(book.tools), secondary_offsets(book.secondary)))
             now = self.session.now
             if now.path is not None:
                 self.session.load(now.path, now.block_delete)

@@ -1,4 +1,4 @@
-"""Which pages there are: each by its name, made when it is first opened."""
+"""Which pages there are: each by its name, imported and made when it is first opened."""
 
 from __future__ import annotations
 
@@ -7,13 +7,33 @@ from collections.abc import Callable, Mapping
 from PySide6.QtWidgets import QWidget
 
 from app.desk.pages import EDITOR, JOG, MDI, MENU, PROGRAMS, SEARCHTO, SECCMP, SPECIAL, TOOLS, ZERO
-from app.screen.menu import MenuPage
-from app.screen.offsets.seccmp import SeccmpPage
-from app.screen.offsets.tools import ToolsPage
 from app.screen.pages import Host, Page
-from app.screen.zero_offsets.page import ZeroPage
 
 MakePage = Callable[[Host, QWidget], Page]
+
+
+def _menu(host: Host, parent: QWidget) -> Page:
+    from app.screen.menu import MenuPage
+
+    return MenuPage(host, parent)
+
+
+def _seccmp(host: Host, parent: QWidget) -> Page:
+    from app.screen.offsets.seccmp import SeccmpPage
+
+    return SeccmpPage(host, parent)
+
+
+def _tools(host: Host, parent: QWidget) -> Page:
+    from app.screen.offsets.tools import ToolsPage
+
+    return ToolsPage(host, parent)
+
+
+def _zero(host: Host, parent: QWidget) -> Page:
+    from app.screen.zero_offsets.page import ZeroPage
+
+    return ZeroPage(host, parent)
 
 
 def _editor(host: Host, parent: QWidget) -> Page:
@@ -70,14 +90,14 @@ def _searchto(host: Host, parent: QWidget) -> Page:
 
 
 MAKERS: Mapping[str, MakePage] = {
-    MENU: MenuPage,
+    MENU: _menu,
     EDITOR: _editor,
     MDI: _mdi,
     JOG: _jog,
     PROGRAMS: _programs,
     SPECIAL: _special,
     SEARCHTO: _searchto,
-    SECCMP: SeccmpPage,
-    TOOLS: ToolsPage,
-    ZERO: ZeroPage,
+    SECCMP: _seccmp,
+    TOOLS: _tools,
+    ZERO: _zero,
 }

@@ -5,13 +5,14 @@ Run with ``python -m tests.benchmarks.bench_start``; it needs no display.
 
 from __future__ import annotations
 
-import os
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+
+from tests.benchmarks.installed import installed
 
 RUNS = 7
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
@@ -77,7 +78,7 @@ sys.stdout.write(str(time.time() - begun))
 def timed(script: str) -> list[list[float]]:
     """The numbers that each run of a script prints: seconds since its process was started."""
     with tempfile.TemporaryDirectory() as home:
-        around = {**os.environ, "QT_QPA_PLATFORM": "offscreen", "TURNDESK_HOME": home}
+        around = installed(Path(home), QT_QPA_PLATFORM="offscreen")
         rows = []
         for _ in range(RUNS + 1):
             command = [sys.executable, "-c", script, str(time.time())]

@@ -1,10 +1,9 @@
-"""From the rows of the store to what interpreter and executor count with."""
+"""From the rows of the store to what the interpreter counts with."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.executor.commands import UseOffsets
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.store.rows import SecondaryRow, ToolRow
 
@@ -17,8 +16,3 @@ def tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
 def secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
     """Of the secondary offsets."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}
-
-
-def use_offsets(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> UseOffsets:
-    """What makes these offsets active at once for the loaded tool."""
-    return UseOffsets(tool_offsets(tools), secondary_offsets(secondary))
