@@ -112,6 +112,10 @@ class Journal:
         store = self._store
         return store.parts(program) if store else 0
 
+    def correct_parts(self, program: str, by: int) -> None:
+        """Post parts added or taken away by hand."""
+        self._post(lambda store: store.correct_parts(program, by))
+
     def reset_parts(self, program: str) -> None:
         """Post its count to nought."""
         self._post(lambda store: store.reset_parts(program))

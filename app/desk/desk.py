@@ -18,7 +18,7 @@ from app.desk.view import Tone, View, view_of
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, Starts, State
 
-SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat"})
+SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 
 
@@ -88,7 +88,7 @@ class Desk(DeskParts):
     # --- keys ----------------------------------------------------------------------------------------
 
     def switch(self, name: str) -> None:
-        """Turn ``single_block``, ``optional_stop`` or ``cycle_repeat`` over."""
+        """Turn ``single_block``, ``optional_stop``, ``cycle_repeat`` or ``no_count`` over."""
         if name not in SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
         self.clear()

@@ -32,6 +32,10 @@ class Keep(Protocol):
         """Parts counted of this program."""
         ...
 
+    def correct_parts(self, program: str, by: int) -> None:
+        """Parts added or taken away by hand."""
+        ...
+
     def reset_parts(self, program: str) -> None:
         """Its count to nought."""
         ...
@@ -94,6 +98,9 @@ class NothingKept:
     def parts(self, _program: str) -> int:
         """None are counted here."""
         return 0
+
+    def correct_parts(self, _program: str, _by: int) -> None:
+        """None are counted here."""
 
     def reset_parts(self, _program: str) -> None:
         """Nothing to put to nought."""

@@ -23,12 +23,13 @@ class Lamp:
 
 
 def modes_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """The four switches of a run, with their keys."""
+    """The four switches of a run, with their keys; NO COUNT only while it is on, because few runs are dry."""
     return (
         Lamp("SINGLE BLOCK", snapshot.single_block, "S"),
         Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
         Lamp("BLOCK DELETE", snapshot.block_delete, "/"),
         Lamp("CYCLE REPEAT", snapshot.cycle_repeat, "C"),
+        *((Lamp("NO COUNT", lit=True, key="P", warn=True),) if snapshot.no_count else ()),
     )
 
 

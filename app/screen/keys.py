@@ -22,6 +22,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_O, NONE): "O",
     (Key.Key_Slash, NONE): "/",
     (Key.Key_C, NONE): "C",
+    (Key.Key_P, NONE): "P",
     (Key.Key_G, NONE): "G",
     (Key.Key_H, NONE): "H",
     (Key.Key_Space, NONE): "H",

@@ -72,6 +72,7 @@ class MainWindow(QWidget):
             "S": partial(desk.switch, "single_block"),
             "O": partial(desk.switch, "optional_stop"),
             "C": partial(desk.switch, "cycle_repeat"),
+            "P": partial(desk.switch, "no_count"),
             "/": desk.block_delete,
             "H": desk.feed_hold,
             "R": desk.reset,

@@ -22,6 +22,7 @@ class Switches:
     single_block: bool = False
     optional_stop: bool = False
     cycle_repeat: bool = False
+    no_count: bool = False  # what runs is no part: a dry run
 
 
 @dataclass(slots=True)

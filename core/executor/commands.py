@@ -47,7 +47,7 @@ class EnableDrives:
 
 @dataclass(frozen=True, slots=True)
 class SetSwitch:
-    """``single_block``, ``optional_stop``, ``cycle_repeat``: lit words that act at once."""
+    """``single_block``, ``optional_stop``, ``cycle_repeat``, ``no_count``: lit words that act at once."""
 
     name: str
     on: bool

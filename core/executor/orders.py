@@ -32,7 +32,7 @@ from core.executor.loading import Loading
 from core.executor.snapshot import State
 from core.executor.station_watch import StationWatch
 
-_SWITCHES = ("single_block", "optional_stop", "cycle_repeat")
+_SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 
 
 class Orders:

@@ -69,6 +69,8 @@ class Publisher:
             block_delete=job.setup.block_delete if job else False,
             cycle_repeat=bench.switches.cycle_repeat,
             outputs=frozenset(name for name, on in bench.ports.io.outputs().items() if on),
+            no_count=bench.switches.no_count,
+            counts=cycle is not None and not conductor.rounds.uncounted,
             inputs=frozenset(name for name, on in bench.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
@@ -78,6 +80,7 @@ class Publisher:
             parts=counters.parts,
             underruns=counters.underruns,
             max_following_error=conductor.supervisor.max_following_error,
+            ends=counters.ends,
             proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
             starts=standing.starts,
             prepared=standing.prepared.digest if standing.prepared else "",
@@ -127,7 +130,7 @@ def _next_text(cycle: Cycle | None) -> str:
 
 def _interrupted(conductor: Conductor) -> int:
     """The line at which the loaded program was given up."""
-    job, (name, line) = conductor.standing.job, conductor.standing.interrupted
+    job, (name, line) = conductor.standing.job, conductor.rounds.piece.broken_off
     return line if job is not None and job.source.name == name else 0
 
 

@@ -14,6 +14,7 @@ from core.executor.interpret import circumstances
 from core.executor.job import Job, outdated
 from core.executor.mover import Mover
 from core.executor.moving import Moving
+from core.executor.piece import Piece
 from core.executor.player import Player
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Counters, Standing
@@ -39,6 +40,7 @@ class Rounds:
         self.cycle: Cycle | None = None
         self._source: Pass | None = None
         self._line = False  # what is under way is a line of MDI
+        self.piece = Piece()
 
     def refusal(self, state: State) -> str:
         """Why what Cycle Start would begin may not begin; empty when it may."""
@@ -56,13 +58,20 @@ class Rounds:
             standing.starts = Starts.PROGRAM
         standing.prepared = standing.prepared_proof = None
         if not self._line:
-            standing.interrupted = ("", 0)
+            self.piece.begin(job)
         self._open(job)
         self._enter(State.RUN)
         bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
         if begin is not None and not begin.single:
             bench.say("restart", f"from line {begin.line}")
+
+    @property
+    def uncounted(self) -> str:
+        """Why what is under way will be no part; empty when it will be one."""
+        if self._line:
+            return "a line of MDI"
+        return "NO COUNT is on" if self._bench.switches.no_count else self.piece.why_none
 
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
@@ -80,8 +89,9 @@ class Rounds:
         if self.cycle is not None:
             left = self.cycle.modal
             self._stand(interrupted(left) if self._line else given_up(left))
-            if not self._line and self.standing.job is not None and self._bench.line:
-                self.standing.interrupted = (self.standing.job.source.name, self._bench.line)
+            job, block = self.standing.job, self.cycle.current
+            if not self._line and job is not None and block is not None:
+                self.piece.break_off(job.source.name, block.line, block.n)
         self.cycle = self._source = None
         self._bench.line = 0
         self.mover.forget()
@@ -116,10 +126,8 @@ class Rounds:
         if self._line:
             self._line_ended()
             return
-        counters, job, bench = self.counters, self.standing.job, self._bench
-        counters.parts += 1
-        counters.last_cycle, counters.cycle = counters.cycle, 0.0
-        bench.say("part", f"part {counters.parts}, {counters.last_cycle:.2f} s")
+        job, bench = self.standing.job, self._bench
+        self._count()
         if end is not None and end.reset and bench.switches.cycle_repeat and job is not None:
             old = outdated(job, self.cycle.modal) if self.cycle is not None else ""
             if not old:
@@ -128,6 +136,20 @@ class Rounds:
             bench.say("refused", f"no repeat: {old}, and the program says nothing of it")
         bench.say("end", "program end")
         self._over()
+
+    def _count(self) -> None:
+        """A part, unless it is none; the time of a restart is not that of a cycle."""
+        counters, seconds, why = self.counters, self.counters.cycle, self.uncounted
+        counters.cycle = 0.0
+        counters.ends += 1
+        if not self.piece.restarted:
+            counters.last_cycle = seconds
+        if why:
+            self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
+        else:
+            counters.parts += 1
+            self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
+        self.piece.end()
 
     def _line_ended(self) -> None:
         left = self._source.left() if self._source is not None and self._source.left is not None else None
@@ -141,7 +163,7 @@ class Rounds:
         self.forget()
         self._stand(left)
         if not self._line:
-            self.standing.interrupted = ("", 0)
+            self.piece.end()
         self._enter(State.IDLE)
 
     def _end_functions(self) -> None:

@@ -83,6 +83,8 @@ class Snapshot:
     optional_stop: bool = False
     block_delete: bool = False
     cycle_repeat: bool = False
+    no_count: bool = False
+    counts: bool = False  # a program is under way that will have made a part when it ends
     outputs: frozenset[str] = frozenset()  # names that are on
     inputs: frozenset[str] = frozenset()
     comment: str = ""
@@ -90,7 +92,8 @@ class Snapshot:
     alarms: tuple[Alarm, ...] = ()
     cycle_elapsed: float = 0.0  # of this cycle, stops not counted
     last_cycle: float = 0.0
-    parts: int = 0  # completed since the executor was started
+    parts: int = 0  # completed and counted since the executor was started
+    ends: int = 0  # programs that came to their end, counted or not
     underruns: int = 0
     max_following_error: float = 0.0
     proof_wanted: bool = False  # a job is loaded that no proof covers
@@ -112,7 +115,8 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    # state, alarm, start, restart, mdi, end, part, stop, refused, override, switch, force, load, offsets
+    # state, alarm, start, restart, mdi, end, part, uncounted, stop,
+    # refused, override, switch, force, load, offsets
     kind: str
     text: str
     line: int = 0

@@ -14,6 +14,7 @@ class Counters:
     """What is counted from the start of the executor; times in seconds, stops not counted."""
 
     parts: int = 0
+    ends: int = 0  # programs that came to their end, counted or not
     lines: int = 0  # of MDI that were begun
     underruns: int = 0
     cycle: float = 0.0
@@ -33,6 +34,5 @@ class Standing:
     starts: Starts = Starts.PROGRAM
     prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
     prepared_proof: Proof | None = None
-    interrupted: tuple[str, int] = ("", 0)  # program that was given up, and its last line
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     modal: Modal = field(default_factory=Modal)  # in force while no program is under way

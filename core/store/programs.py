@@ -105,6 +105,16 @@ def parts(connection: sqlite3.Connection, program: str) -> int:
     return int(row[0]) if row else 0
 
 
+def correct_parts(connection: sqlite3.Connection, program: str, by: int) -> int:
+    """Parts added or taken away by hand, never below nought; answers the new count."""
+    count = max(0, parts(connection, program) + by)
+    connection.execute(
+        "INSERT INTO part_counts VALUES (?1, ?2, ?3) ON CONFLICT (program) DO UPDATE SET count = ?2",
+        (program, count, utc_now()),
+    )
+    return count
+
+
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     """The count of one program to nought."""
     connection.execute("DELETE FROM part_counts WHERE program = ?", (program,))

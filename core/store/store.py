@@ -141,6 +141,10 @@ class Store(StoreReader):
         """One part more of this program; answers the count."""
         return self.write(lambda c: programs.count_part(c, program))
 
+    def correct_parts(self, program: str, by: int) -> Future[int]:
+        """Parts added or taken away by hand; the new count."""
+        return self.write(lambda c: programs.correct_parts(c, program, by))
+
     def reset_parts(self, program: str) -> Future[None]:
         """The part count of this program to nought."""
         return self.write(lambda c: programs.reset_parts(c, program))

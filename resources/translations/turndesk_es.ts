@@ -70,6 +70,11 @@
     </message>
     <message>
       <location filename="app/desk/answers.py" />
+      <source>NOT COUNTED AS A PART: %1</source>
+      <translation>NO CONTADO COMO PIEZA: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/answers.py" />
       <source>NOT KEPT: %1</source>
       <translation>NO SE GUARDÓ: %1</translation>
     </message>
@@ -612,6 +617,11 @@
       <location filename="app/desk/files/record.py" />
       <source>GIVEN UP</source>
       <translation>ABANDONADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>NOT COUNTED</source>
+      <translation>NO CONTADO</translation>
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
@@ -1302,6 +1312,11 @@
       <location filename="app/desk/lamps.py" />
       <source>LIVE TOOL</source>
       <translation>HERR MOTRIZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/lamps.py" />
+      <source>NO COUNT</source>
+      <translation>SIN CONT</translation>
     </message>
     <message>
       <location filename="app/desk/lamps.py" />
@@ -2480,18 +2495,18 @@
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
-      <source>0 takes the target away.</source>
-      <translation>0 quita la meta.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/special/parts.py" />
       <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
       <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
-      <source>In the cycle of the last part Cycle Repeat is switched off.</source>
-      <translation>En el ciclo de la última pieza se apaga Repetir ciclo.</translation>
+      <source>In the cycle of the last part Cycle Repeat is switched off. 0 takes the target away.</source>
+      <translation>En el ciclo de la última pieza se apaga la repetición de ciclo. 0 quita el objetivo.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.</source>
+      <translation>SIN CONT: lo que corre es una prueba en vacío y no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -2502,6 +2517,16 @@
       <location filename="app/desk/special/parts.py" />
       <source>NO TARGET</source>
       <translation>SIN META</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>ONE LESS</source>
+      <translation>MENOS 1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/special/parts.py" />
+      <source>ONE MORE</source>
+      <translation>MÁS 1</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -4350,6 +4375,11 @@
     </message>
     <message>
       <location filename="core/executor/conductor.py" />
+      <source>feed hold</source>
+      <translation>retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
       <source>reset: wait until the slides are at rest</source>
       <translation>reset: espere a que los carros estén en reposo</translation>
     </message>
@@ -4377,11 +4407,6 @@
       <location filename="core/executor/cycle.py" />
       <source>THE CONTROLLER HOLDS</source>
       <translation>EL CONTROLADOR RETIENE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>feed hold</source>
-      <translation>retención de avance</translation>
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
@@ -4497,6 +4522,71 @@
       <location filename="core/executor/geared_pass.py" />
       <source>the thread could not be queued in time; look for what keeps the computer busy</source>
       <translation>la rosca no se pudo encolar a tiempo; busque qué ocupa la computadora</translation>
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>a click is longer than 0 and no longer than %1, not %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>a key or finger came while it was turned</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>handwheel: %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>it moves nothing in state %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>it needs a lease above 0</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>it was turned while a key or finger was held</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>its counts leap: check its cable</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>its enabling switch is not held</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>key and handwheel at once move nothing</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>the page that asked for it was silent</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>the station's switch does not select %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>this machine has none</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/handwheel.py" />
+      <source>turned faster than %1 goes; clicks are dropped</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/executor/homing.py" />
@@ -4674,6 +4764,11 @@
       <translation>no hay interruptor %1</translation>
     </message>
     <message>
+      <location filename="core/executor/piece.py" />
+      <source>a restart left something of it out</source>
+      <translation>un rearranque omitió algo de ella</translation>
+    </message>
+    <message>
       <location filename="core/executor/prepared.py" />
       <source>%1, and the program says nothing of it: load it again</source>
       <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
@@ -4717,6 +4812,16 @@
       <location filename="core/executor/prepared.py" />
       <source>the state has changed since the line was proved: press Enter again</source>
       <translation>el estado cambió desde que se comprobó la línea: oprima Enter otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>NO COUNT is on</source>
+      <translation>SIN CONT está puesto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>a line of MDI</source>
+      <translation>una línea de MDI</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />

@@ -118,7 +118,7 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     hands.type("2")
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(page, 1) == ("STOP AT", "2"))
-    hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, state=State.WAIT)
+    hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, counts=True, state=State.WAIT)
     hands.sees(lambda: SetSwitch("cycle_repeat", False) in hands.machine.posted)
     assert hands.prompt().startswith("THE LAST PART OF THE TARGET")
     hands.machine.now = replace(hands.machine.now, parts=2, state=State.IDLE)
@@ -297,3 +297,42 @@ def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
     hands.type("12")
     hands.key(Key.Key_E)
     hands.sees_state(State.ESTOP)
+
+
+def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, journal: Journal) -> None:
+    hands.load("pin")
+    page = open_function(hands, 2)
+    hands.type("1")
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: cells(page, 1) == ("STOP AT", "1"))
+    hands.machine.now = replace(hands.machine.now, cycle_repeat=True, counts=False, state=State.WAIT)
+    hands.window.refresh()
+    assert SetSwitch("cycle_repeat", False) not in hands.machine.posted
+
+
+def test_no_count_is_switched_by_key_and_finger_and_lights_a_lamp(hands: Hands) -> None:
+    assert not any(lamp.word == "NO COUNT" for lamp in hands.frame.strip._lamps)
+    hands.key(Key.Key_P)
+    assert hands.machine.now.no_count
+    hands.sees(lambda: any(lamp.word == "NO COUNT" and lamp.lit for lamp in hands.frame.strip._lamps))
+    open_function(hands, 2)
+    hands.key(Key.Key_F5)
+    assert not hands.machine.now.no_count
+
+
+def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
+    hands.load("pin")
+    page = open_function(hands, 2)
+    hands.key(Key.Key_F3)
+    assert hands.prompt() == "THE COUNT IS AT NOUGHT"
+    hands.key(Key.Key_F2)
+    hands.key(Key.Key_F2)
+    hands.key(Key.Key_F3)
+    hands.sees(lambda: cells(page, 0) == ("PARTS MADE", "1"))
+    hands.sees(lambda: journal.parts("pin.nc") == 1)
+
+
+def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
+    open_function(hands, 2)
+    hands.key(Key.Key_F2)
+    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")

@@ -116,3 +116,11 @@ def test_closed_store_refuses_writes(store: Store) -> None:
     store.close()
     with pytest.raises(StoreError, match="closed"):
         store.log_event("start", "late")
+
+
+def test_a_count_is_corrected_by_hand_and_never_below_nought(store: Store) -> None:
+    assert store.correct_parts("a", 2).result() == 2
+    store.count_part("a").result()
+    assert store.correct_parts("a", -1).result() == 2
+    assert store.correct_parts("a", -5).result() == 0
+    assert store.parts("b") == 0

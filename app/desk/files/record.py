@@ -11,7 +11,7 @@ from app.desk.session import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
 
-COMPLETE, GIVEN_UP, ESTOP = "COMPLETE", "GIVEN UP", "E-STOP"
+COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
 _RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompts.INTERRUPTED
 _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 
@@ -23,6 +23,7 @@ class RunRecord:
     keep: Keep = field(default_factory=NothingKept)
     running: str = ""  # the program under way
     _parts: int | None = None
+    _ends: int = 0
     _lines: int = 0  # of MDI, when nothing was under way: a line is no run of the program on the desk
     _loaded: Loaded | None = None
 
@@ -42,6 +43,9 @@ class RunRecord:
             if not self.running:
                 self.keep.run_started(name)
             self._end(name, COMPLETE)
+        elif parts is not None and snapshot.ends > self._ends and self.running:
+            self._end(name, UNCOUNTED)
+        self._ends = snapshot.ends
         if snapshot.state not in _RUNNING:
             self._lines = snapshot.lines
         under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines

@@ -60,7 +60,7 @@ class PartCounter:
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
-        last = self.target > 0 and self.count + 1 >= self.target
+        last = snapshot.counts and self.target > 0 and self.count + 1 >= self.target
         if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._last_told != self.count:
             self._last_told = self.count
             post(SetSwitch("cycle_repeat", False))
@@ -85,6 +85,11 @@ class PartCounter:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
         self.target, self._last_told = target, -1
         self.keep.keep_setting(_key(self.program), target or None)
+
+    def correct(self, by: int) -> None:
+        """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
+        self.count, self._last_told = self.count + by, -1
+        self.keep.correct_parts(self.program, by)
 
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""

@@ -19,7 +19,7 @@ EVERY = 1.0  # seconds between two looks at a log that is open
 FILTERS: Mapping[str, frozenset[str]] = {
     "ALL": frozenset(),
     "ALARMS": frozenset({"alarm", "estop", "starved"}),
-    "RUNS": frozenset({"load", "start", "end", "part", "stop"}),
+    "RUNS": frozenset({"load", "start", "end", "part", "uncounted", "stop"}),
     "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets"}),
 }
 

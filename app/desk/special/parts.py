@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
@@ -47,13 +48,31 @@ class PartsSection(FigureSection):
             rows,
             question="STOP AT HOW MANY PARTS?",
             text=self.entry.text,
-            notes=("In the cycle of the last part Cycle Repeat is switched off.", "0 takes the target away."),
+            notes=(
+                "In the cycle of the last part Cycle Repeat is switched off. 0 takes the target away.",
+                "NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.",
+            ),
             figures=frozenset({1}),
         )
 
     def keys(self) -> Mapping[str, Key]:
-        """F4 puts the count to nought."""
-        return {"F4": Key("RESET", self.reset)}
+        """Corrections of the count, the count to nought, and runs that are no parts."""
+        return {
+            "F2": Key("ONE MORE", partial(self.correct, 1)),
+            "F3": Key("ONE LESS", partial(self.correct, -1)),
+            "F4": Key("RESET", self.reset),
+            "F5": Key("NO COUNT", partial(self.desk.switch, "no_count")),
+        }
+
+    def correct(self, by: int) -> None:
+        """One part that was not counted, or one that is scrap."""
+        if not self.counter.program:
+            self.desk.say(NO_PROGRAM)
+        elif self.counter.count + by < 0:
+            self.desk.say("THE COUNT IS AT NOUGHT")
+        else:
+            self.desk.clear()
+            self._kept(lambda: self.counter.correct(by))
 
     def reset(self) -> None:
         """Count to nought, after asking."""

@@ -113,3 +113,8 @@ def test_a_store_that_fails_stops_nobody() -> None:
     for snapshot in (READY, RUNNING, READY):
         record.see(snapshot, NO_PROGRAM)
     assert record.running == ""
+
+
+def test_a_run_that_counts_as_no_part_has_no_cycle_time() -> None:
+    done = replace(READY, ends=1, last_cycle=3.0)
+    assert told(READY, RUNNING, done, done) == [("started", "pin.nc"), ("ended", "pin.nc", "NOT COUNTED")]

@@ -1,0 +1,179 @@
+"""What counts as a part: a whole piece and nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.commands import CycleStart, Prepare, Reset, SetSwitch
+from core.executor.snapshot import Snapshot, Starts, State
+from tests.executor.lines import TOOLS, mdi
+from tests.executor.rig import Rig
+from tests.executor.test_restart import PART, broken_off, prepare, restart, restart_job
+
+SHORT = "G90G94F300\nX.5\nX0\nM30\n"
+
+
+def counted(rig: Rig) -> tuple[int, int]:
+    """Parts, and parts in the log."""
+    return rig.shot.parts, len(rig.said("part"))
+
+
+def test_a_dry_run_is_no_part() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("no_count", True))
+    rig.start(SHORT)
+    assert rig.shot.no_count
+    assert not rig.shot.counts
+    rig.until(State.IDLE)
+    assert counted(rig) == (0, 0)
+    assert rig.shot.ends == 1
+    assert rig.said("uncounted")[0].startswith("NO COUNT is on")
+
+
+@pytest.mark.parametrize("at_the_end", [True, False])
+def test_what_stands_at_the_end_decides(at_the_end: bool) -> None:
+    """Forgotten before the start: the switch may be turned until the end."""
+    rig = Rig()
+    rig.post(SetSwitch("no_count", not at_the_end))
+    rig.start(SHORT)
+    rig.run(0.1)
+    rig.post(SetSwitch("no_count", at_the_end))
+    assert rig.shot.counts is not at_the_end
+    rig.until(State.IDLE)
+    assert counted(rig) == ((0, 0) if at_the_end else (1, 1))
+
+
+def test_dry_runs_repeat_uncounted() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("no_count", True), SetSwitch("cycle_repeat", True))
+    rig.start(SHORT)
+    rig.until_true(lambda shot: shot.ends == 2)
+    rig.post(SetSwitch("no_count", False))
+    rig.until_true(lambda shot: shot.ends == 3)
+    rig.post(SetSwitch("cycle_repeat", False))
+    rig.until(State.IDLE)
+    assert counted(rig) == (2, 2)
+    assert rig.shot.ends == 4
+
+
+def test_block_by_block_is_a_part() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("single_block", True))
+    rig.start(SHORT)
+    for _ in range(10):
+        rig.until(State.BLOCK_END, State.IDLE)
+        if rig.state is State.IDLE:
+            break
+        rig.run(0.4)
+        rig.post(CycleStart())
+    assert counted(rig) == (1, 1)
+
+
+def test_a_line_of_mdi_and_a_program_given_up_are_none() -> None:
+    rig = Rig()
+    rig.ready()
+    mdi(rig, "G90")
+    rig.post(Prepare(Starts.PROGRAM))
+    rig.start(SHORT)
+    rig.run(0.1)
+    assert rig.shot.counts
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert counted(rig) == (0, 0)
+    assert rig.shot.ends == 0
+
+
+def test_a_restart_where_it_was_broken_off_finishes_the_part() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    assert rig.shot.counts
+    rig.until(State.IDLE)
+    assert counted(rig) == (1, 1)
+
+
+def test_a_restart_that_leaves_something_out_makes_none() -> None:
+    """Line 8 was being cut when it was broken off; from line 10 on its rest is missing."""
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 10)
+    assert not rig.shot.counts
+    rig.until(State.IDLE)
+    assert counted(rig) == (0, 0)
+    assert "a restart left something of it out" in rig.said("uncounted")[0]
+
+
+def test_a_restart_in_a_piece_that_was_never_begun_makes_none() -> None:
+    rig = Rig()
+    rig.ready()
+    rig.load(PART, TOOLS)
+    restart(rig, 8)
+    rig.until(State.IDLE)
+    assert counted(rig) == (0, 0)
+
+
+def test_a_mistaken_restart_given_up_can_be_made_good() -> None:
+    """From line 10, given up on the way; then from line 8: nothing is left out after all."""
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 10)
+    rig.run(0.2)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    restart(rig, 8)
+    rig.until(State.IDLE)
+    assert counted(rig) == (1, 1)
+
+
+def test_broken_off_twice_it_is_still_one_part() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    rig.until_true(lambda shot: shot.line == 9)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    restart(rig, 9)
+    rig.until(State.IDLE)
+    assert counted(rig) == (1, 1)
+
+
+def test_the_part_after_a_restart_is_a_part_of_its_own() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.post(SetSwitch("cycle_repeat", True))
+    restart(rig, 10)
+    rig.until_true(lambda shot: shot.ends == 1)
+    rig.post(SetSwitch("cycle_repeat", False))
+    rig.until(State.IDLE)
+    assert counted(rig) == (1, 1)
+
+
+def test_another_program_of_the_same_length_is_another_piece() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.start(SHORT)
+    rig.until(State.IDLE)
+    rig.load(PART, TOOLS)
+    restart(rig, 8)
+    rig.until(State.IDLE)
+    assert counted(rig) == (1, 1)  # the short one
+
+
+def test_the_time_of_a_restart_is_not_that_of_a_cycle() -> None:
+    rig = Rig()
+    seen: list[Snapshot] = []
+    rig.start(PART, TOOLS)
+    rig.until(State.IDLE)
+    whole = rig.shot.last_cycle
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.line == 8)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.watch.append(seen.append)
+    rig.run(0.4)
+    prepare(rig, restart_job(rig, 8))
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 2
+    assert rig.shot.last_cycle == whole
