@@ -6,7 +6,7 @@ import dataclasses
 import threading
 from collections.abc import Callable
 
-from core.ports import Clock, StationState
+from core.ports import Clock, Station, StationState
 from drivers.simulated.station_panel import Panel
 
 _WINDOW, _PULSE = 0.5, 0.1  # s, of the two-hand relay that the screen stands for
@@ -16,11 +16,13 @@ class PanelStation:
     """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
 
     ``estop`` reads the real E-stop where the machine has an input for it; it is pressed when either is.
+    ``wired`` is a station of which there is only a handwheel: it counts on.
     """
 
-    def __init__(self, clock: Clock, estop: Callable[[], bool]) -> None:
+    def __init__(self, clock: Clock, estop: Callable[[], bool], wired: Station | None = None) -> None:
         self._clock = clock
         self._estop = estop
+        self._wired = wired
         self._lock = threading.Lock()
         self._panel = Panel(_WINDOW, _PULSE, seed=0)
 
@@ -28,7 +30,13 @@ class PanelStation:
         """The station now."""
         with self._lock:
             state = self._panel.state(self._clock.now())
-        return dataclasses.replace(state, estop=state.estop or self._estop())
+        wired = self._wired.snapshot() if self._wired is not None else StationState()
+        return dataclasses.replace(
+            state,
+            estop=state.estop or self._estop(),
+            handwheel=state.handwheel + wired.handwheel,
+            age=max(state.age, wired.age),
+        )
 
     def press_left(self) -> None:
         """Left palm button down."""
@@ -80,6 +88,11 @@ class PanelStation:
         """Feed override, 0…1.5."""
         with self._lock:
             self._panel.feed_pot = min(max(fraction, 0.0), 1.5)
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the drawn handwheel on by so many counts, signed."""
+        with self._lock:
+            self._panel.handwheel += counts
 
     def _palm(self, which: str, *, down: bool) -> None:
         with self._lock:

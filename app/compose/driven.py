@@ -73,7 +73,8 @@ class CanDriven:
         ports = self._machine.ports
         self.hands: object | None = self._peers.machine if self._peers is not None else None
         if not has_station(machine):
-            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")))
+            wired = ports.station if "handwheel" in machine.hardware.analog else None
+            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")), wired)
             self.hands, ports = self.hands or panel, dataclasses.replace(ports, station=panel)
         self.ports: MachinePorts = ports
 

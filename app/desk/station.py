@@ -39,6 +39,10 @@ class StationPanel(Protocol):
         """0…1.5."""
         ...
 
+    def turn_handwheel(self, counts: int) -> None:
+        """Signed; only where the machine has a handwheel."""
+        ...
+
 
 @dataclass(slots=True)
 class Palms:

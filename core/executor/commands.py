@@ -87,6 +87,24 @@ class JogStop:
 
 
 @dataclass(frozen=True, slots=True)
+class Wheel:
+    """The handwheel moves ``axis`` by ``step`` a click, mm or degrees, while the lease lasts. Renewed.
+
+    What the wheel has counted before moves nothing, nor what it counts faster than the axis goes. An end that
+    the control had to make lasts until ``WheelOff``.
+    """
+
+    axis: str
+    step: float
+    lease: float
+
+
+@dataclass(frozen=True, slots=True)
+class WheelOff:
+    """The handwheel moves nothing any more; what it moves stops."""
+
+
+@dataclass(frozen=True, slots=True)
 class SpindleLimit:
     """F10: maximum spindle speed until restart, rpm; None: the machine's own."""
 
@@ -149,6 +167,8 @@ Command = (
     | Jog
     | JogStep
     | JogStop
+    | Wheel
+    | WheelOff
     | SpindleLimit
     | Home
     | UseOffsets

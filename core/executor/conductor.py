@@ -10,6 +10,7 @@ from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
+from core.executor.handwheel import Handwheel
 from core.executor.homing import Homing
 from core.executor.inherited import at_power_up
 from core.executor.job import Job
@@ -32,6 +33,7 @@ class Conductor:
         self.counters = self.rounds.counters
         self.supervisor = Supervisor(bench)
         self.jogger = jogger_of(bench)
+        self.wheel = Handwheel(bench, self.jogger)
         self.homing = Homing(bench)
         self._giving_up = False
 
@@ -79,7 +81,9 @@ class Conductor:
         return bool(why)
 
     def feed_hold(self, reason: str) -> None:
-        """Hold the cycle, end a jog, brake a homing."""
+        """Hold the cycle, end a jog, brake a homing, take the handwheel away."""
+        if self.wheel.axis:
+            self.wheel.end(reason.lower() or "feed hold", self.state)
         if self.state is State.JOG:
             self.jogger.stop()
         elif self.state is State.HOME:
@@ -99,9 +103,14 @@ class Conductor:
             self.cycle.abandon()
             self._leave()
         elif self.state is State.JOG:
-            self.jogger.stop()
+            self.feed_hold("reset")
         elif self.state is State.HOME:
             self._stop_homing()
+
+    def follow_wheel(self) -> None:
+        """Where the handwheel is turned, its axis goes. Raises DriverError."""
+        if self.wheel.turn(self.state):
+            self.enter(State.JOG)
 
     def mirror_estop(self, pressed: bool) -> None:
         """The hardware has stopped everything; the control follows, and nothing starts on release."""

@@ -8,7 +8,7 @@ from functools import partial
 
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
-from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep
+from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Wheel
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
 from core.executor.guard import Guard
@@ -27,7 +27,7 @@ from core.ports import DriverError, MachinePorts
 
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
-_STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep)
+_STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep, Wheel)
 _TOLD = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
@@ -114,6 +114,7 @@ class Executor:
             conductor.feed_hold(heard.trouble)
         if heard.start:
             conductor.start()
+        conductor.follow_wheel()
 
     def _posted(self) -> Iterator[Command]:
         for _ in range(_COMMANDS):

@@ -28,6 +28,8 @@ class Jogger:
         self._axis = -1
         self.stepping = False
         self._short = False  # the step was stopped before its end
+        self.goal: float | None = None  # where the handwheel sends the axis; None: it does not
+        self.ending = False  # told to stop, and still on its way to rest
 
     @property
     def axis(self) -> str:
@@ -36,8 +38,8 @@ class Jogger:
 
     def refusal(self, name: str, velocity: float, lease: float) -> str:
         """Why this jog is refused; empty when it may begin or go on."""
-        if self._missing(name):
-            return self._missing(name)
+        if self.missing(name):
+            return self.missing(name)
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
             return "a jog needs a velocity and a lease above 0"
         if self.stepping:
@@ -46,8 +48,8 @@ class Jogger:
 
     def step_refusal(self, name: str, distance: float, speed: float) -> str:
         """Why this step is refused; empty when it may begin."""
-        if self._missing(name):
-            return self._missing(name)
+        if self.missing(name):
+            return self.missing(name)
         if not math.isfinite(speed) or speed <= 0.0:
             return "a step needs a speed above 0"
         if not 0.0 < abs(distance) <= _LONGEST_STEP + _ROUNDING:
@@ -56,7 +58,8 @@ class Jogger:
             return f"{self.axis} is still moving; wait for the end of its step"
         return self._barred(name) or self._too_far(name, distance)
 
-    def _missing(self, name: str) -> str:
+    def missing(self, name: str) -> str:
+        """Why there is no such axis to move by hand; empty when there is."""
         machine = self._bench.machine
         known = name in {axis.name for axis in machine.axes}
         there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
@@ -68,8 +71,13 @@ class Jogger:
             return "feed hold is pressed"
         if self.axis and self.axis != name:
             return f"{self.axis} is still being jogged"
-        spinning = bench.spindle.asked or not bench.spindle.stopped
-        if name == "C" and bench.machine.spindle_is_c and spinning:
+        return self.spinning(name)
+
+    def spinning(self, name: str) -> str:
+        """Why C does not move as long as it turns as the spindle."""
+        bench = self._bench
+        turns = bench.spindle.asked or not bench.spindle.stopped
+        if name == "C" and bench.machine.spindle_is_c and turns:
             return "C is the spindle, and the spindle turns; stop it first"
         return ""
 
@@ -88,7 +96,7 @@ class Jogger:
         """Begin a step from rest. Raises DriverError."""
         index = self._bench.ports.axes.axes.index(name)
         axis = self._bench.machine.axes[index]
-        top = min(speed, self._top(axis, self._bench.sample.homed[index]))
+        top = min(speed, self.top(axis, self._bench.sample.homed[index]))
         self._splice(index, lambda _start, _p, _v: ride.step(distance, top, axis.amax))
         self._axis, self.stepping = index, True
 
@@ -98,7 +106,7 @@ class Jogger:
         index = bench.ports.axes.axes.index(name)
         axis = bench.machine.axes[index]
         homed = bench.sample.homed[index]
-        speed = math.copysign(min(abs(velocity), self._top(axis, homed)), velocity)
+        speed = math.copysign(min(abs(velocity), self.top(axis, homed)), velocity)
         until = bench.now + min(lease, LONGEST_LEASE)
 
         def go(start: float, p: float, v: float) -> list[Piece]:
@@ -107,8 +115,14 @@ class Jogger:
 
         moves = self._splice(index, go)
         if moves:
-            self._axis = index
+            self._axis, self.ending = index, False
         return moves
+
+    def chase(self, name: str, rides: Callable[[float, float, float], list[Piece]], goal: float) -> None:
+        """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
+        index = self._bench.ports.axes.axes.index(name)
+        if self._splice(index, rides):
+            self._axis, self.goal, self.ending = index, goal, False
 
     def stop(self) -> None:
         """The lease is given back, or taken away; a step ends short, and that is said when it rests."""
@@ -117,7 +131,7 @@ class Jogger:
         self._short = self._short or self.stepping
         amax = self._bench.machine.axes[self._axis].amax
         self._splice(self._axis, lambda _start, _p, v: ride.ride(v, 0.0, amax, 0.0, math.inf))
-        self.stepping = False
+        self.stepping, self.goal, self.ending = False, None, True
 
     def over(self) -> bool:
         """Whether it has come to rest."""
@@ -137,6 +151,7 @@ class Jogger:
     def forget(self) -> None:
         """Nothing is jogged any more: it has come to rest, or something else has stopped it."""
         self._axis, self.stepping, self._short = -1, False, False
+        self.goal, self.ending = None, False
 
     def _splice(self, index: int, rides: Callable[[float, float, float], list[Piece]]) -> bool:
         """Queue what ``rides`` makes of (start, position, velocity); later when the clock was faster.
@@ -159,7 +174,8 @@ class Jogger:
                 return True
         return False
 
-    def _top(self, axis: Axis, homed: bool) -> float:
+    def top(self, axis: Axis, homed: bool) -> float:
+        """How fast an axis goes by hand at most."""
         endless = axis.travel is None or axis.rotary
         rapid = axis.vmax if endless else min(axis.vmax, self._bench.machine.manual_rapid)
         return rapid if homed else _UNHOMED * rapid

@@ -25,6 +25,8 @@ from core.executor.commands import (
     SpindleLimit,
     SpindleStop,
     UseOffsets,
+    Wheel,
+    WheelOff,
 )
 from core.executor.conductor import Conductor
 from core.executor.jog import at_the_end
@@ -50,6 +52,7 @@ class Orders:
             Reset: conductor.reset,
             EnableDrives: self._enable,
             JogStop: conductor.jogger.stop,
+            WheelOff: lambda: conductor.wheel.off(conductor.state),
         }
 
     def obey(self, command: Command) -> None:
@@ -67,10 +70,8 @@ class Orders:
                 self._override(fraction)
             case SpindleLimit(rpm=rpm):
                 self._limit(rpm)
-            case Jog():
-                self._jog(command)
-            case JogStep():
-                self._step(command)
+            case Jog() | JogStep() | Wheel():
+                self._move(command)
             case Home(axis=axis):
                 self._home(axis)
             case UseOffsets() | SpindleStop() | ForceOutput():
@@ -119,11 +120,21 @@ class Orders:
         self._bench.spindle.limit = rpm
         self._bench.say("override", f"spindle limit {rpm or highest:g} rpm")
 
+    def _move(self, command: Jog | JogStep | Wheel) -> None:
+        match command:
+            case Jog():
+                self._jog(command)
+            case JogStep():
+                self._step(command)
+            case Wheel():
+                self._conductor.wheel.select(command, self._conductor.state)
+
     def _jog(self, command: Jog) -> None:
         conductor, jogger = self._conductor, self._conductor.jogger
         if self._may_not_jog():
             return
-        why = jogger.refusal(command.axis, command.velocity, command.lease)
+        why = conductor.wheel.bars(conductor.state)
+        why = why or jogger.refusal(command.axis, command.velocity, command.lease)
         if why:
             jogger.stop()
             self._bench.say("refused", f"jog: {why}")
@@ -136,7 +147,8 @@ class Orders:
         conductor, jogger = self._conductor, self._conductor.jogger
         if self._may_not_jog():
             return
-        why = jogger.step_refusal(command.axis, command.distance, command.speed)
+        why = conductor.wheel.bars(conductor.state)
+        why = why or jogger.step_refusal(command.axis, command.distance, command.speed)
         if not why:
             jogger.step(command.axis, command.distance, command.speed)
             conductor.enter(State.JOG)

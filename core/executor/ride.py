@@ -14,6 +14,7 @@ Piece = tuple[float, float, float]  # seconds, speed at its start, acceleration
 
 MARGIN = 0.01  # mm or degrees kept from the soft limit
 _SHORTEST = 1e-12  # s; a piece that takes less is none
+_SAME = 1e-9  # mm or degrees; places nearer than that are one
 
 
 def room(axis: Axis, at: float, direction: float) -> float:
@@ -61,6 +62,29 @@ def step(distance: float, speed: float, a: float) -> list[Piece]:
         (change, 0.0, sign * a),
         ((way - top * change) / top, sign * top, 0.0),
         (change, sign * top, -sign * a),
+    )
+
+
+def reach(v0: float, way: float, top: float, a: float) -> list[Piece]:
+    """From speed ``v0`` to rest at exactly ``way`` from here, no faster than ``top`` once it is that slow.
+
+    A ``way`` that lies behind, or is shorter than the braking, is come back to from rest.
+    """
+    stop = v0 * abs(v0) / (2.0 * a)
+    if v0 * way < 0.0 or abs(stop) > abs(way) + _SAME:
+        brake = (abs(v0) / a, v0, -math.copysign(a, v0))
+        back = way - stop
+        return _pieces(brake, *(step(back, top, a) if abs(back) > _SAME else ()))
+    if abs(way) <= _SAME:
+        return []
+    sign, here, left = math.copysign(1.0, way), abs(v0), abs(way)
+    peak = min(top, math.sqrt(a * left + here * here / 2.0))
+    change = abs(peak - here) / a
+    cruise = (left - change * (here + peak) / 2.0 - peak * peak / (2.0 * a)) / peak
+    return _pieces(
+        (change, v0, sign * math.copysign(a, peak - here)),
+        (cruise, sign * peak, 0.0),
+        (peak / a, sign * peak, -sign * a),
     )
 
 

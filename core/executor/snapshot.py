@@ -104,6 +104,8 @@ class Snapshot:
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     start_refused: str = ""  # why the last Cycle Start did nothing
 
+    wheel: str = ""  # axis that the handwheel moves, empty for none
+    wheel_ended: str = ""  # why the control has taken the handwheel away
     @property
     def tip(self) -> tuple[float, float]:
         """Actual machine X and Z: where the pictures of a lathe show the tool."""

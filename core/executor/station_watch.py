@@ -24,6 +24,7 @@ class Heard(NamedTuple):
     spindle: float
     auto: bool
     trouble: str  # why the cycle must be held, empty when all is well
+    wheel: int = 0  # what the handwheel has counted
 
 
 class Pot:
@@ -92,6 +93,7 @@ class StationWatch:
             spindle=self._spindle.value,
             auto=state.spindle_auto,
             trouble=trouble,
+            wheel=state.handwheel,
         )
 
     def may_start(self, now: float) -> bool:

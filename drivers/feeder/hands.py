@@ -56,6 +56,10 @@ class FeederHands:
         """Feed override, 0…1.5."""
         self._do("set_feed_pot", fraction)
 
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the handwheel on by so many counts, signed."""
+        self._do("turn_handwheel", counts)
+
     def set_input(self, name: str, on: bool) -> None:
         """Make an input of a simulated machine true or false, at once. Raises DriverError."""
         self._line.ask(_act("set_input", name, on))

@@ -72,6 +72,11 @@ class SimMachine:
         with self._plant.lock:
             self._plant.panel.feed_pot = min(max(fraction, 0.0), 1.5)
 
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the handwheel on by so many counts, signed."""
+        with self._plant.lock:
+            self._plant.panel.handwheel += counts
+
     def set_input(self, name: str, on: bool) -> None:
         """Make an input of the machine file true or false; raises DriverError for an unknown name."""
         with self._plant.lock:

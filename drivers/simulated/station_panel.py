@@ -55,6 +55,7 @@ class Panel:
         self.spindle_auto = True
         self.spindle_pot = 1.0
         self.feed_pot = 1.0
+        self.handwheel = 0  # counts
         self.noise = 0.0  # half width of what a bad wiper adds to the pots
         self._pulse = pulse
         self._hold_down = False
@@ -83,6 +84,7 @@ class Panel:
                 spindle_auto=self._silent.spindle_auto,
                 spindle_pot=self._silent.spindle_pot,
                 feed_pot=self._silent.feed_pot,
+                handwheel=self._silent.handwheel,
                 age=now - self._silent_since,
             )
         return StationState(
@@ -92,6 +94,7 @@ class Panel:
             spindle_auto=self.spindle_auto,
             spindle_pot=self._noisy(self.spindle_pot, 1.0),
             feed_pot=self._noisy(self.feed_pot, 1.5),
+            handwheel=self.handwheel,
         )
 
     def _noisy(self, value: float, top: float) -> float:

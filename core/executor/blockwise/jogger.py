@@ -66,7 +66,7 @@ class BlockJogger(Jogger):
     def _speed(self, name: str, speed: float) -> tuple[int, float]:
         index = self._bench.ports.axes.axes.index(name)
         axis = self._bench.machine.axes[index]
-        return index, min(speed, self._top(axis, self._bench.sample.homed[index]))
+        return index, min(speed, self.top(axis, self._bench.sample.homed[index]))
 
     def _unready(self) -> str:
         state = self._sink.state()

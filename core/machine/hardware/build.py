@@ -147,7 +147,14 @@ def _sim(reading: HardwareReading) -> SimModel:
 def _analog(values: Values, name: str) -> AnalogModel:
     path = f"io.analog.{name}"
     low, high = values.pair(f"{path}.range")
-    return AnalogModel(name, values.text(f"{path}.at"), low, high, values.text(f"{path}.switch"))
+    return AnalogModel(
+        name,
+        values.text(f"{path}.at"),
+        low,
+        high,
+        values.text(f"{path}.switch"),
+        _int(values, f"{path}.counts_per_click"),
+    )
 
 
 def _home(values: Values, axis: str) -> HomeModel:

@@ -82,6 +82,7 @@ ANALOG = (
     Field("at", _TEXT),
     Field("range", Kind.PAIR, Unit.PLAIN, -1000.0, 1000.0, default=(0.0, 1.0)),
     Field("switch", _TEXT, default=""),
+    Field("counts_per_click", _WHOLE, low=-1000, high=1000, default=1),
 )
 FAULT = (
     Field("at", _NUMBER, Unit.SECONDS, 0.0, 1e6),

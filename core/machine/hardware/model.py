@@ -102,13 +102,17 @@ class MtconnectModel:
 
 @dataclass(frozen=True, slots=True)
 class AnalogModel:
-    """A pot or a counting wheel: ``low`` … ``high`` is what both ends mean; ``switch`` names its input."""
+    """A pot or a counting wheel: ``low`` … ``high`` is what both ends mean; ``switch`` names its input.
+
+    ``counts_per_click`` of the handwheel; negative: it turns the other way round.
+    """
 
     name: str
     terminal: str
     low: float
     high: float
     switch: str = ""
+    counts_per_click: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from core.machine.hardware.fields import AXIS_FAULTS
 from core.machine.hardware.reading import HardwareReading
 from core.machine.hardware.terminals import on_the_bus
 from core.machine.schema import Values, written
+from core.machine.hardware.wheel import broken as wrong_wheel
 
 RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
 _RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
@@ -26,6 +27,8 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, s
     yield from _ports(reading.values)
     if "canopen" in reading.tables:
         yield from _bus_times(reading.values)
+    yield from wrong_wheel(reading, axes)
+    yield from drive_limits.outside(reading, axes)
         yield from _nodes(reading, axes)
         yield from _heartbeat(reading)
     if _is(reading.values, "machine.backend", "canopen") and "canopen" in reading.tables:

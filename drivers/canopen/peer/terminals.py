@@ -76,6 +76,9 @@ class TerminalBoard:
 
     def _analog(self, sub: int) -> int:
         state = self._plant.panel.state(self._plant.clock.now())
+        wheel = self._config.pots.get("handwheel")
+        if wheel is not None and wheel.terminal.node == self._name and wheel.terminal.sub == sub:
+            return (state.handwheel + 2**15) % 2**16 - 2**15
         shown = {"feed_pot": state.feed_pot, "spindle_pot": state.spindle_pot}
         for name, pot in self._config.pots.items():
             if pot.terminal.node == self._name and pot.terminal.sub == sub and name in shown:

@@ -1,0 +1,183 @@
+"""The handwheel: clicks move one selected axis, as long as somebody asks and nothing speaks against it.
+
+The slide follows the wheel a tenth of a second behind, and what is queued is never more than that and the
+braking: clicks that come faster than the axis goes are dropped. Any end that was not asked for lasts until
+the wheel is selected anew.
+"""
+
+from __future__ import annotations
+
+import math
+
+from core.executor import ride
+from core.executor.bench import Bench
+from core.executor.clicks import Clicks
+from core.executor.commands import Wheel
+from core.executor.jog import LONGEST_LEASE, Jogger, at_the_end
+from core.executor.ride import Piece
+from core.executor.snapshot import State
+from core.machine.hardware.wheel import ENABLE, WHEEL, selector
+from core.machine.model import Axis
+
+LONGEST_CLICK = 0.254  # mm (.01 in)
+LONGEST_TURN = 0.5  # degrees
+_BEHIND = 0.1  # s by which the slide follows the wheel
+_STILL = 0.1  # s for which the wheel must stand when it is selected
+_APART = 0.5  # s between the last of two at once and the next jog
+_ROUNDING = 1e-9
+
+
+class Handwheel:
+    """``axis`` is what it moves, empty for nothing; ``ended`` tells why it was taken away."""
+
+    def __init__(self, bench: Bench, jogger: Jogger) -> None:
+        model = bench.machine.hardware.analog.get(WHEEL)
+        self._bench = bench
+        self._jogger = jogger
+        self._there = model is not None and bench.ports.blocks is None
+        self._clicks = Clicks(model.counts_per_click if model else 1)
+        self.axis = ""
+        self.ended = ""
+        self._step = 0.0
+        self._until = 0.0
+        self._ready = False  # it has stood still since it was selected
+        self._told = ""  # what was said once of this motion
+        self._apart = -math.inf  # until then no key jogs: it came together with the wheel
+
+    def select(self, command: Wheel, state: State) -> None:
+        """Select axis and step, or renew. Raises DriverError."""
+        if self.ended:
+            return
+        if why := self._refusal(command) or self._lost(state, command.axis):
+            self.end(why, state)
+        elif (command.axis, command.step) != (self.axis, self._step):
+            self._stop(state)
+            self.axis, self._step, self._ready = command.axis, command.step, False
+        self._until = self._bench.now + min(command.lease, LONGEST_LEASE)
+
+    def off(self, state: State) -> None:
+        """Nobody asks any more. Raises DriverError."""
+        self._stop(state)
+        self.axis = self.ended = ""
+
+    def end(self, why: str, state: State) -> None:
+        """Take it away, and say why. Raises DriverError."""
+        self._stop(state)
+        self.axis, self.ended = "", why
+        self._bench.say("refused", f"handwheel: {why}")
+
+    def turn(self, state: State) -> bool:
+        """Once a tick; True when the axis moves. Raises DriverError."""
+        bench, jogger = self._bench, self._jogger
+        clicks = self._clicks.take(bench.heard.wheel, bench.now)
+        if not self.axis:
+            return False
+        if why := self._lost(state, self.axis):
+            self.end(why, state)
+            return False
+        if state is State.IDLE:
+            jogger.forget()
+            self._told = ""
+        self._ready = self._ready or self._clicks.still >= _STILL
+        if not clicks or not self._ready or jogger.ending:
+            return False
+        if jogger.axis and jogger.goal is None:
+            self._together("it was turned while a key or finger was held", state)
+            return False
+        return self._follow(clicks)
+
+    def bars(self, state: State) -> str:
+        """Why a key moves nothing because of the wheel; empty when it may."""
+        if self._jogger.goal is not None:
+            self._together("a key or finger came while it was turned", state)
+        if self._bench.now >= self._apart:
+            return ""
+        self._apart = self._bench.now + _APART
+        return "key and handwheel at once move nothing"
+
+    def _together(self, why: str, state: State) -> None:
+        self._jogger.stop()
+        self._apart = self._bench.now + _APART
+        self.end(why, state)
+
+    def _stop(self, state: State) -> None:
+        if state is State.JOG and self._jogger.goal is not None:
+            self._jogger.stop()
+
+    def _refusal(self, command: Wheel) -> str:
+        bench = self._bench
+        if not self._there:
+            return "this machine has none"
+        if why := self._jogger.missing(command.axis):
+            return why
+        longest = LONGEST_TURN if bench.machine.axis(command.axis).rotary else LONGEST_CLICK
+        if not 0.0 < command.step <= longest + _ROUNDING:
+            return f"a click is longer than 0 and no longer than {longest:g}, not {command.step:g}"
+        if not 0.0 < command.lease < math.inf:
+            return "it needs a lease above 0"
+        return ""
+
+    def _lost(self, state: State, axis: str) -> str:
+        """What takes the wheel away in this tick."""
+        bench, heard, inputs = self._bench, self._bench.heard, self._bench.inputs
+        reasons = (
+            (state not in {State.IDLE, State.JOG}, f"it moves nothing in state {state.value}"),
+            (heard.trouble != "", heard.trouble.lower()),
+            (heard.hold, "feed hold"),
+            (self._clicks.leapt, "its counts leap: check its cable"),
+            (self.axis != "" and bench.now > self._until, "the page that asked for it was silent"),
+            (not inputs.get(ENABLE, True), "its enabling switch is not held"),
+            (not inputs.get(selector(axis), True), f"the station's switch does not select {axis}"),
+        )
+        found = next((why for so, why in reasons if so), "")
+        return found or self._jogger.spinning(axis)
+
+    def _follow(self, clicks: int) -> bool:
+        bench, jogger = self._bench, self._jogger
+        index = bench.ports.axes.axes.index(self.axis)
+        start = bench.sample.demand[index] if jogger.goal is None else jogger.goal
+        wanted = self._within(index, start + clicks * self._step)
+        found = _Ride(bench.machine.axes[index], self._top(index), self._step, wanted)
+        jogger.chase(self.axis, found.pieces, wanted)
+        if jogger.goal is not None and found.goal != wanted:
+            jogger.goal = found.goal
+            self._tell(f"turned faster than {self.axis} goes; clicks are dropped")
+        return jogger.goal is not None
+
+    def _top(self, index: int) -> float:
+        return self._jogger.top(self._bench.machine.axes[index], self._bench.sample.homed[index])
+
+    def _within(self, index: int, wanted: float) -> float:
+        """Up to the soft limit, and no click kept beyond it."""
+        axis = self._bench.machine.axes[index]
+        if axis.travel is None or not self._bench.sample.homed[index]:
+            return wanted
+        here = self._bench.sample.demand[index]
+        low, high = axis.travel[0] + ride.MARGIN, axis.travel[1] - ride.MARGIN
+        allowed = min(max(wanted, min(low, here)), max(high, here))
+        if allowed != wanted:
+            self._tell(at_the_end(axis.name, wanted - allowed))
+        return allowed
+
+    def _tell(self, what: str) -> None:
+        if what != self._told:
+            self._told = what
+            self._bench.say("refused", f"handwheel: {what}")
+
+
+class _Ride:
+    """The way to ``wanted``, or as much of it as is not too far behind; ``goal`` is where it ends."""
+
+    def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
+        self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
+        self.goal = wanted
+
+    def pieces(self, _start: float, p: float, v: float) -> list[Piece]:
+        """For ``Jogger.chase``: as fast as is needed to be a tenth of a second behind."""
+        way = self._wanted - p
+        longest = max(self._top * _BEHIND + v * v / (2.0 * self._amax), self._step)
+        if abs(way) > longest:
+            way = math.copysign(longest, way)
+            self.goal = p + way
+        least = max(abs(way), v * v / (2.0 * self._amax))
+        return ride.reach(v, way, min(self._top, least / _BEHIND), self._amax)

@@ -1,0 +1,485 @@
+"""The handwheel on the executor: clicks become ways, and everything that must keep them from it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import pytest
+
+from core.executor.clicks import Clicks
+from core.executor.commands import (
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    Jog,
+    JogStep,
+    JogStop,
+    Reset,
+    Wheel,
+    WheelOff,
+)
+from core.executor.snapshot import State
+from core.machine.hardware.model import AnalogModel
+from core.machine.load import load_machine
+from core.machine.model import InputModel, Machine
+from tests.executor.rig import INCH, TICK, Rig
+
+THOU = 0.001 * INCH
+LEASE = 0.25
+AMAX = 120 * INCH
+RAPID = 100 * INCH / 60
+
+
+def wheeled(*inputs: str, per: int = 1) -> Machine:
+    """The shipped lathe with a handwheel and these inputs beside it."""
+    machine = load_machine()
+    wheel = AnalogModel("handwheel", "wheel", 0.0, 1.0, counts_per_click=per)
+    wired = {name: InputModel(name, f"test {name}", "") for name in inputs}
+    return dataclasses.replace(
+        machine,
+        inputs={**machine.inputs, **wired},
+        hardware=dataclasses.replace(machine.hardware, analog={"handwheel": wheel}),
+    )
+
+
+class WheelRig(Rig):
+    """Its page renews the lease as long as ``page`` is set."""
+
+    page: Wheel | None = None
+
+    def tick(self, dt: float = TICK) -> None:
+        if self.page is not None:
+            self.executor.post(self.page)
+        super().tick(dt)
+
+    def select(self, axis: str = "X", step: float = THOU) -> None:
+        """The page selects the wheel; it has stood still."""
+        self.page = Wheel(axis, step, LEASE)
+        self.run(0.2)
+        assert self.shot.wheel == axis, self.said("refused")
+
+    def drop(self) -> None:
+        """The page lets it go."""
+        self.page = None
+        self.post(WheelOff())
+
+    def spin(self, clicks: int, each: int = 1, ticks: int = 1) -> None:
+        """``each`` clicks at a time, so many ticks apart, until there were ``clicks``."""
+        for _ in range(abs(clicks) // each):
+            self.sim.machine.turn_handwheel(int(math.copysign(each, clicks)))
+            self.run(ticks * TICK)
+
+    def rests(self) -> float:
+        took = self.until(State.IDLE, limit=5.0)
+        self.run(0.3)
+        assert self.state is State.IDLE
+        return took
+
+
+def ready(*inputs: str, per: int = 1) -> WheelRig:
+    rig = WheelRig(wheeled(*inputs, per=per))
+    rig.ready()
+    return rig
+
+
+# --- clicks become ways -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("axis", "index"), [("X", 0), ("Z", 1)])
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("step", [0.0001 * INCH, THOU, 0.01 * INCH])
+def test_a_click_is_exactly_one_step(axis: str, index: int, sign: int, step: float) -> None:
+    rig = ready()
+    rig.select(axis, step)
+    rig.spin(sign)
+    assert rig.state is State.JOG
+    rig.rests()
+    assert rig.shot.demand[index] == pytest.approx(sign * step, abs=1e-9)
+    assert rig.shot.demand[1 - index] == 0.0
+
+
+def test_fifty_clicks_forward_and_twenty_back_are_thirty() -> None:
+    rig = ready()
+    rig.select("Z")
+    rig.spin(-50, ticks=2)
+    rig.spin(20, ticks=2)
+    rig.rests()
+    assert rig.shot.demand[1] == pytest.approx(-30 * THOU, abs=1e-9)
+    assert rig.said("refused") == []
+
+
+def test_a_reversal_in_full_swing_never_leaves_the_way_of_the_wheel() -> None:
+    rig = ready()
+    rig.select("X", 0.01 * INCH)
+    places = []
+    rig.watch.append(lambda shot: places.append(shot.demand[0]))
+    rig.spin(60)
+    rig.spin(-60)
+    rig.rests()
+    assert rig.shot.demand[0] == pytest.approx(0.0, abs=1e-6)
+    assert max(places) <= 60 * 0.01 * INCH + 1e-6
+    assert min(places) >= -1e-6
+
+
+def test_it_follows_a_tenth_of_a_second_behind_and_stops_with_the_wheel() -> None:
+    rig = ready()
+    rig.select("Z")
+    rig.spin(200)  # 100 clicks a second: .1 in/s
+    behind = 200 * THOU - rig.shot.demand[1]
+    speed = 100 * THOU
+    assert 0.0 < behind < speed * 0.2
+    assert rig.rests() < 0.25
+    assert rig.shot.demand[1] == pytest.approx(200 * THOU, abs=1e-9)
+
+
+def test_a_detent_of_four_counts_is_one_click_and_its_trembling_none() -> None:
+    rig = ready(per=4)
+    rig.select()
+    for counts in (3, -3, 2, -2, 3, -3):
+        rig.sim.machine.turn_handwheel(counts)
+        rig.run(0.05)
+    assert rig.shot.demand[0] == 0.0
+    rig.sim.machine.turn_handwheel(4)
+    rig.run(0.5)
+    assert rig.shot.demand[0] == pytest.approx(THOU, abs=1e-9)
+
+
+def test_a_wheel_that_is_mounted_the_other_way_round() -> None:
+    rig = ready(per=-4)
+    rig.select()
+    rig.spin(4, each=4)
+    rig.rests()
+    assert rig.shot.demand[0] == pytest.approx(-THOU, abs=1e-9)
+
+
+# --- no backlog -------------------------------------------------------------------------------------------
+
+
+def test_clicks_faster_than_the_axis_are_dropped_and_not_played_later() -> None:
+    rig = ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(1000, each=10)  # ten inches in a second; the slide makes 1.67
+    stopped_at = rig.shot.demand[1]
+    took = rig.rests()
+    run_on = rig.shot.demand[1] - stopped_at
+    assert run_on <= RAPID * 0.1 + RAPID**2 / AMAX + 0.03 * RAPID + 0.254
+    assert took < 0.3
+    assert rig.shot.demand[1] < 1.2 * RAPID
+    assert rig.said("refused") == ["handwheel: turned faster than Z goes; clicks are dropped"]
+
+
+def test_an_axis_that_is_not_homed_goes_at_a_tenth() -> None:
+    machine = wheeled()
+    x, z, *rest = machine.axes
+    lost = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    rig = WheelRig(dataclasses.replace(machine, axes=(x, lost, *rest)))
+    rig.ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(500, each=5)
+    rig.rests()
+    assert rig.shot.demand[1] < 0.13 * RAPID
+
+
+def test_the_soft_limit_keeps_no_click() -> None:
+    rig = ready()
+    rig.select("X", 0.01 * INCH)
+    rig.spin(900, each=2)  # nine inches; the travel is four
+    rig.rests()
+    limit = 4.0 * INCH - 0.01
+    assert rig.shot.demand[0] == pytest.approx(limit, abs=0.002)
+    assert "handwheel: X is at the end of its travel in +" in rig.said("refused")
+    rig.spin(-1)
+    rig.rests()
+    assert rig.shot.demand[0] == pytest.approx(limit - 0.01 * INCH, abs=0.002)
+
+
+# --- nothing old ------------------------------------------------------------------------------------------
+
+
+def test_what_was_turned_before_it_was_selected_moves_nothing() -> None:
+    rig = ready()
+    rig.spin(100, each=5)
+    rig.select()
+    rig.run(0.5)
+    assert rig.shot.demand == (0.0, 0.0, 0.0)
+
+
+def test_a_wheel_that_turns_while_it_is_selected_has_to_stand_first() -> None:
+    rig = ready()
+    rig.page = Wheel("X", THOU, LEASE)
+    rig.spin(50)
+    assert rig.shot.demand == (0.0, 0.0, 0.0)
+    rig.run(0.15)
+    rig.spin(1)
+    rig.rests()
+    assert rig.shot.demand[0] == pytest.approx(THOU, abs=1e-9)
+
+
+def test_what_was_turned_while_the_control_was_away_moves_nothing() -> None:
+    rig = ready()
+    rig.select()
+    rig.sim.machine.turn_handwheel(30)
+    rig.page = None
+    rig.tick(0.15)
+    rig.run(0.3)
+    assert rig.shot.demand[0] == 0.0
+
+
+def test_another_step_or_axis_drops_what_is_on_its_way() -> None:
+    rig = ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(30)
+    moving = rig.shot.demand[1]
+    rig.page = Wheel("Z", THOU, LEASE)
+    rig.spin(10)
+    rig.rests()
+    assert rig.shot.demand[1] < 30 * 0.01 * INCH
+    assert rig.shot.demand[1] - moving < 2.0
+
+
+# --- ends -------------------------------------------------------------------------------------------------
+
+
+def ended(rig: WheelRig, why: str) -> None:
+    """It was taken away, stays so, and further clicks move nothing until it is selected anew."""
+    assert (rig.shot.wheel, rig.shot.wheel_ended) == ("", why)
+    rig.until_true(lambda shot: shot.state is not State.JOG, limit=1.0)
+    at = rig.shot.demand
+    rig.run(0.3)
+    rig.spin(20)
+    rig.run(0.5)
+    assert rig.shot.demand == at
+    assert rig.shot.wheel == ""
+
+
+def test_a_page_that_is_silent_loses_it_within_its_lease() -> None:
+    rig = ready()
+    rig.select()
+    rig.page = None
+    rig.spin(int(LEASE / TICK) + 5)
+    ended(rig, "the page that asked for it was silent")
+
+
+def test_leaving_the_page_stops_it_at_once() -> None:
+    rig = ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(30)
+    rig.drop()
+    assert rig.shot.wheel == ""
+    assert rig.rests() < 0.1
+    assert rig.shot.demand[1] < 30 * 0.01 * INCH
+
+
+def test_hold_button_takes_it_away() -> None:
+    rig = ready()
+    rig.select()
+    rig.spin(20)
+    rig.sim.machine.press_hold()
+    rig.spin(5)
+    rig.sim.machine.release_hold()
+    ended(rig, "feed hold")
+
+
+@pytest.mark.parametrize("command", [FeedHold(), Reset()])
+def test_hold_and_reset_from_the_screen_take_it_away(command: FeedHold | Reset) -> None:
+    rig = ready()
+    rig.select()
+    rig.spin(20)
+    rig.post(command)
+    ended(rig, "feed hold" if isinstance(command, FeedHold) else "reset")
+
+
+def test_estop_takes_it_away_and_its_release_gives_nothing_back() -> None:
+    rig = ready()
+    rig.select()
+    rig.spin(20)
+    rig.sim.machine.press_estop()
+    rig.spin(5)
+    assert rig.state is State.ESTOP
+    rig.sim.machine.release_estop()
+    rig.run(0.5)
+    rig.post(EnableDrives())
+    ended(rig, "it moves nothing in state E-STOP")
+
+
+def test_a_silent_station_stops_the_slide() -> None:
+    rig = ready()
+    rig.select()
+    rig.spin(20)
+    rig.sim.machine.station_silent()
+    rig.run(0.4)
+    ended(rig, "operator station silent")
+
+
+def test_a_counter_that_leaps_is_no_hand() -> None:
+    rig = ready()
+    rig.select()
+    rig.sim.machine.turn_handwheel(4000)
+    rig.run(0.05)
+    ended(rig, "its counts leap: check its cable")
+
+
+def test_a_key_while_it_turns_stops_both() -> None:
+    rig = ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(20)
+    for _ in range(60):  # the key stays down, its jog is renewed
+        rig.executor.post(Jog("Z", 10.0, 0.2))
+        rig.sim.machine.turn_handwheel(1)
+        rig.tick()
+    at = rig.shot.demand
+    assert rig.state is State.IDLE
+    assert rig.shot.wheel_ended == "a key or finger came while it was turned"
+    rig.run(0.6)
+    assert rig.shot.demand == at
+    rig.post(Jog("Z", 10.0, 0.2))
+    assert rig.state is State.JOG
+
+
+def test_the_wheel_while_a_key_is_held_stops_both() -> None:
+    rig = ready()
+    rig.select("Z")
+    for turn in range(60):
+        rig.executor.post(Jog("Z", 10.0, 0.2))
+        if turn > 30:
+            rig.sim.machine.turn_handwheel(1)
+        rig.tick()
+    assert rig.state is State.IDLE
+    assert rig.shot.wheel_ended == "it was turned while a key or finger was held"
+    assert "jog: key and handwheel at once move nothing" in rig.said("refused")
+
+
+def test_a_step_while_it_turns_stops_it_and_is_not_done() -> None:
+    rig = ready()
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(20)
+    at = rig.shot.demand[1]
+    rig.post(JogStep("Z", 2.54, 8.0))
+    rig.rests()
+    assert rig.shot.demand[1] - at < 1.0
+
+
+def test_clicks_behind_a_key_that_was_let_go_are_dropped_until_it_rests() -> None:
+    rig = ready()
+    rig.select("Z")
+    rig.post(Jog("Z", RAPID, 0.2))
+    rig.run(0.1)
+    rig.post(JogStop())
+    rig.spin(2)
+    rig.rests()
+    assert rig.shot.wheel == "Z"
+
+
+def test_a_cycle_takes_it_away() -> None:
+    rig = ready()
+    rig.select()
+    rig.load("G90G94F50\nG01X.1F50\nM30")
+    rig.post(CycleStart())
+    rig.run(0.1)
+    assert rig.shot.wheel == ""
+    rig.until(State.IDLE)
+    assert rig.shot.demand[0] == pytest.approx(0.1 * INCH)
+    ended(rig, "it moves nothing in state RUNNING")
+
+
+@pytest.mark.parametrize(
+    ("wheel", "why"),
+    [
+        (Wheel("B", THOU, LEASE), "no axis B"),
+        (Wheel("X", 0.0, LEASE), "longer than 0"),
+        (Wheel("X", 2.54, LEASE), "no longer than 0.254"),
+        (Wheel("X", math.nan, LEASE), "longer than 0"),
+        (Wheel("C", 1.0, LEASE), "no longer than 0.5"),
+        (Wheel("X", THOU, 0.0), "a lease above 0"),
+        (Wheel("X", THOU, math.nan), "a lease above 0"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(wheel: Wheel, why: str) -> None:
+    rig = ready()
+    rig.page = wheel
+    rig.run(0.2)
+    assert why in rig.shot.wheel_ended
+    rig.spin(5)
+    assert rig.shot.demand == (0.0, 0.0, 0.0)
+
+
+def test_with_the_drives_off_it_is_refused() -> None:
+    rig = WheelRig(wheeled())
+    rig.page = Wheel("X", THOU, LEASE)
+    rig.run(0.2)
+    assert rig.shot.wheel_ended == "it moves nothing in state DRIVES OFF"
+
+
+def test_a_machine_without_one_says_so() -> None:
+    rig = WheelRig()
+    rig.ready()
+    rig.post(Wheel("X", THOU, LEASE))
+    assert rig.shot.wheel_ended == "this machine has none"
+
+
+def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
+    rig = ready()
+    rig.select("C", 0.02)
+    rig.spin(10)
+    rig.rests()
+    assert rig.shot.demand[2] == pytest.approx(0.2, abs=1e-9)
+    rig.drop()
+    rig.start("G90G94F50\nM03S500\nG04F1\nM02")
+    rig.until(State.IDLE)
+    rig.page = Wheel("C", 0.02, LEASE)
+    rig.run(0.2)
+    assert "the spindle turns" in rig.shot.wheel_ended
+
+
+# --- switches of the station ------------------------------------------------------------------------------
+
+
+def test_the_enabling_switch_must_be_held() -> None:
+    rig = ready("wheel_enable")
+    rig.page = Wheel("X", THOU, LEASE)
+    rig.run(0.2)
+    assert rig.shot.wheel_ended == "its enabling switch is not held"
+    rig.drop()
+    rig.sim.machine.set_input("wheel_enable", True)
+    rig.select("Z", 0.01 * INCH)
+    rig.spin(20)
+    rig.sim.machine.set_input("wheel_enable", False)
+    rig.run(0.05)
+    ended(rig, "its enabling switch is not held")
+
+
+def test_the_axis_is_the_one_that_the_switch_selects() -> None:
+    rig = ready("wheel_x", "wheel_z")
+    rig.sim.machine.set_input("wheel_z", True)
+    rig.page = Wheel("X", THOU, LEASE)
+    rig.run(0.1)
+    assert rig.shot.wheel_ended == "the station's switch does not select X"
+    rig.drop()
+    rig.select("Z")
+    rig.spin(5)
+    rig.sim.machine.set_input("wheel_z", False)
+    rig.run(0.05)
+    ended(rig, "the station's switch does not select Z")
+
+
+# --- counts -----------------------------------------------------------------------------------------------
+
+
+def test_where_a_counter_stands_at_first_is_nothing() -> None:
+    clicks = Clicks(4)
+    assert clicks.take(123456, 1.0) == 0
+    assert clicks.take(123464, 1.01) == 2
+    assert clicks.take(123463, 1.02) == 0
+    assert clicks.take(123460, 1.03) == -1
+
+
+def test_a_leap_and_what_is_old_are_no_clicks() -> None:
+    clicks = Clicks(1)
+    clicks.take(0, 1.0)
+    assert clicks.take(21, 1.01) == 0  # 20 in 10 ms is what a hand may
+    assert clicks.leapt
+    assert clicks.take(22, 1.02) == 1
+    assert not clicks.leapt
+    assert clicks.take(30, 1.2) == 0
+    assert clicks.take(31, 1.21) == 1

@@ -1,0 +1,53 @@
+"""A handwheel in the machine file: its counts and the switches beside it."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from core.machine.load import parse_machine
+from tests.machine.test_hardware import assert_refused, changed
+
+PADS = "[io.analog]"
+WHEEL = '\nhandwheel = { at = "401.6401.3", counts_per_click = -4 }'
+SWITCHES = '[io.in]\nwheel_x = { at = "401.6000.5.0" }\nwheel_x10 = { at = "401.6000.5.1" }'
+
+
+def with_wheel(switches: str = "[io.in]") -> str:
+    return changed("[io.in]", switches, changed(PADS, PADS + WHEEL))
+
+
+def test_a_wheel_with_its_switches() -> None:
+    machine = parse_machine(with_wheel(SWITCHES), "can")
+    assert machine.hardware.analog["handwheel"].counts_per_click == -4
+    assert {"wheel_x", "wheel_x10"} <= set(machine.inputs)
+    assert machine.hardware.analog["feed_pot"].counts_per_click == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "expected"),
+    [
+        ("= -4", "= 0", "io.analog.handwheel.counts_per_click", "negative where"),
+        ("= -4", "= 2000", "io.analog.handwheel.counts_per_click", "1000"),
+        ("= -4", "= 1.5", "io.analog.handwheel.counts_per_click", "whole"),
+        ("range = [0, 1.5]", "counts_per_click = 2", "io.analog.feed_pot.counts_per_click", "no clicks"),
+    ],
+)
+def test_counts_that_make_no_sense(old: str, new: str, path: str, expected: str) -> None:
+    assert_refused(changed(old, new, with_wheel()), path, expected)
+
+
+def test_switches_of_a_wheel_that_is_not_there() -> None:
+    text = changed("[io.in]", SWITCHES)
+    assert_refused(text, "io.in.wheel_x", "expected [io.analog] handwheel")
+
+
+def test_a_switch_that_selects_nothing() -> None:
+    assert_refused(
+        with_wheel('[io.in]\nwheel_y = { at = "401.6000.5.0" }'), "io.in.wheel_y", "one of wheel_enable"
+    )
+
+
+def test_a_controller_that_counts_nothing() -> None:
+    text = resources.machine_file("gt75-grblhal.toml") + '\n[io.analog]\nhandwheel = { at = "in.0" }\n'
+    assert_refused(text, "io.analog.handwheel", "no input that counts")
