@@ -27,22 +27,22 @@ MACHINE = (
     Field("lookahead_ms", _NUMBER, Unit.MILLISECONDS, 0.1, 10.0),
     Field("low_water_ms", _NUMBER, Unit.MILLISECONDS, 0.005, 2.0),
     Field("lease_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 0.5),
-    Field("setpoint_ms", _NUMBER, Unit.MILLISECONDS, 0.0001, 0.02),
+    Field("setpoint_ms", _NUMBER, Unit.MILLISECONDS, 0.0001, 0.02, default=0.001),
 )
 LIMITS = (
-    Field("max_feed", _NUMBER, Unit.FEED, 0.1, 1000.0),
-    Field("manual_rapid", _NUMBER, Unit.FEED, 0.1, 500.0),
-    Field("resolution", _NUMBER, Unit.LENGTH, 1e-5, 0.02),
-    Field("clearance", _NUMBER, Unit.LENGTH, 0.1, 100.0),
+    Field("max_feed", _NUMBER, Unit.FEED, 0.1, 1000.0, derived=True),
+    Field("manual_rapid", _NUMBER, Unit.FEED, 0.1, 500.0, derived=True),
+    Field("resolution", _NUMBER, Unit.LENGTH, 1e-5, 0.02, derived=True),
+    Field("clearance", _NUMBER, Unit.LENGTH, 0.1, 100.0, default=31.75),
 )
 SLIDE = (
     Field("travel", Kind.PAIR, Unit.LENGTH, -5000.0, 5000.0),
     Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0),
     Field("amax", _NUMBER, Unit.ACCEL, 10.0, 30000.0),
     Field("count", _NUMBER, Unit.LENGTH, 1e-5, 0.02),
-    Field("fe_window", _NUMBER, Unit.LENGTH, 0.005, 10.0),
+    Field("fe_window", _NUMBER, Unit.LENGTH, 0.005, 10.0, derived=True),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
-    Field("in_pos", _NUMBER, Unit.LENGTH, 1e-5, 0.5),
+    Field("in_pos", _NUMBER, Unit.LENGTH, 1e-5, 0.5, derived=True),
     Field("absolute", _FLAG, default=False),
 )
 _METHOD = Field("method", _WHOLE, low=-128, high=37, default=0.0)  # of CiA 402; the simulation needs none
@@ -61,13 +61,13 @@ ROTARY_HOME = (
     Field("offset", _NUMBER, Unit.DEGREES, -360.0, 360.0, default=0.0),
 )
 C_AXIS = (
-    Field("enabled", _FLAG),
-    Field("vmax", _NUMBER, Unit.TURNS_PER_MINUTE, 6.0, 6000.0),
-    Field("amax", _NUMBER, Unit.TURNS_PER_MINUTE_SECOND, 36.0, 360000.0),
-    Field("count", _NUMBER, Unit.DEGREES, 0.0001, 1.0),
-    Field("fe_window", _NUMBER, Unit.DEGREES, 0.05, 90.0),
+    Field("enabled", _FLAG, default=False),
+    Field("vmax", _NUMBER, Unit.TURNS_PER_MINUTE, 6.0, 6000.0, derived=True),
+    Field("amax", _NUMBER, Unit.TURNS_PER_MINUTE_SECOND, 36.0, 360000.0, derived=True),
+    Field("count", _NUMBER, Unit.DEGREES, 0.0001, 1.0, derived=True),
+    Field("fe_window", _NUMBER, Unit.DEGREES, 0.05, 90.0, default=5.0),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
-    Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0),
+    Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0, derived=True),
     Field("absolute", _FLAG, default=False),
     Field("modulo", _FLAG, default=True),  # SINUMERIK: 0..<360; false: -360..+360
     Field("own_drive", _FLAG, default=False),  # false: the spindle is C, and cannot turn meanwhile
@@ -77,16 +77,16 @@ ROTARY_AXIS = (
     Field("vmax", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 36000.0),
     Field("amax", _NUMBER, Unit.DEGREES_PER_SECOND_SQUARED, 1.0, 360000.0),
     Field("count", _NUMBER, Unit.DEGREES, 1e-6, 1.0),
-    Field("fe_window", _NUMBER, Unit.DEGREES, 0.001, 90.0),
+    Field("fe_window", _NUMBER, Unit.DEGREES, 0.001, 90.0, derived=True),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
-    Field("in_pos", _NUMBER, Unit.DEGREES, 1e-6, 5.0),
+    Field("in_pos", _NUMBER, Unit.DEGREES, 1e-6, 5.0, derived=True),
     Field("absolute", _FLAG, default=False),
 )
 C_OPTION = (Field("feedback", _FLAG, default=False),)
 SPINDLE = (
     Field("rpm", Kind.PAIR, Unit.RPM, 1.0, 20000.0),
     Field("accel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0),
-    Field("decel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0),
+    Field("decel_rpm_s", _NUMBER, Unit.RPM_PER_SECOND, 10.0, 50000.0, derived=True),
     Field("at_speed_pct", _NUMBER, Unit.PERCENT, 0.005, 0.25),
     Field("at_speed_s", _NUMBER, Unit.SECONDS, 0.05, 5.0),
     Field("timeout_s", _NUMBER, Unit.SECONDS, 0.5, 60.0),
@@ -96,8 +96,8 @@ SPINDLE = (
     Field("driver", _CHOICE, choices=SPINDLE_DRIVERS, default="sim"),
 )
 COLLET = (
-    Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0),
-    Field("close_s", _NUMBER, Unit.SECONDS, 0.01, 10.0),
+    Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0, default=0.5),
+    Field("close_s", _NUMBER, Unit.SECONDS, 0.01, 10.0, derived=True),
 )
 INTERLOCKS = (
     Field("spindle_with_collet_open", _FLAG, default=False),
@@ -146,7 +146,7 @@ TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
         Field("close_s", _NUMBER, Unit.SECONDS, 0.0, 10.0, default=0.0),
     ),
 }
-MAY_BE_MISSING = ("c_axis", "interlocks", "m_codes", "sim")
+MAY_BE_MISSING = ("limits", "collet", "c_axis", "interlocks", "m_codes", "sim")
 
 # M codes with a meaning of their own; the machine file cannot assign them.
 FIXED_M_CODES = frozenset((0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)))

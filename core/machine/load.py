@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import resources
-from core.machine import fields, rules, signals
+from core.machine import defaults, fields, rules, signals
 from core.machine.errors import Finding, MachineFileError
 from core.machine.hardware import rules as hardware_rules
 from core.machine.hardware.build import hardware_of
@@ -71,16 +71,18 @@ def parse_machine(text: str, source: str) -> Machine:
     except tomllib.TOMLDecodeError as error:
         raise MachineFileError([Finding("TOML", "", str(error))], source) from error
     reading = Reading(data)
+    untold = [*defaults.fill(reading)]
     hardware = HardwareReading(data, reading.values)
     rotary = [name for name in _axis_names(reading) if name not in fields.SLIDES[reading.kind]]
     kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
     findings = [
         *reading.findings,
+        *untold,
         *hardware.findings,
         *kinematics.findings,
         *rules.broken(reading.values),
         *signals.broken(reading),
-        *hardware_rules.broken(hardware, _axis_names(reading), signals.by_terminal(reading)),
+        *hardware_rules.broken(hardware, _axis_names(reading), signals.terminals(reading)),
     ]
     if findings:
         raise MachineFileError(findings, source)
@@ -125,7 +127,7 @@ def _axis_names(reading: Reading) -> tuple[str, ...]:
     rotary = ("C",) if reading.kind == "lathe" else fields.ROTARY[reading.kind]
     return (
         *fields.SLIDES[reading.kind],
-        *(name for name in rotary if reading.values.has(f"axis.{name}.vmax")),
+        *(name for name in rotary if reading.values.said(f"axis.{name}.vmax")),
     )
 
 

@@ -64,7 +64,7 @@ class Reading:
         for name in fields.SLIDES[self.kind]:
             self._homed(axes.get(name), f"axis.{name}", fields.SLIDE, fields.HOME)
         if lathe:
-            self._keys(axes.get("C"), "axis.C", fields.C_AXIS)
+            self._keys(axes.get("C", {}), "axis.C", fields.C_AXIS)  # most have none: no table, no C
         for name in rotary:
             if name in axes:
                 self._homed(axes[name], f"axis.{name}", fields.ROTARY_AXIS, fields.ROTARY_HOME)

@@ -35,7 +35,10 @@ _NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE))
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One key: kind, unit, range in the model's unit, and the default; None: the file must say it."""
+    """One key: kind, unit, range in the model's unit, and the default; None: the file must say it.
+
+    ``derived``: what the file leaves out follows from its other values (``defaults.py``).
+    """
 
     key: str
     kind: Kind
@@ -44,6 +47,7 @@ class Field:
     high: float = 0.0
     default: Value | None = None
     choices: tuple[str | bool, ...] = ()
+    derived: bool = False
 
 
 class Values:
@@ -52,9 +56,15 @@ class Values:
     def __init__(self, inch: bool | None) -> None:
         self.inch = inch
         self.found: dict[str, Value] = {}
+        self.wrong: set[str] = set()  # refused or missing: it draws no second finding elsewhere
+        self.left_out: dict[str, Field] = {}  # derived values that the file does not say
 
     def has(self, *paths: str) -> bool:
         return all(path in self.found for path in paths)
+
+    def said(self, path: str) -> bool:
+        """Whether the file says it, rightly or wrongly."""
+        return path in self.found or path in self.wrong
 
     def number(self, path: str) -> float:
         value = self.found[path]
@@ -120,6 +130,7 @@ def read_table(
         if raw is None:
             findings += _default(field, place, values)
         elif problem := _problem(raw, field, values.inch):
+            values.wrong.add(place)
             findings.append(Finding(place, written(raw), f"expected {problem}"))
         elif values.inch is not None or field.unit not in LENGTHS:
             values.found[place] = _converted(raw, field, bool(values.inch))
@@ -127,10 +138,19 @@ def read_table(
 
 
 def _default(field: Field, place: str, values: Values) -> list[Finding]:
+    if field.derived:
+        values.left_out[place] = field
+        return []
     if field.default is None:
-        return [Finding(place, "", f"missing; expected {_expected(field, values.inch)}")]
+        values.wrong.add(place)
+        return [missing(place, field, values.inch)]
     values.found[place] = field.default
     return []
+
+
+def missing(place: str, field: Field, inch: bool | None) -> Finding:
+    """The finding about a value that the file has to say and does not."""
+    return Finding(place, "", f"missing; expected {_expected(field, inch)}")
 
 
 def _number(raw: object) -> TypeGuard[int | float]:

@@ -17,34 +17,16 @@ _NUMBERS = frozenset(str(number) for number in range(100))
 
 def broken(reading: Reading) -> Iterator[Finding]:
     """Every finding about signals."""
-    yield from _shared_terminals(reading)
     yield from _needed(reading)
     yield from _m_codes(reading)
     yield from _never_off(reading)
 
 
-def by_terminal(reading: Reading) -> dict[str, str]:
-    """The path of the signal on each terminal; the first where two share one."""
+def terminals(reading: Reading) -> dict[str, str]:
+    """The terminal of each signal, by the signal's path."""
     paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
     values = reading.values
-    found: dict[str, str] = {}
-    for path in paths:
-        if values.has(f"{path}.at"):
-            found.setdefault(values.text(f"{path}.at"), path)
-    return found
-
-
-def _shared_terminals(reading: Reading) -> Iterator[Finding]:
-    taken: dict[str, str] = {}
-    names = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
-    for path in names:
-        if not reading.values.has(f"{path}.at"):
-            continue
-        terminal = reading.values.text(f"{path}.at")
-        first = taken.setdefault(terminal, path)
-        if first != path:
-            expected = f"expected a terminal of its own; {first} is on this one"
-            yield Finding(f"{path}.at", written(terminal), expected)
+    return {path: values.text(f"{path}.at") for path in paths if values.has(f"{path}.at")}
 
 
 def _needed(reading: Reading) -> Iterator[Finding]:
@@ -90,6 +72,8 @@ def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
 
 def _never_off(reading: Reading) -> Iterator[Finding]:
     """An output that some code switches on must have one that switches it off; M12 closes the collet."""
+    if any(path.startswith("m_codes.") for path in reading.values.wrong):
+        return  # it may be the one that is wrong
     codes = list(enabled_codes(reading))
     off = {output for _, output, on in codes if not on} | set(NEEDED_OUTPUTS)
     for code, output, on in codes:

@@ -131,10 +131,22 @@ def test_addresses_of_terminals() -> None:
         ('at = "401.6200.1.0"', 'at = "io2.6200.1.0"', "io.out.coolant.at", "[canopen.nodes]: io"),
         ('at = "401.6200.1.0"', 'at = "X.60FD.0.1"', "io.out.coolant.at", "inputs only"),
         ('at = "401.6401.1"', 'at = "401.6401.1.3"', "io.analog.feed_pot.at", '"401.6401.1"'),
-        ('at = "401.6401.1"', 'at = "401.6401.2"', "io.analog.spindle_pot.at", "feed_pot is here"),
+        ('at = "401.6401.1"', 'at = "401.6401.2"', "io.analog.spindle_pot.at", "feed_pot is on this one"),
         ('switch = "spindle_auto"', 'switch = "auto"', "io.analog.spindle_pot.switch", "[io.in]"),
         ('safe = "keep"', 'safe = "keep", refresh_ms = 300', "io.out.collet.refresh_ms", "safe = false"),
         ('1.0", safe = false', '1.0", safe = false, refresh_ms = 3', "io.out.coolant.refresh_ms", "50"),
+        # bits 0 to 6 of the first byte have their inputs; without spindle_auto bit 6 is free
+        (
+            'spindle_auto = { at = "401.6000.1.6" }',
+            "",
+            "io.analog.spindle_pot.switch",
+            'add there the line: spindle_auto = { at = "401.6000.1.6" }',
+        ),
+        ('at = "401.6200.1.1"', 'at = "io.6200.1.0"', "io.out.collet.at", "coolant is on this one"),
+        ('at = "401.6000.1.2"', 'at = "401.6000.01.1"', "io.in.hold.at", "io.in.start is on this one"),
+        # X: -4 in and 4 in of counts of .00005 in are -80000 and 80000
+        ("all = {", 'X = { "607D:1" = -79999 }\nall = {', 'canopen.sdo.X."607D:1"', "needs -80000 counts"),
+        ("all = {", 'X = { "607D:2" = 79999 }\nall = {', 'canopen.sdo.X."607D:2"', "needs 80000 counts"),
         ("range = [0, 1.5]", "range = [0, 3]", "io.analog.feed_pot.range", "0…1.5"),
         ("spindle_pot = {", "pot = {", "io.analog.pot", "unknown key"),
         ("method = 1,", "", "axis.X.home.method", "limit switch"),
@@ -161,6 +173,25 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
         ("[sim]\n", "[sim]\nfaults = 3\n", "sim.faults", "a list of tables"),
         ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { 13 = 1 }\n[sim]\n', "grblhal.settings.13", "mm"),
         ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { a = 1 }\n[sim]\n', "grblhal.settings.a", "$13"),
+        # travel 8 in = 203.2 mm, 300 in/min = 7620 mm/min, 120 in/s² = 3048 mm/s²
+        (
+            "[sim]\n",
+            '[grblhal]\nport = "p"\nsettings = { 130 = 203 }\n[sim]\n',
+            "grblhal.settings.130",
+            "203.2",
+        ),
+        (
+            "[sim]\n",
+            '[grblhal]\nport = "p"\nsettings = { 112 = 7000 }\n[sim]\n',
+            "grblhal.settings.112",
+            "7620",
+        ),
+        (
+            "[sim]\n",
+            '[grblhal]\nport = "p"\nsettings = { 120 = 3000 }\n[sim]\n',
+            "grblhal.settings.120",
+            "3048",
+        ),
         ("[sim]\n", '[dnc]\nport = "p"\nbits = 6\n[sim]\n', "dnc.bits", "7…8"),
     ],
 )

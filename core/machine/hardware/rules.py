@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from core.machine.errors import Finding
+from core.machine.hardware import drive_limits, wiring
 from core.machine.hardware.fields import AXIS_FAULTS
 from core.machine.hardware.reading import HardwareReading
 from core.machine.hardware.terminals import on_the_bus
-from core.machine.schema import Values, written
 from core.machine.hardware.wheel import broken as wrong_wheel
+from core.machine.schema import Values, written
 
 RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
 _RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
@@ -17,18 +18,19 @@ _WATCH = 0x1016
 _SPINDLE, _DRIVE, _MODULE = "spindle", 402, 401
 
 
-def broken(reading: HardwareReading, axes: tuple[str, ...], signals: dict[str, str]) -> Iterator[Finding]:
-    """Every finding. ``axes`` are the machine's, ``signals`` its inputs and outputs by terminal."""
+def broken(reading: HardwareReading, axes: tuple[str, ...], signals: Mapping[str, str]) -> Iterator[Finding]:
+    """Every finding. ``axes`` are the machine's, ``signals`` the terminals of its inputs and outputs."""
     yield from _backend(reading)
     yield from _spindle(reading)
-    yield from _pots(reading, signals)
+    yield from wiring.shared(reading, signals)
+    yield from wiring.pots(reading, signals)
     yield from _faults(reading, axes)
     yield from _renewed(reading.values, signals)
     yield from _ports(reading.values)
-    if "canopen" in reading.tables:
-        yield from _bus_times(reading.values)
     yield from wrong_wheel(reading, axes)
     yield from drive_limits.outside(reading, axes)
+    if "canopen" in reading.tables:
+        yield from _bus_times(reading.values)
         yield from _nodes(reading, axes)
         yield from _heartbeat(reading)
     if _is(reading.values, "machine.backend", "canopen") and "canopen" in reading.tables:
@@ -73,25 +75,6 @@ def _spindle(reading: HardwareReading) -> Iterator[Finding]:
         yield Finding("spindle.vfd", "", 'missing; spindle.driver = "vfd" needs it')
 
 
-def _pots(reading: HardwareReading, signals: dict[str, str]) -> Iterator[Finding]:
-    inputs = {path.removeprefix("io.in.") for path in signals.values() if path.startswith("io.in.")}
-    taken = dict(signals)
-    for name in reading.analog:
-        path = f"io.analog.{name}"
-        if not reading.values.has(f"{path}.at", f"{path}.switch", f"{path}.range"):
-            continue
-        switch, terminal = reading.values.text(f"{path}.switch"), reading.values.text(f"{path}.at")
-        if switch and switch not in inputs:
-            yield Finding(f"{path}.switch", written(switch), "expected an input of [io.in]")
-        first = taken.setdefault(terminal, path)
-        if first != path:
-            yield Finding(f"{path}.at", written(terminal), f"expected a terminal of its own; {first} is here")
-        top = {"feed_pot": 1.5, "spindle_pot": 1.0}.get(name)
-        low, high = reading.values.pair(f"{path}.range")
-        if top is not None and not 0.0 <= low < high <= top:
-            yield Finding(f"{path}.range", f"[{low:g}, {high:g}]", f"expected fractions within 0…{top:g}")
-
-
 def _faults(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
     for path in reading.faults:
         if not reading.values.has(f"{path}.what", f"{path}.axis"):
@@ -105,8 +88,8 @@ def _faults(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding
             yield Finding(f"{path}.axis", written(axis), f"{what} happens to no axis; take it out")
 
 
-def _renewed(values: Values, signals: dict[str, str]) -> Iterator[Finding]:
-    for path in signals.values():
+def _renewed(values: Values, signals: Mapping[str, str]) -> Iterator[Finding]:
+    for path in signals:
         wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
         if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
             expected = "an output that falls when nobody renews it needs safe = false"
@@ -161,7 +144,7 @@ def _nodes(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]
 def _drives(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
     values = reading.values
     for axis in axes:
-        if axis == "C" and values.has("axis.C.enabled") and not values.flag("axis.C.enabled"):
+        if axis == "C" and not (values.has("axis.C.enabled") and values.flag("axis.C.enabled")):
             continue
         path = f"axis.{axis}"
         if axis not in reading.nodes:

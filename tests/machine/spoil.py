@@ -1,0 +1,75 @@
+"""Machine files with one thing wrong: written out again from their values, key by key."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import resources
+
+SPEC = Path(__file__).parents[2].parent / "shared" / "spec" / "drivers.md"
+Table = dict[str, object]
+Place = tuple[str | int, ...]
+
+
+def spec_text() -> str:
+    """The example of section 9; skips, saying so, where the specification is absent."""
+    if not SPEC.exists():
+        pytest.skip(f"the specification is not here: {SPEC}")
+    section = SPEC.read_text(encoding="utf-8").partition("## 9. Machine file")[2]
+    return section.partition("```toml\n")[2].partition("```")[0]
+
+
+def sample(name: str) -> Table:
+    """The values of a shipped file, or of the specification's example."""
+    return tomllib.loads(spec_text() if name == "spec" else resources.machine_file(f"{name}.toml"))
+
+
+def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
+    """Every value that is no table, with where it is; lists of numbers are values."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from leaves(inner, (*place, key))
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for number, inner in enumerate(value):
+            yield from leaves(inner, (*place, number))
+    else:
+        yield place, value
+
+
+def with_value(data: Table, place: Place, value: object) -> str:
+    """The file's text with one value changed."""
+    spoilt = copy.deepcopy(data)
+    inner: object = spoilt
+    for step in place[:-1]:
+        inner = inner[step]  # type: ignore[index]
+    inner[place[-1]] = value  # type: ignore[index]
+    return "".join(f"{_key(key)} = {_toml(part)}\n" for key, part in spoilt.items())
+
+
+def path_of(place: Place) -> str:
+    """As a finding names it: list entries count from 1, addresses of objects stand in quotes."""
+    steps = [str(step + 1) if isinstance(step, int) else step for step in place]
+    quoted = steps[:2] == ["canopen", "sdo"] and len(steps) == 4
+    return ".".join([*steps[:-1], f'"{steps[-1]}"' if quoted else steps[-1]])
+
+
+def _key(key: str) -> str:
+    return '"' + key + '"'
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\r", "\\r").replace("\n", "\\n")
+        return f'"{escaped}"'
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(key)} = {_toml(part)}" for key, part in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(_toml(part) for part in value) + "]"
+    return str(value)

@@ -1,0 +1,123 @@
+"""The example of the specification as it stands, and what stands in for each value that it leaves out."""
+
+from __future__ import annotations
+
+import pytest
+
+import resources
+from core.machine.errors import Finding
+from core.machine.load import MachineFileError, load_machine, parse_machine
+from tests.machine.spoil import spec_text
+
+
+def findings(text: str) -> list[Finding]:
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "test.toml")
+    return list(caught.value.errors)
+
+
+def without(*lines: str) -> str:
+    """The shipped file less these lines, which must be there."""
+    text = resources.machine_file("gt75.toml")
+    for line in lines:
+        assert line in text, line
+        text = text.replace(line, "", 1)
+    return text
+
+
+def test_the_example_of_the_specification_loads() -> None:
+    machine = parse_machine(spec_text(), "spec")
+    x, z, c = machine.axes
+    assert x.travel == pytest.approx((-2.54, 152.4))
+    assert (x.amax, z.amax) == pytest.approx((4064.0, 4064.0))  # 160 in/s²
+    assert machine.timing.setpoint == 0.001
+    assert z.following_window == x.following_window == pytest.approx(0.04 * 25.4)
+    assert z.in_position == x.in_position == pytest.approx(0.0002 * 25.4)
+    assert not machine.c_enabled
+    assert (c.amax, c.following_window, c.in_position) == pytest.approx((3600.0, 5.0, 0.1))  # 600 rpm/s
+    assert machine.spindle.decel == 1500
+    assert (machine.max_feed, machine.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
+    assert (machine.resolution, machine.clearance) == pytest.approx((0.00127, 31.75))
+    assert (machine.timing.collet_open, machine.timing.collet_close) == (0.5, 0.5)
+    assert machine.hardware.analog["spindle_pot"].switch == "spindle_auto"
+
+
+def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None:
+    text = spec_text().replace('backend = "sim"', 'backend = "canopen"', 1)
+    told = {finding.path: finding.expected for finding in findings(text)}
+    # bits 0 to 5 of the module's first byte are taken by estop … end_of_bar
+    assert told["io.analog.spindle_pot.switch"].endswith('spindle_auto = { at = "401.6000.1.6" }')
+    assert "100 or more" in told["machine.commit_ms"]  # three records of 20 ms and a restart of 40 ms
+    assert told["spindle.driver"].startswith("expected cia402 or vfd")
+
+
+def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:
+    text = without().replace("[sim]\n", '[io.analog]\nspindle_pot = { at = "A", switch = "auto" }\n[sim]\n')
+    (found,) = findings(text)
+    assert found.path == "io.analog.spindle_pot.switch"
+    assert 'auto = { at = "IN-…" }' in found.expected
+    assert parse_machine(text.replace('"auto"', '"spindle_auto"'), "t").hardware.analog["spindle_pot"]
+
+
+def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() -> None:
+    text = without("fe_window = 0.08", "in_pos = 0.0002", "[limits]", "max_feed = 300", "manual_rapid = 100")
+    text = (
+        text.replace("resolution = 0.00005\n", "").replace("fe_window = 0.08", "").replace("clearance =", "#")
+    )
+    machine = parse_machine(text.replace("in_pos = 0.0002", ""), "t")
+    for slide in machine.axes[:2]:
+        # Position loop of 40 Hz, damping 1: lag 2 / (2 · 3.1416 · 40) s = 7.958 ms, at 127 mm/s, twice
+        assert slide.following_window == pytest.approx(2.0213, abs=1e-4)
+        assert slide.in_position == pytest.approx(4 * 0.00127)
+    assert machine.max_feed == pytest.approx(127.0)
+
+
+def test_a_slow_slide_limits_feed_and_hand_rapid() -> None:
+    text = without("[limits]", "max_feed = 300", "manual_rapid = 100", "resolution = 0.00005").replace(
+        "vmax = 300", "vmax = 60", 1
+    )
+    machine = parse_machine(text.replace("clearance =", "#"), "t")
+    assert machine.max_feed == machine.manual_rapid == pytest.approx(25.4)  # 60 in/min
+
+
+def test_a_lathe_without_a_c_axis_needs_no_table_for_it() -> None:
+    text = without()
+    start, end = text.index("[axis.C]"), text.index("[c_axis]")
+    machine = parse_machine(text[:start] + text[end:], "t")
+    assert not machine.c_enabled
+    assert [axis.name for axis in machine.axes] == ["X", "Z", "C"]
+
+
+def test_a_c_axis_that_is_used_says_its_speed_and_count() -> None:
+    found = findings(without("vmax = 200", "count = 0.02"))
+    assert [finding.path for finding in found] == ["axis.C.vmax", "axis.C.count"]
+
+
+def test_without_a_switch_the_collet_says_how_long_it_takes() -> None:
+    text = without("close_s = 0.30", 'collet_closed = { at = "IN-5" }')
+    text = text.replace("spindle_with_collet_open = false", "spindle_with_collet_open = true")
+    assert [finding.path for finding in findings(text)] == ["collet.close_s"]
+
+
+@pytest.mark.parametrize(
+    ("line", "path"),
+    [
+        ("vmax = 300", "axis.X.vmax"),
+        ("amax = 120", "axis.X.amax"),
+        ("count = 0.00005", "axis.X.count"),
+        ("travel = [-4.0, 4.0]", "axis.X.travel"),
+        ("commit_ms = 30", "machine.commit_ms"),
+        ("lease_ms = 200", "machine.lease_ms"),
+        ("rpm = [50, 3500]", "spindle.rpm"),
+        ("accel_rpm_s = 1500", "spindle.accel_rpm_s"),
+        ("encoder_ppr = 1024", "spindle.encoder_ppr"),
+        ('estop = { at = "IN-1", active = "low" }', "io.in.estop"),
+    ],
+)
+def test_what_has_no_safe_default_is_refused(line: str, path: str) -> None:
+    assert [finding.path for finding in findings(without(line))] == [path]
+
+
+def test_the_shipped_lathe_leaves_nothing_to_a_default() -> None:
+    machine = load_machine(None)
+    assert (machine.timing.collet_open, machine.spindle.decel) == (0.25, 2500)

@@ -1,0 +1,83 @@
+"""Every key of every sample spoilt, one at a time: refused under its own path, and never by a traceback."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.machine.load import MachineFileError, parse_machine
+from tests.machine.spoil import Place, leaves, path_of, sample, with_value
+
+SAMPLES = (
+    "spec",
+    "gt75",
+    "gt75-canopen",
+    "gt75-grblhal",
+    "gt75-vfd",
+    "ac-table-mill",
+    "sinumerik-modulo",
+)
+# What may be any text or any number is spoilt by its kind alone.
+NUMBERS: tuple[object, ...] = ("x", True, float("nan"), float("inf"), 10**400, [], {})
+FREE_NUMBERS = ("canopen.sdo", "grblhal.settings", "sim.seed")
+
+
+def wrong_values(path: str, value: object) -> list[object]:
+    if isinstance(value, bool):
+        return ["perhaps", [], {}] if path.endswith(".safe") else ["keep", 1, 0.0, [], {}]
+    if isinstance(value, int | float):
+        if path.startswith("grblhal.settings"):
+            return [True, [], {}]
+        return [*NUMBERS, *(() if path.startswith(FREE_NUMBERS) else (1e12, -1e12))]
+    if isinstance(value, list):
+        return ["x", 3, [1.0], [1, 2, 3, 4], [2.0, 1.0] if len(value) == 2 else ["a", 1, 2], {}]
+    texts = [5, [], {}] if path.endswith(".safe") else [5, True, [], {}]
+    return texts if path in {"spindle.driver", "dnc.wrap"} else [*texts, ""]
+
+
+def spoilt(name: str) -> list[tuple[Place, object]]:
+    return [
+        (place, wrong)
+        for place, value in leaves(sample(name))
+        if value != []
+        for wrong in wrong_values(path_of(place), value)
+    ]
+
+
+def paths_of(text: str, name: str) -> list[str]:
+    """Paths of all findings; none for a file that is accepted."""
+    try:
+        parse_machine(text, name)
+    except MachineFileError as error:
+        return [finding.path for finding in error.errors]
+    return []
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_a_sample_as_it_is_loads(name: str) -> None:
+    data = sample(name)
+    place = next(place for place, _ in leaves(data))
+    assert parse_machine(with_value(data, place, data["machine"]["name"]), name).axes  # type: ignore[index]
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_wrong_value_is_one_error_under_its_own_path(name: str) -> None:
+    """Only machine.kind, which decides what tables there are, draws further ones."""
+    data, trouble = sample(name), []
+    for place, wrong in spoilt(name):
+        path = path_of(place)
+        found = paths_of(with_value(data, place, wrong), name)
+        here = [each for each in found if each == path or each.startswith(f"{path}.")]
+        if not here or (len(here) < len(found) and path != "machine.kind"):
+            trouble.append((path, wrong, found))
+    assert not trouble
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_an_unknown_key_beside_every_key_is_named(name: str) -> None:
+    data = sample(name)
+    free = ("m_codes", "io.in", "io.out", "canopen.nodes", "canopen.sdo.all", "grblhal.settings")
+    for place, _ in leaves(data):
+        beside = (*place[:-1], "nobody_reads_this")
+        if len(place) == 1 or path_of(place[:-1]) in free:
+            continue
+        assert paths_of(with_value(data, beside, 1), name) == [path_of(beside)]
