@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
+import time
+from contextlib import suppress
 from typing import NamedTuple
 
 import serial
@@ -13,6 +15,7 @@ from drivers.marks import Unmarker
 from drivers.wire import LineSettings, WireError
 
 _POSIX = sys.platform != "win32"
+_ENDING, _GLANCE = 20, 0.05  # looks, s: a second for the last characters at 110 baud
 # termios' own error is no OSError; a TypeError is what pyserial makes of a port that was closed meanwhile.
 _FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
 if sys.platform != "win32":
@@ -131,12 +134,24 @@ class SerialWire:
             raise self._cut(error) from error
 
     def close(self) -> None:
-        """Let the port go; what was not sent is dropped, or a held line would keep us here."""
-        try:
-            self._port.reset_output_buffer()
+        """Let the port go; what the other side holds is dropped, or it would keep us here.
+
+        Only what is held: dropping also empties the transmitter of some UARTs, and of a pseudo terminal, and
+        with it the end of what was sent.
+        """
+        with suppress(*_FAILURES):  # a cable that has gone holds nothing
+            if not self._goes_out():
+                self._port.reset_output_buffer()
+        with suppress(*_FAILURES):
             self._port.close()
-        except _FAILURES:
-            return  # it has gone already
+
+    def _goes_out(self) -> bool:
+        """Whether the kernel has handed all of it to the line, within the time that takes."""
+        for _ in range(_ENDING):
+            if not (left := self._port.out_waiting):
+                return True
+            time.sleep(min(left * self.settings.character, _GLANCE))
+        return not self._port.out_waiting
 
     def _mark(self) -> None:
         """Damaged characters come as FF 00 and the character, FF as FF FF."""

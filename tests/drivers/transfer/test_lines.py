@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import select
-import threading
-import tty
-from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from pathlib import Path
 
 import pytest
 
-from app.cli.main import main
 from drivers.serial_wire import SerialWire
 from drivers.simulated import RealClock
 from drivers.transfer.incoming import Program
@@ -21,48 +14,11 @@ from drivers.transfer.session import CancelledError, Receiving, Sending
 from drivers.transfer.settings import TransferSettings
 from drivers.wire import LineSettings, WireError
 from tests.drivers.inverter.lines import WAIT, Pair, until
-from tests.drivers.ptys import open_pty
+from tests.drivers.transfer.far_end import FarEnd, feed
 
 TEXT = b"".join(b"N%d X1.2345 Z-.5\n" % n for n in range(400))
 
 LONG = TEXT * (400_000 // len(TEXT))  # more than a pseudo terminal holds: nobody reads, nobody is done
-
-
-class FarEnd:
-    """The other side by hand: what it has heard, and what it says."""
-
-    def __init__(self) -> None:
-        self.handle, self._slave = open_pty()
-        tty.setraw(self._slave)
-        self.port = os.ttyname(self._slave)
-        self.heard = bytearray()
-
-    def hear(self, limit: float = 0.05) -> bytes:
-        """What comes within the limit."""
-        ready, _, _ = select.select((self.handle,), (), (), limit)
-        data = os.read(self.handle, 4096) if ready else b""
-        self.heard += data
-        return data
-
-    def say(self, data: bytes) -> None:
-        os.write(self.handle, data)
-
-    def close(self) -> None:
-        for handle in (self.handle, self._slave):
-            os.close(handle)
-
-
-@pytest.fixture
-def far() -> Iterator[FarEnd]:
-    end = FarEnd()
-    yield end
-    end.close()
-
-
-@pytest.fixture
-def pool() -> Iterator[ThreadPoolExecutor]:
-    with ThreadPoolExecutor(2) as made:
-        yield made
 
 
 def sent(port: str, pool: ThreadPoolExecutor, flow: str = "xonxoff") -> tuple[Sending, bytes, Future[int]]:
@@ -136,70 +92,12 @@ def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool:
     assert future.result(WAIT).text == b"(\xff\xfe\x94)\nM30\n"
 
 
-def test_a_received_program_overwrites_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
-    target = tmp_path / "OLD.nc"
-    target.write_bytes(b"M02\n")
-    future = pool.submit(
-        main, ["serial", "receive", "--port", far.port, "--out", str(target), "--flow", "none"]
-    )
-    answer(far, future, b"%\nG90\nM30\n%\n")
-    assert future.result(WAIT) == 1
-    assert target.read_bytes() == b"M02\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["OLD.nc"]
-
-
-def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
-    target = tmp_path / "NEW.nc"
-    arguments = [
-        "serial",
-        "receive",
-        "--port",
-        far.port,
-        "--bits",
-        "7",
-        "--parity",
-        "E",
-        "--out",
-        str(target),
-    ]
-    future = pool.submit(main, arguments)
-    answer(far, future, b"\xa5\x0a\x31")  # a 1 without its parity bit
-    assert future.result(WAIT) == 1
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serial", "send", str(tmp_path / "none.nc"), "--port", "/dev/ttyNONE7"]) == 1
-    assert "CANNOT BE READ" in capsys.readouterr().err
-    program = tmp_path / "p.nc"
-    program.write_text("M30\n")
-    assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7"]) == 1
-    assert "/dev/ttyNONE7 cannot be opened: No such file" in capsys.readouterr().err
-    assert main(["serial", "send", str(program)]) == 2
-    assert "no port: say --port" in capsys.readouterr().err
-
-
-def test_ports_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serial", "ports"]) == 0
-    told = capsys.readouterr()
-    assert told.out or "no serial port" in told.err
-
-
-def feed(far: FarEnd, data: bytes) -> None:
-    """As fast as the pty takes it."""
-    at = 0
-    os.set_blocking(far.handle, False)
-    while at < len(data):
-        _, free, _ = select.select((), (far.handle,), (), WAIT)
-        assert free
-        at += os.write(far.handle, data[at : at + 512])
-
-
-def answer(far: FarEnd, future: Future[int], data: bytes) -> None:
-    """Say it again until the command, which opens its port in its own time, has come to its end."""
-    tick = threading.Event()
-    for _ in range(int(WAIT / 0.1)):
-        if future.done():
-            return
-        far.say(data)
-        tick.wait(0.1)
+def test_the_end_of_what_was_sent_is_not_dropped_with_the_port(far: FarEnd) -> None:
+    """Closing at once after the last byte, a hundred times: the far end has all of it each time."""
+    for _ in range(100):
+        wire = SerialWire(LineSettings(far.port))
+        assert wire.offer(b"%\n") == 2
+        wire.close()
+        far.heard.clear()
+        until(lambda: far.hear() != b"" and len(far.heard) >= 2, "the last %")
+        assert bytes(far.heard) == b"%\n"

@@ -1,0 +1,80 @@
+"""``turndesk serial`` at one end of a line, or at both."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from tests.drivers.inverter.lines import WAIT, Pair
+from tests.drivers.transfer.far_end import FarEnd, answer
+
+
+def test_from_one_command_to_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two of us on the two ends of a cable."""
+    source, target = tmp_path / "PIN.nc", tmp_path / "in" / "PIN.nc"
+    source.write_bytes(b"%\nG90G72\nG00X1.Z.1\nM30\n%\n")
+    with Pair() as cable, ThreadPoolExecutor(1) as pool:
+        receive = ["serial", "receive", "--port", cable.far, "--out", str(target)]
+        future = pool.submit(main, receive)
+        # DC1 is the receiver's first word: only then the sender begins.
+        assert main(["serial", "send", str(source), "--port", cable.near, "--wait", "--eol", "cr"]) == 0
+        status = future.result(WAIT)
+    told = capsys.readouterr()
+    text = target.read_bytes()
+    assert text == b"G90G72\nG00X1.Z.1\nM30\n"
+    assert sha256(text).hexdigest() in told.out
+    assert "3 lines, whole" in told.out
+    assert status == 0, told.err
+
+
+def test_a_received_program_overwrites_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
+    target = tmp_path / "OLD.nc"
+    target.write_bytes(b"M02\n")
+    future = pool.submit(
+        main, ["serial", "receive", "--port", far.port, "--out", str(target), "--flow", "none"]
+    )
+    answer(far, future, b"%\nG90\nM30\n%\n")
+    assert future.result(WAIT) == 1
+    assert target.read_bytes() == b"M02\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["OLD.nc"]
+
+
+def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
+    target = tmp_path / "NEW.nc"
+    arguments = [
+        "serial",
+        "receive",
+        "--port",
+        far.port,
+        "--bits",
+        "7",
+        "--parity",
+        "E",
+        "--out",
+        str(target),
+    ]
+    future = pool.submit(main, arguments)
+    answer(far, future, b"\xa5\x0a\x31")  # a 1 without its parity bit
+    assert future.result(WAIT) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serial", "send", str(tmp_path / "none.nc"), "--port", "/dev/ttyNONE7"]) == 1
+    assert "CANNOT BE READ" in capsys.readouterr().err
+    program = tmp_path / "p.nc"
+    program.write_text("M30\n")
+    assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7"]) == 1
+    assert "/dev/ttyNONE7 cannot be opened: No such file" in capsys.readouterr().err
+    assert main(["serial", "send", str(program)]) == 2
+    assert "no port: say --port" in capsys.readouterr().err
+
+
+def test_ports_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serial", "ports"]) == 0
+    told = capsys.readouterr()
+    assert told.out or "no serial port" in told.err
