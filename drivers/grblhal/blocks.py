@@ -28,6 +28,7 @@ class GrblBlocks:
         self._c = controller
         self.overrides = Overrides(lambda data: controller.realtime(*data), controller.fail)
         self._jogs = Jogs(controller)
+        self.powered = False  # leave to move, given and taken by ``GrblAxes``
         self._last = 0  # ticket
         self._done = 0
         self._active = 0
@@ -89,8 +90,8 @@ class GrblBlocks:
         c = self._c
         if c.fault:
             return c.fault
-        if c.alarm == codes.HOMING_REQUIRED:
-            return "" if c.busy else "the controller has to be homed first"
+        if c.alarm == codes.HOMING_REQUIRED and not c.busy:
+            return "the controller has to be homed first"
         if c.busy or not c.ready:
             return "the controller's modes are being verified"
         return ""
@@ -159,12 +160,18 @@ class GrblBlocks:
         if not steady:
             self.overrides.correct(c.overrides, c.clock.now())
 
+    def demand_power(self) -> None:
+        """Raises DriverError while there is no leave to move."""
+        if not self.powered:
+            raise DriverError("the drives are off; switch them on first")
+
     # --- inside -------------------------------------------------------------------------------------------
 
     def _demand_ready(self) -> None:
         why = self.hindrance()
         if why:
             raise DriverError(f"the controller takes no block: {why}")
+        self.demand_power()
 
     def _dead(self) -> bool:
         """An alarm has stopped everything, or the last report says that nothing moves."""

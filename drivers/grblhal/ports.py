@@ -24,7 +24,6 @@ class GrblAxes:
         self.axes = tuple(axis.name for axis in controller.config.axes)
         self._known = {axis.name: axis.absolute or not axis.wired for axis in controller.config.axes}
         self._homing = ""
-        self._power = False
 
     def now(self) -> float:
         """The host's clock: the controller has none to ask for."""
@@ -56,7 +55,7 @@ class GrblAxes:
             demand=places,
             actual=places,
             following_error=(0.0,) * len(self.axes),
-            enabled=self._power and not c.fault,
+            enabled=self._blocks.powered and not c.fault,
             homed=tuple(self._is_known(name) for name in self.axes),
             moving=not self._blocks.state().resting,
             fault=c.fault,
@@ -66,11 +65,11 @@ class GrblAxes:
         """The control's own leave to move; raises DriverError while a fault stands."""
         if on and self._c.fault:
             raise DriverError(f"the controller stays locked: {self._c.fault}; Reset first")
-        self._power = on
+        self._blocks.powered = on
 
     def stop(self, how: Stop) -> None:
         """The controller's own stop; without power it takes nothing more."""
-        self._power = self._power and how is Stop.RAMP_HOLD
+        self._blocks.powered = self._blocks.powered and how is Stop.RAMP_HOLD
         if self._c.alarm == 0:
             self._blocks.abort()
 
@@ -79,6 +78,7 @@ class GrblAxes:
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].wired:
             raise DriverError(f"the controller has no axis {axis!r} to home")
+        self._blocks.demand_power()
         if self._blocks.hindrance() and self._c.alarm == 0:
             raise DriverError(f"{axis} cannot home: {self._blocks.hindrance()}")
         self._known[axis], self._homing = False, axis
@@ -89,6 +89,7 @@ class GrblAxes:
         """The operator has seen it: reset, unlock, verify. Raises DriverError when the wire is gone."""
         if self._c.lost:
             raise DriverError(f"{self._c.fault}; start the control again")
+        self._blocks.powered = False
         if not self._c.trusted:
             self._known = {axis.name: not axis.wired for axis in self._c.config.axes}
         if self._c.fault:
