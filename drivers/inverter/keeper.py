@@ -15,22 +15,22 @@ class Keeper:
     def __init__(self, attendant: Attendant) -> None:
         self._attendant = attendant
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._keep, name="inverter", daemon=True)
+        self.thread = threading.Thread(target=self._keep, name="inverter", daemon=True)
 
     def start(self) -> None:
         """Once."""
-        self._thread.start()
+        self.thread.start()
 
     @property
     def alive(self) -> bool:
         """Whether it still goes round."""
-        return self._thread.is_alive()
+        return self.thread.is_alive()
 
     def close(self) -> None:
         """The last word on the line is a stop."""
         self._ended.set()
-        if self._thread.is_alive():
-            self._thread.join(_END)
+        if self.thread.is_alive():
+            self.thread.join(_END)
         self._attendant.close()
 
     def _keep(self) -> None:

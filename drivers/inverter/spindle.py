@@ -88,8 +88,13 @@ class InverterSpindle:
         return self._encoder.angle() if self._encoder is not None else None
 
     def fault(self) -> str:
-        """What is wrong, with the word for the operator; empty when well."""
+        """What is wrong, with the word for the operator; empty when well.
+
+        It is asked all the time: so an E-stop that is seen ends what was commanded before its release.
+        """
         attendant = self._attendant
+        if self._estop():
+            attendant.want = 0.0
         if attendant.trouble:
             return attendant.trouble
         if not self._alive():

@@ -1,4 +1,4 @@
-"""Every test of this folder runs once for each driver."""
+"""Every test of this folder runs once for each driver, those of faults once for each driver and fault."""
 
 from __future__ import annotations
 
@@ -6,14 +6,19 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.drivers.contract.moves import start
-from tests.drivers.contract.rigs import FAULTS, RIGS, Rig
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import Rig
+from tests.drivers.contract.rigs import RIGS, make
+
+Broken = tuple[Rig, str]
+_FAULTS = [(name, fault) for name, kind in RIGS.items() for fault in kind.faults]
+_HARMLESS = [(name, what) for name, kind in RIGS.items() for what in kind.harmless]
 
 
 @pytest.fixture(params=list(RIGS))
 def rig(request: pytest.FixtureRequest) -> Iterator[Rig]:
-    """A machine behind one backend, drives off."""
-    made: Rig = RIGS[request.param]()
+    """A machine behind one driver, drives off."""
+    made = make(request.param)
     yield made
     made.close()
 
@@ -22,27 +27,50 @@ def rig(request: pytest.FixtureRequest) -> Iterator[Rig]:
 def powered(rig: Rig) -> Rig:
     """The same with its drives on."""
     rig.ports.axes.enable(True)
+    rig.run(0.2)
     return rig
 
 
 @pytest.fixture
-def moving(powered: Rig) -> Rig:
+def moving(rig: Rig) -> Rig:
     """X goes at 120 mm/s, with 0.4 s of way before it."""
-    return _moving(powered)
+    rig.under_way()
+    return rig
 
 
-@pytest.fixture(params=FAULTS, ids="-".join)
-def broken(request: pytest.FixtureRequest) -> Iterator[tuple[Rig, str]]:
-    """A backend whose X moves, and a fault that its wires can have."""
-    name, fault = request.param
-    made: Rig = RIGS[name]()
-    made.ports.axes.enable(True)
-    yield _moving(made), fault
+@pytest.fixture(params=list(RIGS))
+def lost(request: pytest.FixtureRequest) -> Iterator[Rig]:
+    """A machine whose Z has to be homed."""
+    made = make(request.param, homing=True)
+    yield made
     made.close()
 
 
-def _moving(rig: Rig) -> Rig:
-    rig.ports.axes.splice(start(rig, 120.0, 0.7))
-    rig.run(0.4)
-    assert rig.ports.axes.sample().moving
-    return rig
+@pytest.fixture
+def control(rig: Rig) -> Control:
+    """The executor on it."""
+    return Control(rig)
+
+
+@pytest.fixture(params=_FAULTS, ids="-".join)
+def broken(request: pytest.FixtureRequest) -> Iterator[Broken]:
+    """A driver, and a fault that its wires can have."""
+    name, fault = request.param
+    made = make(name)
+    yield made, fault
+    made.close()
+
+
+@pytest.fixture(params=_HARMLESS, ids="-".join)
+def disturbed(request: pytest.FixtureRequest) -> Iterator[Broken]:
+    """A driver, and a disturbance that must not matter."""
+    name, what = request.param
+    made = make(name)
+    yield made, what
+    made.close()
+
+
+def need(rig: Rig, what: str) -> None:
+    """Skip where this driver cannot have it; its own words say why."""
+    if what in rig.missing:
+        pytest.skip(rig.missing[what])

@@ -1,20 +1,22 @@
-"""Setpoints of one straight move for any driver."""
+"""One straight move for any driver: as setpoints, or as blocks for a controller that plans by itself."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from core.ports import Segments
-from tests.drivers.contract.rigs import Rig
+from core.block_port import BlockSink, LineOp
+from core.ports import AxisSink, Segments
+
+ACCEL = 3000.0  # mm/s²
+_PIECE = 0.1  # s of one block
 
 
-def start(rig: Rig, speed: float, cruise: float) -> Segments:
-    """X from where it rests, as soon as the driver takes it; 3000 mm/s²."""
-    axes = rig.ports.axes
+def start(axes: AxisSink, speed: float, cruise: float) -> Segments:
+    """X from where it rests, as soon as the driver takes it."""
     at = axes.now() + axes.commit + 0.005
     rest, _ = axes.demand_at(1e9)
-    up = abs(speed) / 3000.0
-    a = 3000.0 if speed > 0 else -3000.0
+    up = abs(speed) / ACCEL
+    a = ACCEL if speed > 0 else -ACCEL
     dt = np.array([up, cruise, up])
     p = np.tile(np.array(rest), (3, 1))
     v, acc = np.zeros_like(p), np.zeros_like(p)
@@ -22,3 +24,14 @@ def start(rig: Rig, speed: float, cruise: float) -> Segments:
     v[:, 0] = [0.0, speed, speed]
     acc[:, 0] = [a, 0.0, -a]
     return Segments(at + np.array([0.0, up, up + cruise]), dt, p, v, acc)
+
+
+def hand_over(blocks: BlockSink, axes: AxisSink, speed: float, cruise: float) -> float:
+    """The same way in blocks of a tenth of a second; where it ends."""
+    x, z = axes.demand_at(1e9)[0][:2]
+    way = speed * (cruise + abs(speed) / ACCEL)
+    n = max(1, round(cruise / _PIECE))
+    for i in range(1, n + 1):
+        ticket = blocks.submit(LineOp(x + way * i / n, z, abs(speed)))
+        assert ticket is not None, "no room for a second of motion"
+    return x + way

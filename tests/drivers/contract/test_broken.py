@@ -4,50 +4,28 @@ from __future__ import annotations
 
 import pytest
 
-from core.ports import DriverError
-from tests.drivers.contract.moves import start
-from tests.drivers.contract.rigs import Rig
+from tests.drivers.contract.rig import NINE
+from tests.drivers.contract.rigs import RIGS, make
 
-WITHIN = 0.45  # s: three heartbeats of 100 ms and a stop from 120 mm/s
-
-
-def test_a_broken_wire_stops_every_slide_and_is_told(broken: tuple[Rig, str]) -> None:
-    moving, fault = broken
-    axes = moving.ports.axes
-    moving.faults[fault]()
-    moving.until(lambda: axes.sample().fault != "", WITHIN)
-    moving.run(1.0)
-    before = moving.sim.true_position()
-    moving.run(0.3)
-    assert moving.sim.true_position() == before
-    assert not axes.sample().enabled
-    with pytest.raises(DriverError):
-        axes.splice(start(moving, 10.0, 0.1))
-    with pytest.raises(DriverError):
-        axes.enable(True)
+FULL = "full queue"  # is a load and no fault: test_setpoints, test_program
+MISSING = [
+    (name, what)
+    for name, kind in RIGS.items()
+    for what in NINE
+    if what not in {*kind.faults, *kind.harmless, FULL}
+]
 
 
-def test_once_mended_only_a_clear_word_brings_power_back(broken: tuple[Rig, str]) -> None:
-    moving, fault = broken
-    axes = moving.ports.axes
-    moving.faults[fault]()
-    moving.run(1.5)
-    moving.mend()
-    moving.run(0.5)
-    assert axes.sample().fault != ""
-    assert not axes.sample().enabled
-    if fault in moving.final:
-        with pytest.raises(DriverError):
-            axes.clear_fault()
-        return
-    axes.clear_fault()
-    moving.run(0.3)
-    assert axes.sample().fault == ""
-    assert not axes.sample().enabled  # clearing a fault never gives power
-    axes.enable(True)
-    moving.run(0.3)
-    before = moving.sim.true_position()[0]
-    axes.splice(start(moving, -30.0, 0.2))
-    moving.run(1.0)
-    assert axes.sample().fault == ""
-    assert moving.sim.true_position()[0] == pytest.approx(before - 30.0 * 0.21, abs=0.01)
+@pytest.mark.parametrize(("name", "what"), MISSING, ids="-".join)
+def test_what_a_wire_cannot_have_is_said_in_words(name: str, what: str) -> None:
+    """A skip with its reason for each of the nine that a driver has no trial of; without one it fails."""
+    assert what in RIGS[name].missing, f"{name} neither has a trial of {what!r} nor says why not"
+    pytest.skip(f"{name}: {RIGS[name].missing[what]}")
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_every_fault_has_its_hammer(name: str) -> None:
+    kind, rig = RIGS[name], make(name)
+    assert set(rig.acts()) == {*kind.faults, *kind.harmless}
+    assert not {*kind.faults, *kind.harmless} & set(kind.missing)
+    rig.close()

@@ -11,7 +11,7 @@ from drivers.feeder.client import Line
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.simulated import Simulation
-from tests.drivers.contract.rigs import BrokenLink, SimDriven
+from tests.drivers.contract.simulated import BrokenLink, SimDriven
 from tests.executor.rig import Rig
 from tests.executor.test_threads import EXTERNAL
 

@@ -19,7 +19,7 @@ from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
 from drivers.simulated import RealClock, Simulation, StepClock, build_simulation
-from tests.drivers.contract.rigs import SimDriven
+from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG, ramp
 
 ZERO = (0.0, 0.0, 0.0)

@@ -9,7 +9,6 @@ from drivers.inverter.building import attendant
 from drivers.inverter.config import InverterConfig
 from drivers.inverter.spindle import InverterSpindle
 from drivers.simulated import StepClock
-from drivers.wire import WireError
 from tests.drivers.inverter.peers import (
     HZ_PER_RPM,
     DeltaMemory,
@@ -54,8 +53,7 @@ class Bench:
     @property
     def rpm(self) -> float:
         """What the motor really does."""
-        self.inverter.motor.advance(self.clock.now())
-        return self.inverter.motor.speed
+        return self.inverter.rpm
 
 
 def config(family: str) -> InverterConfig:
@@ -67,23 +65,19 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     """Connected, standing."""
     clock = StepClock()
     inverter = Inverter(clock)
-    memory = _memory(family, inverter)
-    slave: Slave = memory if isinstance(memory, HuanyangSlave) else RtuSlave(memory)
+    memory, slave = far_end(family, inverter)
     wire = BenchWire(slave, clock)
-
-    def opened() -> BenchWire:
-        if wire.out:
-            raise WireError("/dev/bench cannot be opened: No such file or directory")
-        return wire
-
-    one = attendant(config(family), opened, clock)
+    one = attendant(config(family), wire.opened, clock)
     made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
         one.connect()
     return made
 
 
-def _memory(family: str, inverter: Inverter) -> DeltaMemory | HitachiMemory | HuanyangSlave:
+def far_end(family: str, inverter: Inverter) -> tuple[DeltaMemory | HitachiMemory | HuanyangSlave, Slave]:
+    """What an inverter of this family knows, and what answers for it on the line."""
     if family == "huanyang":
-        return HuanyangSlave(inverter)
-    return HitachiMemory(inverter) if family == "hitachi-wj200" else DeltaMemory(inverter)
+        huanyang = HuanyangSlave(inverter)
+        return huanyang, huanyang
+    memory = HitachiMemory(inverter) if family == "hitachi-wj200" else DeltaMemory(inverter)
+    return memory, RtuSlave(memory)

@@ -30,8 +30,11 @@ class Inverter:
     trip: int = 0
     deaf: bool = False
     backwards: bool = False  # its motor cable is on wrongly
+    torque_off: bool = False
     resets: int = 0
     stops: int = 0
+    heard: float = 0.0  # when the last frame has come
+    patience: float = 0.0  # s without one after which it stops by itself; 0: never
 
     def obey(self, *, run: bool) -> None:
         """The command as a whole has changed."""
@@ -39,13 +42,48 @@ class Inverter:
         if self.deaf and not run:
             return
         self.running = run and not self.trip
+        self._turn()
+
+    def hold_off(self, *, on: bool) -> None:
+        """Safe torque off; let go, it does again whatever it is commanded to."""
+        self.torque_off = on
+        if on:
+            self.motor.cut(self.clock.now())
+        else:
+            self._turn()
+
+    def _turn(self) -> None:
         rpm = self.hz / HZ_PER_RPM * (-1 if self.back else 1) if self.running else 0.0
-        self.motor.order(self.clock.now(), -rpm if self.backwards else rpm)
+        if not self.torque_off:
+            self.motor.order(self.clock.now(), -rpm if self.backwards else rpm)
 
     def trip_with(self, code: int) -> None:
         """It trips: the motor runs down."""
         self.trip, self.running = code, False
         self.motor.cut(self.clock.now())
+
+    def restart(self) -> None:
+        """Its supply has failed for a moment: it stands and waits for a command."""
+        self.hz, self.running, self.back = 0.0, False, False
+        self.motor.cut(self.clock.now())
+
+    def listen(self) -> None:
+        """A frame has come."""
+        self.watch()
+        self.heard = self.clock.now()
+
+    def watch(self) -> None:
+        """Its own watch over the line."""
+        if self.patience and self.running and self.clock.now() > self.heard + self.patience:
+            self.running = False
+            self.motor.order(self.heard + self.patience, 0.0)
+
+    @property
+    def rpm(self) -> float:
+        """What the motor really does."""
+        self.watch()
+        self.motor.advance(self.clock.now())
+        return self.motor.speed
 
     @property
     def output(self) -> int:
@@ -61,6 +99,8 @@ class Inverter:
 
 class Registers(Protocol):
     """A Modbus device's memory."""
+
+    inverter: Inverter
 
     def word(self, address: int) -> int: ...
 
@@ -113,6 +153,7 @@ class DeltaMemory(NoCoils):
         self.written.append((address, value))
         if address in self.settings:
             self.settings[address] = value
+            inverter.patience = self.settings.get(0x0903, 0) / 10 if self.settings[0x0902] == 1 else 0.0
         elif address == 0x2001:
             inverter.hz = value / 100
             if inverter.running:
@@ -145,6 +186,7 @@ class HitachiMemory:
     def set_word(self, address: int, value: int) -> None:
         if address in self.settings:
             self.settings[address] = value
+            self.inverter.patience = self.settings[0x113D] / 100 if self.settings[0x113C] == 4 else 0.0
         elif address == 1:
             self.inverter.hz = value / 100
             if self.inverter.running:
@@ -184,6 +226,7 @@ class RtuSlave:
         """The frame that comes back; nothing for noise and for others."""
         if not whole(frame) or frame[0] != self.unit:
             return b""
+        self.memory.inverter.listen()
         try:
             body = self._body(frame[1], frame[2:-2])
         except RefusedByDeviceError as refused:

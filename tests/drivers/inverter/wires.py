@@ -26,9 +26,16 @@ class BenchWire:
         self.loses = 0
         self.noise = b""  # before each answer
         self.spoils = False  # a bit of each answer falls over
+        self.kills = False  # whoever talks over it ends
         self.sent: list[bytes] = []
         self.closed = 0
         self._coming: deque[tuple[float, bytes]] = deque()
+
+    def opened(self) -> BenchWire:
+        """As a port is opened. Raises WireError with the cable out."""
+        if self.out:
+            raise WireError("/dev/bench cannot be opened: No such file or directory")
+        return self
 
     def send(self, data: bytes) -> None:
         self._look()
@@ -69,5 +76,7 @@ class BenchWire:
         self.closed += 1
 
     def _look(self) -> None:
+        if self.kills:
+            raise SystemExit
         if self.out:
             raise WireError("/dev/bench has failed: Input/output error")

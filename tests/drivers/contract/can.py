@@ -1,0 +1,162 @@
+"""CiA 402 and 401 peers on a virtual bus: as one loop owns them, and through the feeder's messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import can
+
+from core.ports import MachinePorts
+from drivers.canopen.machine import CanopenMachine
+from drivers.feeder.client import Line
+from drivers.feeder.ports import feeder_ports
+from drivers.feeder.server import Feeder
+from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.contract.rig import Fault, Rig
+from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
+from tests.drivers.contract.world import SimWorld
+
+# Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
+_SILENT = Fault(told=0.35, rests=0.45)
+_DEAF = Fault(told=0.05, rests=0.45, final=True)  # nothing can be said: the drives miss our heartbeat
+_ROUNDS = 2  # of the bus in a tick of the executor
+
+
+class Canopen(Rig):
+    """Queued in the drives (PVT)."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {
+        "drive fault": Fault(told=0.03, rests=0.1),
+        "following error": Fault(told=0.08, rests=0.2),
+        "cable out": _SILENT,
+        "silence": _SILENT,
+        "silent terminals": _SILENT,
+        "garbage": _DEAF,
+        "node reboot": Fault(told=0.03, rests=0.4),
+        "terminals reboot": Fault(told=0.03, rests=0.2),
+        "NMT stop": Fault(told=0.15, rests=0.45),
+        "bus-off": _DEAF,
+        "two masters": _DEAF,
+        "dead reader": _DEAF,
+    }
+    harmless = ("late answers",)
+    missing: ClassVar[Mapping[str, str]] = {"blocks": "its motion is planned here"}
+    hold = 0.25
+    runs_on = 0.14  # what is in the drives' queues
+
+    def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
+        """``turns``: the spindle's drive counts them."""
+        counted = ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 4096 }")
+        changes = (counted, ("encoder_ppr = 0 ", "encoder_ppr = 1024 ")) if turns else ()
+        self.bench = CanBench(can_machine(*changes, absolute=not homing))
+        self.peers, self.clock, self.machine = self.bench.peers, self.bench.clock, self.bench.model
+        self.ports = self.bench.machine.ports
+        self._answered, self._count = 1, 0  # the peers answer every so many rounds
+        self.world = SimWorld(self.peers.machine, lambda: self.peers.plant.terminals.outputs)
+
+    def alone(self, dt: float) -> None:
+        """Rounds of the bus, by the loop that owns it."""
+        for _ in range(_ROUNDS):
+            self.clock.advance(dt / _ROUNDS)
+            self.round()
+            self._count += 1
+            if self._count % self._answered == 0:
+                self.peers.pump()
+
+    def round(self) -> None:
+        """One of the loop that owns the bus."""
+        self.bench.machine.tick()
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """What nodes and bus can do."""
+        nodes, machine = self.peers.nodes, self.peers.machine
+        return {
+            "drive fault": lambda: machine.drive_fault("X"),
+            "following error": lambda: machine.jam("X"),
+            "cable out": lambda: self.peers.cable(out=True),
+            "silence": lambda: setattr(nodes["Z"], "silent", True),
+            "silent terminals": lambda: setattr(nodes["io"], "silent", True),
+            "garbage": lambda: self._send(*[(0x181, b"\x27\x02")] * 3),
+            "node reboot": nodes["X"].boot,
+            "terminals reboot": nodes["io"].boot,
+            "NMT stop": lambda: setattr(nodes["Z"], "state", 4),
+            "bus-off": self._bus_off,
+            "two masters": lambda: self._send((0x77F, b"\x05")),
+            "dead reader": self._interface_fails,
+            "late answers": self._answer_late,
+        }
+
+    def mend(self) -> None:
+        """Cable in, slide free."""
+        self.peers.cable(out=False)
+        self.peers.machine.jam("X", False)
+
+    def close(self) -> None:
+        """Both ends of the bus."""
+        self.bench.close()
+
+    def _send(self, *frames: tuple[int, bytes]) -> None:
+        for cob, data in frames:
+            self.peers.network.send_message(cob, data)
+
+    def _bus_off(self) -> None:
+        """The interface's own word: an error frame."""
+        assert self.peers.network.bus is not None
+        self.peers.network.bus.send(can.Message(arbitration_id=0x40, is_error_frame=True))
+
+    def _answer_late(self) -> None:
+        self._answered = 4
+
+    def _interface_fails(self) -> None:
+        assert self.bench.machine.bus.bus is not None
+        self.bench.machine.bus.bus.shutdown()
+
+
+@dataclass
+class CanDriven:
+    """The bus as the feeder owns it."""
+
+    machine: CanopenMachine
+    hands: object | None = None
+
+    @property
+    def ports(self) -> MachinePorts:
+        return self.machine.ports
+
+    def tick(self) -> None:
+        self.machine.tick()
+
+    def close(self) -> None:
+        """The bench does."""
+
+
+class FedCanopen(Canopen):
+    """As it is shipped: the control here, bus and queue in the feeder."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {
+        **Canopen.faults,
+        **{f"feeder: {fault}": outcome for fault, outcome in FEEDER_FAULTS.items()},
+    }
+
+    def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
+        super().__init__(homing=homing, turns=turns)
+        self.feeder = Feeder(CanDriven(self.bench.machine))
+        self.link = BrokenLink(self.feeder)
+        self.ports = feeder_ports(Line(self.link, self.clock))
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """The feeder's own come on top."""
+        own = {f"feeder: {fault}": partial(self._gone, why) for fault, why in FEEDER_WORDS.items()}
+        return {**super().acts(), **own}
+
+    def round(self) -> None:
+        """By the feeder; one that has ended does none."""
+        if self.link.why != FEEDER_WORDS["dead reader"]:
+            self.feeder.tick()
+
+    def _gone(self, why: str) -> None:
+        self.link.why = why
+        self.feeder.orphaned = True

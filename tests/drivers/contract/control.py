@@ -1,0 +1,104 @@
+"""The real executor on a rig: commands in, snapshots out, the operator's hands at the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from app.compose.machine import setup_for
+from app.compose.proof import proof_of
+from core.executor.commands import Command, EnableDrives, LoadJob
+from core.executor.executor import Executor
+from core.executor.job import Job, make_job
+from core.executor.snapshot import Event, Snapshot, State
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source
+from core.proving.prove import prove
+from tests.drivers.contract.rig import TICK, Rig
+
+INCH = 25.4
+BOUNCE = 0.4  # s after which another press is another press
+
+
+class Control:
+    """Everything the operator has."""
+
+    def __init__(self, rig: Rig) -> None:
+        self.rig, self.clock, self.world = rig, rig.clock, rig.world
+        self.events: list[Event] = []
+        self.watch: list[Callable[[Snapshot], None]] = []
+        self.executor = Executor(rig.machine, rig.ports, self.events.append)
+        self.run(0.1)
+
+    @property
+    def shot(self) -> Snapshot:
+        return self.executor.snapshot
+
+    @property
+    def state(self) -> State:
+        return self.executor.snapshot.state
+
+    def tick(self) -> None:
+        self.rig.alone(TICK)
+        self.executor.tick()
+        for look in self.watch:
+            look(self.shot)
+
+    def post(self, *commands: Command) -> None:
+        """Post and let one tick pass."""
+        for command in commands:
+            self.executor.post(command)
+        self.tick()
+
+    def run(self, seconds: float) -> None:
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.tick()
+
+    def until(self, *states: State, limit: float = 30.0) -> float:
+        """Run until one of these states; how long it took."""
+        return self.until_true(lambda shot: shot.state in states, limit)
+
+    def until_true(self, condition: Callable[[Snapshot], bool], limit: float = 30.0) -> float:
+        began = self.clock.now()
+        while not condition(self.shot):
+            assert self.clock.now() - began < limit, f"not within {limit} s: {self.shot}\n{self.events[-5:]}"
+            self.tick()
+        return self.clock.now() - began
+
+    def rest(self, limit: float) -> float:
+        """Run until the slides really stand; how long it took."""
+        began, before = self.clock.now(), None
+        while before != self.world.place():
+            assert self.clock.now() - began < limit + TICK, f"not at rest within {limit} s"
+            before = self.world.place()
+            self.tick()
+        return self.clock.now() - began
+
+    def ready(self) -> None:
+        self.post(EnableDrives())
+        self.until(State.IDLE, limit=0.5)
+
+    def load(self, text: str) -> Job:
+        """With the proof that proving gives."""
+        setup = setup_for(self.rig.machine, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
+        job = make_job(Source("PART", text), setup)
+        proof = proof_of(job, prove(job.source, job.setup, self.rig.machine))
+        assert not proof.errors, proof.errors
+        self.post(LoadJob(job, proof))
+        return job
+
+    def press(self) -> None:
+        """Both palms, once a start is no bounce of the last one."""
+        self.run(BOUNCE)
+        self.world.press_start()
+        self.run(0.1)
+
+    def start(self, text: str) -> None:
+        """Drives on, program loaded, both palms."""
+        if self.state is State.DISABLED:
+            self.ready()
+        self.load(text)
+        self.press()
+
+    def said(self, kind: str) -> list[str]:
+        return [event.text for event in self.events if event.kind == kind]

@@ -1,0 +1,157 @@
+"""A controller that plans by itself: the grblHAL look-alike at the other end of a wire that can break."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from typing import ClassVar
+
+from app.compose.grblhal import grblhal_config
+from core.machine.model import Machine
+from drivers.grblhal.machine import GrblMachine
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.panel_station import PanelStation
+from drivers.simulated import StepClock
+from tests.drivers.contract.rig import Fault, Rig
+from tests.drivers.contract.world import Readings
+from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky
+
+# It ends what it has: 0.4 s beyond the piece of 0.2 s under way, and the ramp.
+_ALONE = "the wire is gone, and the controller has no watch over its host"
+_HOMING = (
+    (
+        "absolute = true                 # false",
+        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
+    ),
+    ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]"),
+)
+
+
+class LateWire(LoopWire):
+    """Its bytes take ``late`` seconds to come back."""
+
+    late = 0.0
+
+    def __init__(self, firmware: Firmware) -> None:
+        super().__init__(firmware)
+        self._coming: deque[tuple[float, bytes]] = deque()
+
+    def read(self) -> bytes:
+        now = self.firmware.clock.now()
+        self._coming.append((now + self.late, super().read()))
+        come = b""
+        while self._coming and self._coming[0][0] <= now:
+            come += self._coming.popleft()[1]
+        return come
+
+
+class GrblWorld:
+    """What hangs on the controller; the buttons are those of the screen."""
+
+    def __init__(self, machine: Machine, peer: Firmware, panel: PanelStation) -> None:
+        self._machine, self._peer, self._panel = machine, peer, panel
+        self.press_hold, self.release_hold = panel.press_hold, panel.release_hold
+        self.set_feed_pot, self.set_spindle_auto = panel.set_feed_pot, panel.set_spindle_auto
+
+    def place(self) -> tuple[float, float]:
+        """X and Z."""
+        self._peer.advance()
+        return self._peer.slides.place
+
+    def rpm(self) -> float:
+        """By the motor."""
+        self._peer.advance()
+        return self._peer.spindle.speed
+
+    def outputs(self) -> Readings:
+        """By the names of the machine file."""
+        return {
+            name: self._peer.outputs.get(out.terminal, False) for name, out in self._machine.outputs.items()
+        }
+
+    def set_input(self, name: str, on: bool, /) -> None:
+        """A pin of the report, or an auxiliary input."""
+        wired = self._machine.inputs[name]
+        if wired.terminal.startswith("pn."):
+            letter = wired.terminal.removeprefix("pn.")
+            self._peer.pins = self._peer.pins.replace(letter, "") + (letter if on else "")
+        else:
+            self._peer.inputs[int(wired.terminal.removeprefix("in."))] = on is not wired.active_low
+
+    def press_start(self) -> None:
+        """Both palms on the screen."""
+        self._panel.press_left()
+        self._panel.press_right()
+        self._panel.release_left()
+        self._panel.release_right()
+
+    def press_estop(self) -> None:
+        """Its pin, its alarm, and the relay of the spindle."""
+        self.set_input("estop", True)
+        self._peer.raise_alarm(10)
+        self._peer.spindle.cut(self._peer.clock.now())
+
+    def release_estop(self) -> None:
+        """Free."""
+        self.set_input("estop", False)
+
+    def spindle_ignores_stop(self) -> None:
+        """Its inverter no longer obeys."""
+        self._peer.spindle.faults.ignores_stop = True
+
+    def spindle_dies(self) -> None:
+        """The belt slips."""
+        self._peer.spindle.faults.bog = 0.3
+
+
+class Grblhal(Rig):
+    """On an in-memory wire."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {
+        "drive fault": Fault(told=0.02, rests=0.02),
+        "cable out": Fault(told=0.02, rests=0.9, final=True, spins=_ALONE, flows=_ALONE),
+        "silence": Fault(told=1.4, rests=2.2),
+        "garbage": Fault(told=0.15, rests=0.3),
+        "node reboot": Fault(told=0.15, rests=0.1),
+        "two masters": Fault(told=0.15, rests=0.3),
+    }
+    harmless = ("late answers",)
+    missing: ClassVar[Mapping[str, str]] = {
+        "bus-off": "a serial line and a TCP connection have no such state",
+        "dead reader": "there is no reading thread: the executor's look reads the wire",
+        "setpoints": "the controller plans by itself and takes blocks",
+    }
+    hold = 0.25
+
+    def __init__(self, *, homing: bool = False) -> None:
+        self.machine = grbl_machine(*(_HOMING if homing else ()))
+        self.clock = StepClock()
+        self.peer = Firmware(self.clock, quirky(homing=homing))
+        self.wire = LateWire(self.peer)
+        self.driver = GrblMachine(grblhal_config(self.machine), self.clock, self.wire)
+        self.ports = self.driver.ports
+        self.world = GrblWorld(self.machine, self.peer, self.driver.panel)
+
+    def alone(self, dt: float) -> None:
+        """The controller is brought up to its clock by whoever looks."""
+        self.clock.advance(dt)
+        self.peer.advance()
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """What wire and controller can do."""
+        return {
+            "drive fault": lambda: self.peer.raise_alarm(17),
+            "cable out": lambda: setattr(self.wire, "cut", True),
+            "silence": lambda: setattr(self.peer.quirks, "deaf", True),
+            "garbage": lambda: self.peer.say("o*\\xffk\r\n"),
+            "node reboot": self.peer.reset,
+            "two masters": lambda: self.peer.feed(b"G4P0\n"),
+            "late answers": lambda: setattr(self.wire, "late", 0.15),
+        }
+
+    def mend(self) -> None:
+        """It speaks again."""
+        self.peer.quirks.deaf = False
+
+    def close(self) -> None:
+        """Nothing to let go."""

@@ -1,0 +1,163 @@
+"""The simulated lathe whose spindle is an inverter on a line, attended by its thread."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import ClassVar
+
+import resources
+from app.compose.inverter import ClearingAxes
+from core.machine.load import parse_machine
+from drivers.inverter.building import attendant
+from drivers.inverter.keeper import Keeper
+from drivers.inverter.spindle import InverterSpindle
+from tests.drivers.contract.lockstep import LockstepClock
+from tests.drivers.contract.rig import Fault
+from tests.drivers.contract.simulated import Simulated
+from tests.drivers.contract.world import SimWorld
+from tests.drivers.inverter.benches import config, far_end
+from tests.drivers.inverter.peers import Inverter
+from tests.drivers.inverter.wires import BenchWire
+
+_RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"
+_LOST = Fault(told=_RTU, rests=_RTU + 0.2)  # a second of silence, and the tries under way
+_DISOBEYS = Fault(told=1.6, rests=1.8)  # a second, and the looks under way
+
+
+class InverterWorld(SimWorld):
+    """Its spindle is the inverter's motor."""
+
+    inverter: Inverter
+
+    def rpm(self) -> float:
+        """By the motor."""
+        return self.inverter.rpm
+
+    def press_estop(self) -> None:
+        """Its STO goes with the drives'."""
+        super().press_estop()
+        self.inverter.hold_off(on=True)
+
+    def release_estop(self) -> None:
+        """And comes back with it."""
+        super().release_estop()
+        self.inverter.hold_off(on=False)
+
+    def spindle_ignores_stop(self) -> None:
+        """The inverter no longer takes a stop."""
+        self.inverter.deaf = True
+
+    def spindle_dies(self) -> None:
+        """The motor is overloaded."""
+        self.inverter.motor.faults.bog = 0.3
+
+
+class OnALine(Simulated):
+    """One family; nothing on its wire stops a slide, so the executor has to."""
+
+    family: ClassVar[str]
+    faults: ClassVar[Mapping[str, Fault]] = {
+        **Simulated.faults,
+        "cable out": _LOST,
+        "silence": _LOST,
+        "garbage": _LOST,
+        "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
+        "node reboot": _DISOBEYS,
+        "dead reader": Fault(told=0.1, rests=0.2, final=True),
+        "two masters": _DISOBEYS,
+    }
+    harmless = ("late answers", "noise")
+    missing: ClassVar[Mapping[str, str]] = {
+        "bus-off": "RS-485 has no such state",
+        "blocks": Simulated.missing["blocks"],
+        "thread": "without an encoder on the spindle no thread is cut",
+    }
+
+    def __init__(self, *, homing: bool = False) -> None:
+        machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "gt75-vfd.toml")
+        super().__init__(machine, homing=homing)
+        assert isinstance(self.clock, LockstepClock)
+        self.inverter = Inverter(self.clock)
+        self.wire = BenchWire(far_end(self.family, self.inverter)[1], self.clock)
+        self.attendant = attendant(config(self.family), self.wire.opened, self.clock)
+        self.keeper = Keeper(self.attendant)
+        self.attendant.connect()
+        ports = self.ports
+        spindle = InverterSpindle(
+            config(self.family),
+            self.attendant,
+            self.clock,
+            alive=lambda: self.keeper.alive,
+            estop=lambda: ports.station.snapshot().estop,
+        )
+        self.ports = dataclasses.replace(
+            ports, axes=ClearingAxes(ports.axes, spindle.clear_fault), spindle=spindle, gear=None
+        )
+        self.world = InverterWorld(self.hands, ports.io.outputs)
+        self.world.inverter = self.inverter
+        self.keeper.start()
+        self.clock.attend(self.keeper.thread)
+
+    def make_clock(self) -> LockstepClock:
+        """One that the line's thread sleeps on."""
+        return LockstepClock()
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """What line and inverter can do."""
+        wire = self.wire
+        return {
+            **super().acts(),
+            "cable out": lambda: setattr(wire, "out", True),
+            "silence": lambda: setattr(wire, "silent", True),
+            "garbage": lambda: setattr(wire, "spoils", True),
+            "answers too late": lambda: setattr(wire, "delay", 0.7),
+            "node reboot": self.inverter.restart,
+            "dead reader": lambda: setattr(wire, "kills", True),
+            "two masters": self._another_commands,
+            "late answers": lambda: setattr(wire, "delay", 0.1),
+            "noise": lambda: setattr(wire, "noise", b"\x00\xff\x01"),
+        }
+
+    def mend(self) -> None:
+        """The line is as it was."""
+        super().mend()
+        wire = self.wire
+        wire.out = wire.silent = wire.spoils = False
+        wire.delay = 0.02
+
+    def close(self) -> None:
+        """The thread ends with a last word."""
+        assert isinstance(self.clock, LockstepClock)
+        self.mend()
+        self.clock.release()
+        self.keeper.close()
+
+    def _another_commands(self) -> None:
+        self.inverter.hz = 45.0
+        self.inverter.obey(run=True)
+
+
+class DeltaVfdB(OnALine):
+    """Delta VFD-B."""
+
+    family = "delta-vfdb"
+
+
+class HitachiWj200(OnALine):
+    """Hitachi WJ200."""
+
+    family = "hitachi-wj200"
+
+
+class HuanyangHy(OnALine):
+    """Huanyang HY."""
+
+    family = "huanyang"
+    faults: ClassVar[Mapping[str, Fault]] = {
+        **OnALine.faults,
+        **{
+            fault: dataclasses.replace(OnALine.faults[fault], spins=_NO_WATCH)
+            for fault in ("cable out", "silence", "dead reader")
+        },
+    }

@@ -1,0 +1,136 @@
+"""What the contract asks of a driver's bench: its ports, the machine behind it, a hammer for its wires."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from core.block_port import BlockSink
+from core.machine.model import Machine
+from core.ports import MachinePorts
+from drivers.simulated import StepClock
+from tests.drivers.contract.moves import hand_over, start
+from tests.drivers.contract.world import World
+
+TICK = 0.01
+STILL = 0.0013  # mm in a tick: one count
+# What every driver has to answer for, by itself or with a word why its wires cannot have it.
+NINE = (
+    "cable out",
+    "silence",
+    "garbage",
+    "late answers",
+    "node reboot",
+    "bus-off",
+    "dead reader",
+    "full queue",
+    "two masters",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What may be counted on once something has gone wrong on a driver's wires.
+
+    ``told`` and ``rests``: s until the driver says so, and until every slide stands. ``final``: the control
+    has to be started again. ``spins`` and ``flows``: why spindle or coolant stay on, where nothing can be
+    said to them any more. ``homeless``: axes that only count have lost their reference.
+    """
+
+    told: float
+    rests: float
+    final: bool = False
+    spins: str = ""
+    flows: str = ""
+
+
+class Rig(ABC):
+    """One machine behind one driver, on a clock that the test moves. A new driver is one more of these."""
+
+    faults: ClassVar[Mapping[str, Fault]]  # each stops everything and is told
+    harmless: ClassVar[Iterable[str]] = ()  # each goes by, and nobody notices
+    missing: ClassVar[Mapping[str, str]] = {}  # of ``NINE`` and of demands: why not here
+    hold: ClassVar[float]  # s from 127 mm/s to rest
+    runs_on: ClassVar[float] = 0.0  # s that a jog let go still goes at its speed
+
+    machine: Machine
+    clock: StepClock
+    ports: MachinePorts
+    world: World
+
+    @abstractmethod
+    def alone(self, dt: float) -> None:
+        """Let time pass for the machine, and for what of the driver is in another thread or process."""
+
+    @abstractmethod
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """How each of ``faults`` and ``harmless`` is brought about."""
+
+    @abstractmethod
+    def mend(self) -> None:
+        """Put right whatever was broken."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Let everything go."""
+
+    @property
+    def blocks(self) -> BlockSink | None:
+        """The controller's planner, where it has one."""
+        return self.ports.blocks
+
+    @property
+    def told(self) -> str:
+        """What the driver says is wrong."""
+        return self.ports.axes.sample().fault or self.ports.spindle.fault()
+
+    def tick(self) -> None:
+        """Let a tick pass, and look as the executor does."""
+        self.alone(TICK)
+        ports = self.ports
+        for look in (ports.axes.sample, ports.io.inputs, ports.spindle.speed, ports.spindle.fault):
+            look()
+        ports.station.snapshot()
+
+    def run(self, seconds: float) -> None:
+        """Let time pass."""
+        end = self.clock.now() + seconds
+        while self.clock.now() < end - 1e-9:
+            self.tick()
+
+    def until(self, ready: Callable[[], bool], limit: float = 20.0) -> float:
+        """Run until ``ready``; how long it took."""
+        began = self.clock.now()
+        while not ready():
+            assert self.clock.now() - began < limit, f"not within {limit} s: {self.ports.axes.sample()}"
+            self.tick()
+        return self.clock.now() - began
+
+    def stands(self) -> bool:
+        """Whether a tick moves nothing, by the machine itself."""
+        before = self.world.place()
+        self.tick()
+        return math.dist(self.world.place(), before) < STILL
+
+    def go(self, speed: float, cruise: float) -> float:
+        """X moves from rest to rest, at ``speed`` for ``cruise`` seconds; where it will end.
+
+        Raises DriverError.
+        """
+        if self.blocks is not None:
+            return hand_over(self.blocks, self.ports.axes, speed, cruise)
+        segments = start(self.ports.axes, speed, cruise)
+        self.ports.axes.splice(segments)
+        return float(segments.p[-1, 0] + 0.5 * segments.v[-1, 0] * segments.dt[-1])
+
+    def under_way(self) -> float:
+        """Drives on, X at 120 mm/s with 0.4 s of way before it; where it will end."""
+        self.ports.axes.enable(True)
+        self.run(0.2)
+        end = self.go(120.0, 0.7)
+        self.run(0.4)
+        assert self.ports.axes.sample().moving
+        return end

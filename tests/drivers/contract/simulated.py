@@ -1,0 +1,166 @@
+"""The simulated lathe in process, and the same through the feeder's messages."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from app.compose.simulated import simulated
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from core.ports import DriverError, MachinePorts
+from drivers.feeder.client import Line
+from drivers.feeder.links import LoopLink
+from drivers.feeder.ports import feeder_ports
+from drivers.feeder.server import Feeder
+from drivers.feeder.wire import Message
+from drivers.simulated import StepClock
+from tests.drivers.contract.rig import Fault, Rig
+from tests.drivers.contract.world import SimWorld
+
+_TRIP = Fault(told=0.02, rests=0.1)
+_INSIDE = "the simulated machine is in this process: there is no wire"
+
+
+def unhomed(machine: Machine) -> Machine:
+    """With a Z that only counts and has to be homed."""
+    x, z, c = machine.axes
+    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    return dataclasses.replace(machine, axes=(x, z, c))
+
+
+class Simulated(Rig):
+    """In process."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {"drive fault": _TRIP, "following error": Fault(0.07, 0.15)}
+    missing: ClassVar[Mapping[str, str]] = {
+        "cable out": _INSIDE,
+        "silence": _INSIDE,
+        "garbage": _INSIDE,
+        "late answers": _INSIDE,
+        "node reboot": "it has no drives of their own that could restart",
+        "bus-off": _INSIDE,
+        "dead reader": "nobody reads: the plant is advanced by whoever looks at it",
+        "two masters": _INSIDE,
+        "blocks": "its motion is planned here",
+    }
+    hold = 0.15
+
+    def __init__(self, machine: Machine | None = None, *, homing: bool = False) -> None:
+        self.machine = machine or load_machine(None)
+        if homing:
+            self.machine = unhomed(self.machine)
+        self.clock = self.make_clock()
+        sim = simulated(self.machine, self.clock)
+        self.ports, self.hands = sim.ports, sim.machine
+        self.world = SimWorld(sim.machine, sim.ports.io.outputs)
+
+    def make_clock(self) -> StepClock:
+        """Moved by the test."""
+        return StepClock()
+
+    def alone(self, dt: float) -> None:
+        """The plant is brought up to its clock by whoever looks."""
+        self.clock.advance(dt)
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """The hammer."""
+        return {
+            "drive fault": lambda: self.hands.drive_fault("X"),
+            "following error": lambda: self.hands.jam("X"),
+        }
+
+    def mend(self) -> None:
+        """The slide is free."""
+        self.hands.jam("X", False)
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+
+class BrokenLink(LoopLink):
+    """A link whose other end can go away, or take its time."""
+
+    why = ""
+    late: Callable[[], None] | None = None
+
+    def ask(self, message: Message) -> Message:
+        if self.why:
+            raise DriverError(self.why)
+        answer = super().ask(message)
+        if self.late is not None:
+            self.late()
+        return answer
+
+
+@dataclass
+class SimDriven:
+    """The simulation as the feeder owns it."""
+
+    ports: MachinePorts
+    hands: object | None
+
+    def tick(self) -> None:
+        self.ports.axes.sample()
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+
+# The feeder ends the queue of a control that it no longer hears, and then takes the power: 1.0 s of way here.
+_GONE = Fault(told=0.02, rests=1.5, final=True)
+FEEDER_FAULTS = {"dead reader": _GONE, "silence": _GONE, "garbage": _GONE}
+FEEDER_WORDS = {
+    "dead reader": "the feeder process has ended",
+    "silence": "the feeder has not answered",
+    "garbage": "the feeder's socket carries something that is no message",
+}
+FEEDER_MISSING = {
+    "cable out": "the feeder hangs on a socket pair inside one computer",
+    "node reboot": "a feeder is not started again: its end is a dead reader",
+    "two masters": "the feeder's socket pair belongs to the control that made it; nobody else can open it",
+}
+
+
+class Fed(Simulated):
+    """Through the feeder."""
+
+    faults: ClassVar[Mapping[str, Fault]] = {**Simulated.faults, **FEEDER_FAULTS}
+    harmless = ("late answers",)
+    missing: ClassVar[Mapping[str, str]] = {
+        **FEEDER_MISSING,
+        "bus-off": "a socket pair has no such state",
+        "blocks": Simulated.missing["blocks"],
+    }
+
+    def __init__(self, *, homing: bool = False) -> None:
+        super().__init__(homing=homing)
+        self.feeder = Feeder(SimDriven(self.ports, self.hands))
+        self.link = BrokenLink(self.feeder)
+        self.ports = feeder_ports(Line(self.link, self.clock))
+
+    def alone(self, dt: float) -> None:
+        """The feeder's loop goes on."""
+        self.clock.advance(dt)
+        self.feeder.tick()
+
+    def acts(self) -> Mapping[str, Callable[[], None]]:
+        """What the socket can do."""
+        return {
+            **super().acts(),
+            **{fault: self._gone(why) for fault, why in FEEDER_WORDS.items()},
+            "late answers": self._late,
+        }
+
+    def _gone(self, why: str) -> Callable[[], None]:
+        def break_it() -> None:
+            self.link.why = why
+            self.feeder.orphaned = True
+
+        return break_it
+
+    def _late(self) -> None:
+        """Each answer takes 5 ms; the executor asks several questions a tick."""
+        self.link.late = lambda: self.alone(0.005)

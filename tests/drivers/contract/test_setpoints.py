@@ -1,0 +1,127 @@
+"""What a driver that takes setpoints does with good and bad ones; and a planner with its blocks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.block_port import LineOp
+from core.ports import DriverError, Segments
+from tests.drivers.contract.conftest import need
+from tests.drivers.contract.moves import start
+from tests.drivers.contract.rig import Rig
+
+
+def test_a_splice_goes_on_from_what_demand_at_foretells(rig: Rig) -> None:
+    need(rig, "setpoints")
+    rig.under_way()
+    axes = rig.ports.axes
+    at = axes.now() + axes.commit + 0.005
+    p, v = axes.demand_at(at)
+    assert v[0] == pytest.approx(120.0)
+    stop = 120.0 / 3000.0
+    zero = np.zeros((1, len(p)))
+    speed, brake = zero.copy(), zero.copy()
+    speed[0, 0], brake[0, 0] = 120.0, -3000.0
+    axes.splice(Segments(np.array([at]), np.array([stop]), np.array([p]), speed, brake))
+    rig.until(lambda: not axes.sample().moving)
+    assert axes.sample().actual[0] == pytest.approx(p[0] + 120.0 * stop / 2, abs=0.003)
+
+
+@pytest.mark.parametrize(
+    ("what", "expected"),
+    [
+        ("early", "too early"),
+        ("jump", "jump"),
+        ("gap", "gap"),
+        ("running", "do not end at rest"),
+        ("nan", "no number"),
+        ("backwards", "backwards"),
+        ("fast", "faster than"),
+        ("outside", "leave"),
+    ],
+)
+def test_bad_setpoints_are_refused_and_the_old_ones_stay(rig: Rig, what: str, expected: str) -> None:
+    need(rig, "setpoints")
+    end = rig.under_way()
+    axes = rig.ports.axes
+    at = axes.now() + axes.commit + 0.005
+    horizon = axes.horizon()
+    p, v = axes.demand_at(at)
+    n = len(p)
+    good = Segments(
+        np.array([at, at + 0.04]),
+        np.array([0.04, 0.01]),
+        np.vstack([p, p]),
+        np.vstack([v, np.zeros(n)]),
+        np.zeros((2, n)),
+    )
+    good.a[0] = -np.array(v) / 0.04
+    good.p[1] = np.array(p) + np.array(v) * 0.02
+    bad = {
+        "early": good._replace(t=good.t - axes.commit - 0.05),
+        "jump": good._replace(p=good.p + 1.0),
+        "gap": good._replace(t=good.t + np.array([0.0, 0.01])),
+        "running": Segments(*(part[:1] for part in good))._replace(a=np.zeros((1, n))),
+        "nan": good._replace(a=good.a * np.nan),
+        "backwards": good._replace(dt=-good.dt),
+        "fast": good._replace(v=good.v * 1.2),
+        "outside": good._replace(p=good.p + 500.0),
+    }[what]
+    with pytest.raises(DriverError, match=expected):
+        axes.splice(bad)
+    assert axes.horizon() == horizon
+    rig.until(lambda: not axes.sample().moving)
+    assert axes.sample().actual[0] == pytest.approx(end, abs=0.003)
+
+
+def test_the_longest_plan_of_many_short_pieces(powered: Rig) -> None:
+    """Full queue: two seconds in pieces of a millisecond, more than any drive's queue holds."""
+    need(powered, "setpoints")
+    axes = powered.ports.axes
+    at = axes.now() + axes.commit + 0.005
+    rest, _ = axes.demand_at(1e9)
+    n = 2000
+    t = at + 0.001 * np.arange(n)
+    v, a = np.zeros((n, len(rest))), np.zeros((n, len(rest)))
+    speed = 20.0 * np.square(np.sin(np.linspace(0.0, np.pi, n + 1)))
+    v[:, 0], a[:, 0] = speed[:-1], np.diff(speed) / 0.001
+    p = np.tile(np.array(rest), (n, 1))
+    p[1:, 0] += np.cumsum((speed[:-1] + speed[1:]) / 2 * 0.001)[:-1]
+    axes.splice(Segments(np.asarray(t, dtype=np.float64), np.full(n, 0.001), p, v, a))
+    powered.run(2.5)
+    sample = axes.sample()
+    assert sample.fault == ""
+    assert sample.actual[0] == pytest.approx(20.0, abs=0.003)  # mean 10 mm/s for 2 s
+
+
+def test_a_planner_takes_no_setpoints(powered: Rig) -> None:
+    need(powered, "blocks")
+    with pytest.raises(DriverError, match="takes blocks"):
+        powered.ports.axes.splice(start(powered.ports.axes, 60.0, 0.1))
+
+
+def test_a_full_planner_says_so_and_no_ticket_is_lost_or_twice(powered: Rig) -> None:
+    need(powered, "blocks")
+    sink = powered.blocks
+    assert sink is not None
+    taken: list[int] = []
+    full = 0
+    while len(taken) < 200:
+        ticket = sink.submit(LineOp(0.1 * (len(taken) + 1), 0.0, 50.0))
+        if ticket is None:
+            full += 1
+            powered.tick()
+        else:
+            taken.append(ticket)
+    assert full
+    assert taken == list(range(taken[0], taken[0] + 200))
+    done, places = [], []
+    while sink.state().done < taken[-1]:
+        powered.tick()
+        done.append(sink.state().done)
+        places.append(powered.world.place()[0])
+    assert done == sorted(done)
+    assert places == sorted(places)
+    assert powered.world.place()[0] == pytest.approx(20.0, abs=1e-4)
+    assert powered.told == ""
