@@ -1,4 +1,4 @@
-"""``turndesk machine check``: is a machine file good, and does everything in it answer?"""
+"""``turndesk machine``: is a machine file good, does everything in it answer, and what is told of it?"""
 
 from __future__ import annotations
 
@@ -18,6 +18,10 @@ def add_parser(subparsers: SubParsers) -> None:
     check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
     peer = actions.add_parser("peer", help="play the drives and terminals of a CANopen machine file")
     peer.add_argument("file", metavar="FILE")
+    model = actions.add_parser(
+        "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
+    )
+    model.add_argument("file", metavar="FILE")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -26,6 +30,10 @@ def run(args: argparse.Namespace) -> int:
         from app.cli.machine_peer import play
 
         return play(args.file)
+    if args.action == "mtconnect":
+        from app.cli.machine_mtconnect import write_model
+
+        return write_model(args.file)
     from app.cli.machine_check import check
 
     return check(args.file, json_wanted=args.json)

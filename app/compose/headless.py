@@ -12,6 +12,7 @@ from typing import TextIO
 
 from app.cli.errors import CommandError
 from app.compose.backends import Connected, connect, real_time
+from app.compose.shop_floor import open_shop_floor
 from app.desk.headless import HeadlessRun
 from app.desk.home import home
 from core.executor.executor import Executor
@@ -78,12 +79,29 @@ def headless(
     try:
         _set_inputs(connected, inputs)
         executor = Executor(machine, connected.ports, log.add)
+        close_floor = _shop_floor(machine, executor, say, paced=paced)
         try:
             yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
         finally:
             executor.shut()  # also on Ctrl-C: the slides brake at once
+            close_floor()
     finally:
         connected.close()
+
+
+def _shop_floor(
+    machine: Machine, executor: Executor, say: Callable[[str], None], *, paced: bool
+) -> Callable[[], None]:
+    """A run that takes less than its time would tell the shop floor of parts that nobody has made."""
+
+    def tell(why: str) -> None:
+        say(f"no shop-floor data: {why}")
+
+    model = machine.hardware.mtconnect
+    if model is not None and model.enabled and not paced:
+        tell("this run is faster than its time; give --realtime")
+        return lambda: None
+    return open_shop_floor(machine, lambda: executor.snapshot, tell)
 
 
 def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:

@@ -20,6 +20,7 @@ from app.compose.machine import read_machine, setup_for
 from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.searchto import give_searchto
+from app.compose.shop_floor import open_shop_floor
 from app.compose.special import furnish
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.desk import Desk
@@ -30,6 +31,7 @@ from app.desk.keep import NothingKept
 from app.desk.offsets.effect import Effect
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
+from app.desk.words import tr
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event
@@ -66,10 +68,12 @@ def build_desk(
     clock, journal = RealClock(), Journal.at_home()
     desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
     thread, log = ExecutorThread(executor, clock), Log()
+    close_floor = _shop_floor(desk, executor, journal)
 
     let_go = desk.shut
 
     def shut() -> None:
+        close_floor()
         thread.close()
         let_go()
         journal.close()
@@ -80,6 +84,17 @@ def build_desk(
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     return desk
+
+
+def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[], None]:
+    """Told to agents from now on; what is in the way goes to the prompt line and to the log."""
+
+    def tell(why: str) -> None:
+        desk.say(tr("NO SHOP-FLOOR DATA: {why}").format(why=why))
+        journal.hear(Event(executor.snapshot.t, "warning", f"no shop-floor data: {why}"))
+
+    assert desk.lathe is not None
+    return open_shop_floor(desk.lathe, lambda: executor.snapshot, tell)
 
 
 def desk_and_executor(

@@ -8,7 +8,8 @@ from typing import TypedDict
 from core.executor.bench import Bench
 from core.executor.conductor import Conductor
 from core.executor.cycle import Cycle
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.actions import ProgramStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
 from core.interpreter.swivel import Swivel
@@ -74,6 +75,7 @@ class Publisher:
             inputs=frozenset(name for name, on in bench.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
+            optionally_stopped=standing.state is State.PROGRAM_STOP and _optional(block),
             alarms=standing.alarms,
             cycle_elapsed=counters.cycle,
             last_cycle=counters.last_cycle,
@@ -122,6 +124,12 @@ def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
         rapid=block.rapid if block else modal.rapid,
         turns=_turns(block, modal),
     )
+
+
+def _optional(block: Block | None) -> bool:
+    """Whether a stop at this block is one that the operator's switch asks for."""
+    action = block.action if block else None
+    return isinstance(action, ProgramStop) and action.optional
 
 
 def _next_text(cycle: Cycle | None) -> str:

@@ -89,6 +89,7 @@ class Snapshot:
     inputs: frozenset[str] = frozenset()
     comment: str = ""
     message: str = ""  # of M00/M01 while the stop lasts
+    optionally_stopped: bool = False  # at an M01 and not an M00
     alarms: tuple[Alarm, ...] = ()
     cycle_elapsed: float = 0.0  # of this cycle, stops not counted
     last_cycle: float = 0.0

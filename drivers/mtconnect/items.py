@@ -1,0 +1,168 @@
+"""The data items of a machine as MTConnect names them, in the components they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Category(StrEnum):
+    """What kind of value an item has."""
+
+    SAMPLE = "SAMPLE"
+    EVENT = "EVENT"
+    CONDITION = "CONDITION"
+
+
+@dataclass(frozen=True, slots=True)
+class DataItem:
+    """``key`` is the name by which a line refers to it; units are those that are sent.
+
+    Of a sample: ``digits`` behind the point; a change within ``band`` + ``share`` of the value is not told.
+    """
+
+    key: str
+    category: Category
+    type: str
+    sub_type: str = ""
+    units: str = ""
+    frame: str = ""  # the coordinate system of a position
+    digits: int = 0
+    band: float = 0.0
+    share: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A part of the machine with its items and its own parts."""
+
+    kind: str
+    name: str
+    items: tuple[DataItem, ...] = ()
+    parts: tuple[Component, ...] = ()
+
+    def all_items(self) -> Iterator[DataItem]:
+        """Its own and those of all its parts."""
+        yield from self.items
+        for part in self.parts:
+            yield from part.all_items()
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What of a machine decides which items there are.
+
+    ``spindle`` names the component; with ``spindle_turns_to`` it is an axis too and has an angle.
+    """
+
+    linear: tuple[str, ...]
+    rotary: tuple[str, ...]
+    spindle: str
+    spindle_turns_to: bool
+    chuck: bool
+
+
+def machine_items(layout: Layout, name: str) -> Component:
+    """The device with everything that is told of it; units: mm, degrees, mm/s, rpm, per cent."""
+    return Component(
+        "Device",
+        name,
+        (_event("avail", "AVAILABILITY"),),
+        (
+            Component("Axes", "base", parts=(*_linear(layout), *_rotary(layout), _spindle(layout))),
+            Component("Controller", "controller", _CONTROLLER, (Component("Path", "path", _PATH),)),
+            Component("Door", "guard", (_event("door", "DOOR_STATE"),)),
+            Component("Auxiliaries", "auxiliaries", parts=(_BAR_FEEDER,)),
+        ),
+    )
+
+
+def _event(key: str, kind: str, sub_type: str = "", units: str = "") -> DataItem:
+    return DataItem(key, Category.EVENT, kind, sub_type, units)
+
+
+def _percent(key: str, kind: str) -> DataItem:
+    return DataItem(key, Category.EVENT, kind, "PROGRAMMED", "PERCENT", digits=1)
+
+
+def _condition(key: str, kind: str) -> DataItem:
+    return DataItem(key, Category.CONDITION, kind)
+
+
+def _rpm(key: str, sub_type: str) -> DataItem:
+    units = "REVOLUTION/MINUTE"
+    return DataItem(key, Category.SAMPLE, "ROTARY_VELOCITY", sub_type, units, digits=1, band=1.0, share=0.005)
+
+
+def _angle(axis: str) -> DataItem:
+    return DataItem(f"{axis}abs", Category.SAMPLE, "ANGLE", "ACTUAL", "DEGREE", digits=3, band=0.05)
+
+
+def _own_drive(axis: str) -> tuple[DataItem, ...]:
+    return (_condition(f"{axis}travel", "POSITION"), _condition(f"{axis}servo", "ACTUATOR"))
+
+
+def _linear(layout: Layout) -> Iterator[Component]:
+    """A standing slide is read one or two counts to and fro: 3 um are no movement."""
+    for axis in layout.linear:
+        at = DataItem(
+            f"{axis}abs",
+            Category.SAMPLE,
+            "POSITION",
+            "ACTUAL",
+            "MILLIMETER",
+            "MACHINE",
+            digits=4,
+            band=0.003,
+        )
+        yield Component("Linear", axis, (at, *_own_drive(axis)))
+
+
+def _rotary(layout: Layout) -> Iterator[Component]:
+    for axis in layout.rotary:
+        yield Component("Rotary", axis, (_angle(axis), *_own_drive(axis)))
+
+
+def _spindle(layout: Layout) -> Component:
+    items = (
+        *((_angle(layout.spindle),) if layout.spindle_turns_to else ()),
+        _rpm("Srpm", "ACTUAL"),
+        _rpm("Scmd", "PROGRAMMED"),
+        _percent("Sovr", "ROTARY_VELOCITY_OVERRIDE"),
+        _event("rotmode", "ROTARY_MODE"),
+        _condition("Sdrive", "ACTUATOR"),
+    )
+    return Component("Rotary", layout.spindle, items, (_CHUCK,) if layout.chuck else ())
+
+
+_CHUCK = Component("Chuck", "collet", (_event("chuck", "CHUCK_STATE"), _event("chuckil", "CHUCK_INTERLOCK")))
+_BAR_FEEDER = Component("BarFeeder", "bar", (_event("endbar", "END_OF_BAR"),))
+_CONTROLLER = (
+    _event("estop", "EMERGENCY_STOP"),
+    _condition("comms", "COMMUNICATIONS"),
+    _condition("logic", "LOGIC_PROGRAM"),
+    _condition("system", "SYSTEM"),
+)
+_PATH = (
+    _event("mode", "CONTROLLER_MODE"),
+    _event("execution", "EXECUTION"),
+    _event("program", "PROGRAM"),
+    _event("line", "LINE_NUMBER", "ABSOLUTE"),
+    _event("block", "BLOCK"),
+    _event("toolnum", "TOOL_NUMBER"),
+    _event("pcount", "PART_COUNT", "ALL"),
+    _event("part", "PART_DETECT"),
+    DataItem(
+        "Fact",
+        Category.SAMPLE,
+        "PATH_FEEDRATE",
+        "ACTUAL",
+        "MILLIMETER/SECOND",
+        digits=3,
+        band=0.1,
+        share=0.02,
+    ),
+    _percent("Fovr", "PATH_FEEDRATE_OVERRIDE"),
+    _condition("motion", "MOTION_PROGRAM"),
+)

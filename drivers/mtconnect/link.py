@@ -1,0 +1,78 @@
+"""One agent that is connected: what waits to be sent to it, and what it sends."""
+
+from __future__ import annotations
+
+import socket
+
+from drivers.mtconnect.lines import PING, pong
+
+BEHIND = 64 * 1024  # bytes that may wait for a slow agent; at ten lines a second about a minute
+READ = 1024  # bytes taken at a time: whoever sends more waits in its own buffers
+LONGEST_LINE = 1024
+_GRACE = 1.0  # s on top of two heartbeats
+
+
+class LostError(Exception):
+    """The agent is gone, or is given up; the sentence says why."""
+
+
+class AgentLink:
+    """Nothing in here waits. ``heartbeat`` (s) is what it is told to ping at."""
+
+    def __init__(self, wire: socket.socket, heartbeat: float) -> None:
+        wire.setblocking(False)
+        self.wire = wire
+        self.ignored = 0  # lines that were no PING
+        self._heartbeat = heartbeat
+        self._heard: float | None = None  # when it last pinged; None: it never did and need not
+        self._in = b""
+        self._out = bytearray()
+
+    @property
+    def pending(self) -> bool:
+        """Whether something waits to be sent."""
+        return bool(self._out)
+
+    def put(self, data: bytes) -> None:
+        """Queue it. Raises LostError for an agent that has not taken what was sent before."""
+        if len(self._out) + len(data) > BEHIND:
+            raise LostError(f"it does not read: {len(self._out)} bytes wait for it")
+        self._out += data
+
+    def flush(self) -> None:
+        """Send what the wire takes now. Raises LostError."""
+        try:
+            sent = self.wire.send(self._out)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            raise LostError(f"it cannot be reached: {error.strerror or error}") from error
+        del self._out[:sent]
+
+    def read(self, now: float) -> None:
+        """Take what has come; a PING is answered, everything else is only counted. Raises LostError."""
+        try:
+            come = self.wire.recv(READ)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            raise LostError(f"the connection broke: {error.strerror or error}") from error
+        if not come:
+            raise LostError("it has hung up")
+        *lines, self._in = (self._in + come).split(b"\n")
+        for line in lines:
+            self._obey(line.strip(), now)
+        if len(self._in) > LONGEST_LINE:
+            raise LostError("it sends what is no line")
+
+    def _obey(self, line: bytes, now: float) -> None:
+        if line == PING:
+            self._heard = now
+            self.put(pong(self._heartbeat))
+        elif line:
+            self.ignored += 1
+
+    def mind(self, now: float) -> None:
+        """Raises LostError for an agent that pinged and has stopped: its end of the line may be long gone."""
+        if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
+            raise LostError(f"no PING for {now - self._heard:.0f} s")

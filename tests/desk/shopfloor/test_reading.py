@@ -1,0 +1,200 @@
+"""A snapshot as data items, each value reckoned by hand; what cannot be known is not told."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+from app.desk.shopfloor.conditions import PLACES
+from app.desk.shopfloor.reading import FloorReader, Value
+from core.executor.alarms import TroubleError, alarm_of
+from core.executor.snapshot import Alarm, Snapshot, State
+from core.interpreter.modal import Modal
+from core.machine.load import load_machine
+from core.machine.model import InputModel, Machine
+
+KEYS = frozenset(
+    ["Xtravel", "Ztravel", "Xservo", "Zservo", "Sdrive", "comms", "logic", "system", "motion"]  # of the lathe
+)
+LATHE = load_machine(None)
+AT = Snapshot(
+    t=1.0,
+    state=State.RUN,
+    program="/home/op/programs/pin.nc",
+    line=7,
+    block=3,
+    block_text="  G01X.5 ",
+    actual=(12.7, -25.4, 90.0),
+    homed=(True, True, True),
+    modal=Modal(tool=3),
+    velocity=5.08,
+    feed_override=0.805,
+    spindle_override=1.2,
+    rpm_actual=-2001.5,
+    spindle_asked=-2000.0,
+    inputs=frozenset({"collet_closed"}),
+    outputs=frozenset({"collet"}),
+    parts=12,
+)
+
+
+def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, Value]:
+    return FloorReader(machine, KEYS, lambda: 0.0).look(snapshot).values
+
+
+def test_a_machine_in_a_cycle() -> None:
+    assert values_of(AT) == {
+        "avail": "AVAILABLE",
+        "estop": "ARMED",
+        "mode": "AUTOMATIC",
+        "execution": "ACTIVE",
+        "program": "pin.nc",
+        "line": "7",
+        "block": "G01X.5",
+        "toolnum": "3",
+        "pcount": "12",
+        "Xabs": 12.7,  # mm, a radius, from home
+        "Zabs": -25.4,
+        "Cabs": 90.0,
+        "Fact": 5.08,
+        "Fovr": pytest.approx(80.5),
+        "Srpm": 2001.5,  # a speed has no direction
+        "Scmd": 2000.0,
+        "Sovr": pytest.approx(120.0),
+        "rotmode": "SPINDLE",
+        "chuckil": "INACTIVE",
+        "chuck": "CLOSED",
+        "door": "OPEN",  # the guard's switch is off
+        "endbar": "NO",
+        "part": None,  # nothing is wired
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "told"),
+    [
+        ({"state": State.ESTOP}, "estop", "TRIGGERED"),
+        ({"program": ""}, "program", None),
+        ({"line": 0}, "line", None),
+        ({"block_text": "  "}, "block", None),
+        ({"modal": Modal()}, "toolnum", "0"),
+        ({"homed": (False, True, True)}, "Xabs", None),
+        ({"velocity": 0.13}, "Fact", 0.0),  # an encoder that trembles
+        ({"rpm_actual": 0.4}, "Srpm", 0.0),
+        ({"modal": Modal(c_locked=True)}, "rotmode", "CONTOUR"),
+        ({"inputs": frozenset()}, "chuck", "UNLATCHED"),  # told to close, and not there yet
+        ({"inputs": frozenset(), "outputs": frozenset()}, "chuck", "OPEN"),
+        ({"outputs": frozenset()}, "chuck", "CLOSED"),  # told to open, and still there
+        ({"inputs": frozenset({"guard", "end_of_bar"})}, "door", "CLOSED"),
+        ({"inputs": frozenset({"guard", "end_of_bar"})}, "endbar", "YES"),
+    ],
+)
+def test_one_thing_is_different(change: dict[str, object], key: str, told: Value) -> None:
+    assert values_of(replace(AT, **change))[key] == told  # type: ignore[arg-type]
+
+
+def test_without_switches_nothing_is_known_of_what_they_would_tell() -> None:
+    values = values_of(AT, replace(LATHE, inputs={}))
+    assert {values[key] for key in ("chuck", "door", "endbar", "part")} == {None}
+
+
+def test_an_input_called_part_is_a_part_in_the_chuck() -> None:
+    wired = replace(LATHE, inputs={**LATHE.inputs, "part": InputModel("part", "IN-7")})
+    assert values_of(AT, wired)["part"] == "NOT_PRESENT"
+    assert values_of(replace(AT, inputs=frozenset({"part"})), wired)["part"] == "PRESENT"
+
+
+def test_without_a_c_axis_its_angle_means_nothing() -> None:
+    assert values_of(AT, replace(LATHE, c_enabled=False))["Cabs"] is None
+
+
+@pytest.mark.parametrize(("rpm", "told"), [(300.0, "ACTIVE"), (-300.0, "ACTIVE"), (1.0, "INACTIVE")])
+def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, told: str) -> None:
+    strict = replace(LATHE, interlocks=replace(LATHE.interlocks, unclamp_while_turning=False))
+    assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == told
+
+
+# --- a control that says nothing any more ----------------------------------------------------------------
+
+
+def test_of_a_silent_control_nothing_is_known() -> None:
+    now = 100.0
+    reader = FloorReader(LATHE, KEYS, lambda: now)
+    assert reader.look(AT).available
+    now += 0.9
+    assert reader.look(AT).available
+    now += 0.2
+    reading = reader.look(AT)
+    assert (reading.values, reading.conditions) == ({"avail": "UNAVAILABLE"}, {})
+    assert reader.look(replace(AT, t=2.0)).available  # it speaks again
+
+
+# --- conditions ------------------------------------------------------------------------------------------
+
+
+def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
+    reading = FloorReader(LATHE, KEYS, lambda: 0.0).look(snapshot)
+    assert set(reading.conditions) == KEYS
+    return {key: found for key, found in reading.conditions.items() if found}
+
+
+def alarm(code: str, detail: str = "") -> Alarm:
+    return alarm_of(TroubleError(code, detail), 0, 0.0)[0]
+
+
+def test_without_alarms_all_is_normal() -> None:
+    assert active(AT) == {}
+
+
+@pytest.mark.parametrize(
+    ("code", "detail", "key"),
+    [
+        ("axis", "X: over current", "Xservo"),
+        ("axis", "Z: following error", "Zservo"),
+        ("axis", "C: over current", "Sdrive"),  # the spindle is C
+        ("axis", "the drives have lost power", "system"),
+        ("following", "Z is 2.345 off its setpoint", "Zservo"),
+        ("in-position", "", "system"),
+        ("travel", "line 12 moves X to 150.000 mm from home", "Xtravel"),
+        ("travel", "line 12 moves Z to 150.000 mm from home", "Ztravel"),
+        ("travel", "", "motion"),
+        ("driver", "the bus is off", "comms"),
+        ("spindle", "VFD: E07", "Sdrive"),
+        ("thread-lost", "", "Sdrive"),
+        ("spindle-still", "", "motion"),
+        ("program", "", "motion"),
+        ("collet", "", "logic"),
+        ("unclamp", "the spindle turns at 300 rpm", "logic"),
+        ("internal", "KeyError: 'X'", "system"),
+    ],
+)
+def test_where_an_alarm_belongs(code: str, detail: str, key: str) -> None:
+    raised = alarm(code, detail)
+    fault = ("FAULT", str(raised.number), f"{raised.text}: {raised.cause}")
+    assert active(replace(AT, state=State.FAULT, alarms=(raised,))) == {key: (fault,)}
+
+
+@pytest.mark.parametrize("code", PLACES)
+def test_every_place_is_that_of_an_alarm(code: str) -> None:
+    assert alarm(code).code == code
+
+
+def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
+    new = Alarm(999, "new", "SOMETHING NEW", "nobody knows", "")
+    assert active(replace(AT, alarms=(new,))) == {
+        "system": (("FAULT", "999", "SOMETHING NEW: nobody knows"),)
+    }
+
+
+def test_two_faults_of_a_slide_stand_side_by_side() -> None:
+    both = alarm("axis", "X: over current"), alarm("following", "X is 2.345 off its setpoint")
+    assert [code for _, code, _ in active(replace(AT, alarms=both))["Xservo"]] == ["101", "102"]
+
+
+def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
+    held = replace(AT, state=State.HOLD, waiting_for="SETPOINTS RAN LOW")
+    assert active(held) == {"system": (("WARNING", "hold", "SETPOINTS RAN LOW"),)}
+    assert active(replace(held, waiting_for="")) == {}
+    assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}
