@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk import prompts
 from app.desk.desk import Desk
+from app.desk.jogging import notices
 from app.desk.jogging.asked import TOOL
 from app.desk.jogging.directions import Direction, directions_of
 from app.desk.jogging.hold import JogHold
 from app.desk.jogging.home import HomeAsk
-from app.desk.jogging.speeds import CONTINUOUS, Speeds
+from app.desk.jogging.speeds import Speeds
 from app.desk.jogging.tool import ToolSetting
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES
+from app.desk.jogging.wheel import WheelHold
 from app.desk.words import tr
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
@@ -40,6 +42,7 @@ class JogDesk:
     machine: Machine
     speeds: Speeds = field(init=False)
     hold: JogHold = field(init=False)
+    wheel: WheelHold = field(init=False)
     home: HomeAsk = field(init=False)
     tool: ToolSetting = field(init=False)
     directions: tuple[Direction, ...] = ()
@@ -58,6 +61,9 @@ class JogDesk:
             self._now,
             self.barred,
         )
+        names = tuple(dict.fromkeys(each.axis for each in self.directions))
+        names = tuple(sorted(names, key=_order(self.machine)))
+        self.wheel = WheelHold(self.machine, self.hold, names, self._wheel_barred)
         self.home = HomeAsk(self.machine, desk.post, desk.say, desk.clear)
         self.tool = ToolSetting(desk, desk.book)
 
@@ -71,39 +77,26 @@ class JogDesk:
             return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
         if self.home.give_up():
             return tr("HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG")
-        return self._state_bars(state)
+        return notices.bars(state)
 
-    def _state_bars(self, state: State) -> str:
-        words = {
-            State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
-            State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
-            State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
-            State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
-        }
-        if state in prompts.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
-            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
-        return words.get(state, "")
+    def _wheel_barred(self) -> str:
+        """As ``barred``, and takes nothing back."""
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: THE HANDWHEEL IS OFF")
+        return notices.bars(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame."""
         self.hold.look(snapshot)
+        self.wheel.look(snapshot)
         self.tool.look(snapshot)
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
         if self.tool.asked:
             return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
-        lost = self.home.lost(snapshot)
-        why = self._state_bars(snapshot.state)
-        if why:
-            return why
-        if lost:
-            return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
-                axes=tr(" AND ").join(sorted(lost))
-            )
-        if self.speeds.step != CONTINUOUS:
-            return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
-        return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
+        wheel = self.wheel.choice[0] if self.wheel.choice else ""
+        return notices.prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -146,6 +139,16 @@ class JogDesk:
         self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
         self.armed = not self.armed
 
+    @property
+    def wheel_drawn(self) -> bool:
+        """Whether the screen's own wheel moves something now: its station is the screen's."""
+        return self.wheel.choice is not None and self.desk.hands.station is not None
+
+    def turn_wheel(self, clicks: int) -> None:
+        """The wheel on the screen is turned."""
+        if self.wheel_drawn and self.desk.hands.station is not None:
+            self.desk.hands.station.turn_handwheel(clicks * self.wheel.counts)
+
     def finger(self, source: str, axis: str, sign: int) -> None:
         """A finger or the mouse goes down on a direction."""
         rapid, self.armed = self.armed, False
@@ -154,18 +157,20 @@ class JogDesk:
     def home_key(self) -> None:
         """Home asks; home again homes all in their order."""
         self.hold.let_go()
+        self.wheel.drop("")
         self.home.key(self.desk.snapshot(), self._no_homing())
 
     def home_one(self, axis: str) -> None:
         """A finger on one axis asks; again homes it."""
         self.hold.let_go()
+        self.wheel.drop("")
         self.home.one(axis, self.desk.snapshot(), self._no_homing())
 
     def _no_homing(self) -> str:
         if self.tool.asked:
             return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST")
         state = self.desk.snapshot().state
-        return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else self._state_bars(state)
+        return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else notices.bars(state)
 
     def typed(self, key: str) -> bool:
         """A typed key; False leaves it to the window."""
@@ -175,6 +180,8 @@ class JogDesk:
             return True
         if key in {"m", "M"}:
             self.tool.master()
+        elif key in {"v", "V"}:
+            self.wheel.next_axis()
         elif key.lower() in LETTERS:
             self.ask(LETTERS[key.lower()])
         else:
@@ -183,18 +190,27 @@ class JogDesk:
 
     def takes(self, key: str) -> bool:
         """Whether a character is this page's."""
-        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m"})
+        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m", "v"})
 
     def escape(self) -> bool:
         """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
         if self.hold.held is not None:
             self.hold.let_go()
             return True
+        if self.wheel.choice is not None:
+            self.wheel.drop(tr("THE HANDWHEEL IS OFF"))
+            return True
         return self.home.give_up() or self.tool.escape()
+
+    @property
+    def active(self) -> bool:
+        """Whether something is held, or the handwheel selected."""
+        return self.hold.held is not None or self.wheel.choice is not None
 
     def let_go(self) -> None:
         """Hands off: the keyboard, the window or the page is gone."""
         self.hold.let_go(tr("THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
+        self.wheel.drop(tr("THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE"))
         self.armed = False
         self._stop_step()
 
@@ -205,7 +221,13 @@ class JogDesk:
     def leave(self) -> None:
         """The page goes: nothing stays held, asked or half entered."""
         self.hold.let_go()
+        self.wheel.drop("")
         self._stop_step()
         self.home.asking, self.armed = False, False
         self.tool.forget()
         self.desk.clear()
+
+
+def _order(machine: Machine) -> Callable[[str], int]:
+    """As the machine file has its axes."""
+    return [axis.name for axis in machine.axes].index

@@ -40,12 +40,17 @@ class Speeds:
     def _turns(self, axis: str) -> bool:
         return self.machine.axis(axis).rotary
 
-    def distance(self, axis: str, mode: Mode) -> float:
+    def distance(self, axis: str, mode: Mode, step: int | None = None) -> float:
         """Length of a step, mm or degrees; one of X changes the figure shown, Ø or R, by its length."""
+        step = self.step if step is None else step
         if self._turns(axis):
-            return DEGREE_STEPS[self.step]
-        length = MM_STEPS[self.step] if mode.metric else INCH_STEPS[self.step] * MM_PER_INCH
+            return DEGREE_STEPS[step]
+        length = MM_STEPS[step] if mode.metric else INCH_STEPS[step] * MM_PER_INCH
         return length / 2 if axis == "X" and mode.diameter else length
+
+    def step_word(self, axis: str, mode: Mode, step: int) -> str:
+        """The length of a step of this axis as it is written."""
+        return _short(DEGREE_STEPS[step]) if self._turns(axis) else step_words(mode)[step]
 
     def step_speed(self, axis: str) -> float:
         """How fast a step goes, mm/s or degrees/s."""

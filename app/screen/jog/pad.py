@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QPolygonF
+from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.jogging.desk import JogDesk
@@ -16,6 +16,7 @@ from app.desk.jogging.speeds import CONTINUOUS, rapid_word, speed_words, step_wo
 from app.desk.offsets.figures import Mode
 from app.desk.words import tr
 from app.screen.fingers import Control, FingerPanel
+from app.screen.jog.dial import Dial
 from app.screen.jog.tiles import Tiles, draw_tiles
 from app.screen.look import CENTRE, LEFT, Look, put
 from core.executor.snapshot import Snapshot
@@ -29,6 +30,7 @@ class JogPad(FingerPanel):
     def __init__(self, look: Look, model: JogDesk, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
+        self._dial = Dial(model.turn_wheel)
         self._shown: object = None
         self._known: dict[str, Known] = {}
         self._state = ""
@@ -42,6 +44,7 @@ class JogPad(FingerPanel):
         shown = (
             (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
             (held.axis, held.velocity) if held else None,
+            model.wheel.choice,
             (tuple(self._known.items()), model.home.asking, self._state),
         )
         if shown != self._shown:
@@ -60,10 +63,14 @@ class JogPad(FingerPanel):
         high = ROW * u
         self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
         self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
+        rows = 2
+        if self._model.wheel.there:
+            self._wheel(painter, QRectF(room.x(), room.y() + 2 * high, room.width(), high - 0.6 * u))
+            rows = 3
         foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
-        cross = QRectF(room.x(), room.y() + 2 * high, room.width(), foot.y() - room.y() - 2 * high - 0.6 * u)
-        self._cross(painter, cross)
+        top = room.y() + rows * high
+        self._cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
 
     def _steps(self, painter: QPainter, row: QRectF) -> None:
         model = self._model
@@ -84,6 +91,22 @@ class JogPad(FingerPanel):
             model.arm,
         ]
         self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
+
+    def _wheel(self, painter: QPainter, row: QRectF) -> None:
+        """Which axis the handwheel moves."""
+        wheel = self._model.wheel
+        axis = wheel.choice[0] if wheel.choice else ""
+        presses = [partial(wheel.choose, name) for name in ("", *wheel.names)]
+        chosen = ("", *wheel.names).index(axis)
+        words = (tr("OFF"), *wheel.names)
+        self._tiles(painter, row, Tiles((tr("WHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """The mouse's wheel turns the one that is drawn."""
+        if self._model.wheel_drawn:
+            self._dial.notches(event.angleDelta().y())
+            self.update()
+        event.accept()
 
     def _homing(self, painter: QPainter, row: QRectF) -> None:
         model = self._model
@@ -168,6 +191,13 @@ class JogPad(FingerPanel):
         words = (
             (tr("STEP"), step_words(mode)[step]) if step != CONTINUOUS else (tr("HELD"), self._speed(mode))
         )
+        if model.wheel.choice is not None:
+            axis, step = model.wheel.choice
+            words = (tr("WHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
+        if model.wheel_drawn:
+            self._dial.draw(painter, look, box, words[1])
+            self.controls.append(self._dial.control(box))
+            return
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6, bold=True))
         put(painter, QRectF(box.x(), box.y() + 0.1 * box.height(), box.width(), 2.2 * u), CENTRE, words[0])

@@ -176,14 +176,14 @@ class JogPage(Page):
         A screen without a window manager never becomes active; there only the loss of it counts.
         """
         active = self.window().isActiveWindow()
-        if self.model.hold.held is None:
+        if not self.model.active:
             self._was_active = active
         covered = QApplication.activeModalWidget() or QApplication.activePopupWidget()
         return covered is None and (active or not self._was_active)
 
     def let_go_if_held(self) -> None:
         """Something lies in front that would take the release."""
-        if self.model.hold.held is not None:
+        if self.model.active:
             self.let_go()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

@@ -33,7 +33,7 @@ NONE = Qt.KeyboardModifier.NoModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-def shipped(folder: Path, *, absolute: bool, with_c: bool = True) -> str:
+def shipped(folder: Path, *, absolute: bool, with_c: bool = True, wheel: bool = False) -> str:
     """The shipped machine file; not ``absolute``: its slides only count, and Z is homed before X."""
     text = files("resources").joinpath("machines", "gt75.toml").read_text(encoding="utf-8")
     if not absolute:
@@ -43,6 +43,8 @@ def shipped(folder: Path, *, absolute: bool, with_c: bool = True) -> str:
     if not with_c:
         before, c_axis = text.split("[axis.C]", 1)
         text = f"{before}[axis.C]{c_axis.replace('enabled = true', 'enabled = false', 1)}"
+    if wheel:
+        text += '\n[io.analog]\nhandwheel = { at = "wheel", counts_per_click = 4 }\n'
     path = folder / "lathe.toml"
     path.write_text(text, encoding="utf-8")
     return str(path)
@@ -136,12 +138,12 @@ class JogBench:
         return self.frame.prompt.text
 
 
-def bench_on(folder: Path, *, absolute: bool = True, with_c: bool = True) -> JogBench:
+def bench_on(folder: Path, *, absolute: bool = True, with_c: bool = True, wheel: bool = False) -> JogBench:
     """Desk, lathe and window; the drives are on and the Jog page is open."""
     clock = StepClock()
     store = Store.open(folder / "home")
     desk, executor = desk_and_executor(
-        shipped(folder, absolute=absolute, with_c=with_c), lambda: offsets_of(store), clock
+        shipped(folder, absolute=absolute, with_c=with_c, wheel=wheel), lambda: offsets_of(store), clock
     )
     desk.book = OffsetBook(store)
     desk.hands.clock = clock.now

@@ -11,8 +11,10 @@ from pytestqt.qtbot import QtBot
 from tests.screen.jog.bench import JogBench, bench_on, opened
 
 
-def _open(qtbot: QtBot, folder: Path, *, absolute: bool = True, with_c: bool = True) -> Iterator[JogBench]:
-    bench = bench_on(folder, absolute=absolute, with_c=with_c)
+def _open(
+    qtbot: QtBot, folder: Path, *, absolute: bool = True, with_c: bool = True, wheel: bool = False
+) -> Iterator[JogBench]:
+    bench = bench_on(folder, absolute=absolute, with_c=with_c, wheel=wheel)
     qtbot.waitExposed(bench.window)
     opened(bench)
     yield bench
@@ -34,3 +36,9 @@ def lost(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
 @pytest.fixture
 def no_c(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
     yield from _open(qtbot, tmp_path, with_c=False)
+
+
+@pytest.fixture
+def wheeled(qtbot: QtBot, tmp_path: Path) -> Iterator[JogBench]:
+    """A lathe with a handwheel; its station is the screen's, so the wheel is drawn."""
+    yield from _open(qtbot, tmp_path, wheel=True)

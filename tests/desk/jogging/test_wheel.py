@@ -1,0 +1,239 @@
+"""The handwheel as the page asks for it: what is posted, and what must end it."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+
+import pytest
+
+from app.desk.jogging.hold import JogHold
+from app.desk.jogging.speeds import CONTINUOUS, Speeds
+from app.desk.jogging.wheel import WheelHold
+from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.modal import Modal
+from core.machine.hardware.model import AnalogModel
+from core.machine.load import load_machine
+from core.machine.model import InputModel
+
+INCH = 25.4
+THOU = 0.001 * INCH
+FRAME = 0.016
+LEASE = 0.2
+
+
+@dataclass
+class Scene:
+    """A wheel, a clock, and a control that obeys."""
+
+    switches: tuple[str, ...] = ()
+    there: bool = True
+    posted: list[Command] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+    why: str = ""
+    t: float = 100.0
+    modal: Modal = field(default_factory=Modal)
+    on: frozenset[str] = frozenset()
+    taken: bool = False  # the control has taken it away
+
+    def __post_init__(self) -> None:
+        machine = load_machine()
+        wheel = {"handwheel": AnalogModel("handwheel", "w", 0.0, 1.0, counts_per_click=4)}
+        machine = dataclasses.replace(
+            machine,
+            inputs={**machine.inputs, **{name: InputModel(name, f"t {name}") for name in self.switches}},
+            hardware=dataclasses.replace(machine.hardware, analog=wheel if self.there else {}),
+        )
+        post, say, clock = self.posted.append, self.said.append, lambda: self.t
+        self.hold = JogHold(Speeds(machine), LEASE, post, say, lambda: None, clock, lambda: self.why)
+        self.wheel = WheelHold(machine, self.hold, ("X", "Z", "C"), lambda: self.why)
+        self.frames(0.1)
+
+    def frames(self, seconds: float) -> None:
+        end = self.t + seconds
+        while self.t < end - 1e-9:
+            self.t += FRAME
+            axis = self.wheel.choice[0] if self.wheel.choice and not self.taken else ""
+            shot = Snapshot(state=State.IDLE, modal=self.modal, wheel=axis, inputs=self.on)
+            self.hold.look(shot)
+            self.wheel.look(shot)
+
+    @property
+    def wheels(self) -> list[Wheel]:
+        return [command for command in self.posted if isinstance(command, Wheel)]
+
+    def nothing_more(self) -> bool:
+        count = len(self.wheels)
+        self.frames(1.0)
+        return len(self.wheels) == count
+
+
+def chosen(scene: Scene, axis: str = "X") -> Scene:
+    scene.wheel.choose(axis)
+    scene.frames(0.1)
+    assert scene.wheel.choice is not None
+    return scene
+
+
+def test_the_key_goes_through_the_axes_and_lets_go_at_last() -> None:
+    scene, seen = Scene(), []
+    for _ in range(4):
+        scene.wheel.next_axis()
+        scene.frames(0.1)
+        seen.append(scene.wheel.choice[0] if scene.wheel.choice else "")
+    assert seen == ["X", "Z", "C", ""]
+    assert scene.posted[-1] == WheelOff()
+    assert scene.nothing_more()
+
+
+def test_it_is_renewed_before_its_lease_ends() -> None:
+    scene = chosen(Scene())
+    scene.frames(1.0)
+    assert set(scene.wheels) == {Wheel("X", THOU, LEASE)}  # continuous: a thousandth
+    assert len(scene.wheels) >= 1.0 / LEASE * 3
+
+
+@pytest.mark.parametrize(
+    ("step", "metric", "diameter", "axis", "way"),
+    [
+        (1, False, False, "X", 0.01 * INCH),
+        (2, False, True, "X", 0.5 * THOU),
+        (2, False, True, "Z", THOU),
+        (3, False, False, "Z", 0.1 * THOU),
+        (1, True, False, "Z", 0.1),
+        (3, True, False, "Z", 0.001),
+        (3, False, False, "C", 0.02),
+    ],
+)
+def test_a_click_is_the_step_of_the_page(
+    step: int, metric: bool, diameter: bool, axis: str, way: float
+) -> None:
+    scene = Scene(modal=Modal(metric=metric, diameter=diameter))
+    scene.hold.speeds.step = step
+    chosen(scene, axis)
+    assert scene.wheels[-1] == Wheel(axis, pytest.approx(way), LEASE)
+
+
+def test_another_step_lets_go_first() -> None:
+    scene = chosen(Scene())
+    scene.hold.speeds.step = 3
+    scene.frames(0.1)
+    off = scene.posted.index(WheelOff())
+    assert all(command == Wheel("X", pytest.approx(0.1 * THOU), LEASE) for command in scene.posted[off + 1 :])
+    assert len(scene.posted) > off + 1
+
+
+@pytest.mark.parametrize("step", [CONTINUOUS, 0])
+def test_steps_that_are_none_for_a_wheel_let_it_go_for_good(step: int) -> None:
+    scene = chosen(Scene())
+    scene.hold.speeds.step = step
+    scene.frames(0.1)
+    assert scene.posted[-1] == WheelOff()
+    scene.hold.speeds.step = 2
+    assert scene.nothing_more()
+
+
+def test_a_jog_that_is_held_ends_when_it_is_chosen() -> None:
+    scene = Scene()
+    scene.hold.press("Left", "Z", -1, rapid=False)
+    assert isinstance(scene.posted[-1], Jog)
+    scene.wheel.choose("X")
+    assert JogStop() in scene.posted
+
+
+def test_what_bars_a_jog_bars_it_and_ends_it() -> None:
+    scene = Scene(why="THE DRIVES ARE OFF")
+    scene.wheel.choose("X")
+    assert scene.said == ["THE DRIVES ARE OFF"]
+    assert scene.nothing_more()
+    scene.why = ""
+    chosen(scene)
+    scene.why = "A PROGRAM IS UNDER WAY"
+    scene.frames(0.1)
+    assert scene.posted[-1] == WheelOff()
+    scene.why = ""
+    assert scene.nothing_more()
+
+
+def test_what_the_control_has_taken_away_is_not_asked_for_again() -> None:
+    scene = chosen(Scene())
+    scene.frames(0.5)
+    scene.taken = True
+    scene.frames(0.1)
+    assert scene.posted[-1] == WheelOff()
+    scene.taken = False
+    assert scene.nothing_more()
+
+
+def test_a_screen_that_was_away_lets_it_go() -> None:
+    scene = chosen(Scene())
+    scene.t += 0.3
+    scene.frames(0.05)
+    assert scene.posted[-1] == WheelOff()
+    assert set(scene.said) == {"THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF"}
+    assert scene.nothing_more()
+
+
+def test_without_a_wheel_the_key_says_so() -> None:
+    scene = Scene(there=False)
+    scene.wheel.next_axis()
+    assert scene.said == ["THIS MACHINE HAS NO HANDWHEEL"]
+    assert scene.nothing_more()
+
+
+# --- switches of the station --------------------------------------------------------------------------------
+
+
+SWITCHES = ("wheel_x", "wheel_z", "wheel_x1", "wheel_x10", "wheel_x100")
+
+
+def switched(*on: str) -> Scene:
+    scene = Scene(SWITCHES)
+    scene.on = frozenset(on)
+    scene.frames(0.1)
+    return scene
+
+
+def test_switches_choose_axis_and_step() -> None:
+    scene = switched("wheel_z", "wheel_x100")
+    assert scene.wheels[-1] == Wheel("Z", pytest.approx(10 * THOU), LEASE)
+    scene.on = frozenset({"wheel_x", "wheel_x1"})
+    scene.frames(0.1)
+    assert scene.wheels[-1] == Wheel("X", pytest.approx(0.1 * THOU), LEASE)
+    assert WheelOff() in scene.posted
+
+
+@pytest.mark.parametrize(
+    "on", [(), ("wheel_x",), ("wheel_x10",), ("wheel_x", "wheel_z", "wheel_x1"), ("wheel_x", *SWITCHES[2:])]
+)
+def test_switches_between_their_places_choose_nothing(on: tuple[str, ...]) -> None:
+    scene = switched(*on)
+    assert scene.wheels == []
+    scene.wheel.choose("X")
+    assert "THE SWITCH AT THE STATION" in scene.said[0]
+    assert scene.nothing_more()
+
+
+def test_what_was_taken_away_needs_the_switch_moved() -> None:
+    scene = switched("wheel_x", "wheel_x10")
+    scene.frames(0.5)
+    scene.taken = True
+    scene.frames(0.1)
+    scene.taken = False
+    assert scene.nothing_more()
+    scene.on = frozenset({"wheel_x10"})
+    scene.frames(0.1)
+    scene.on = frozenset({"wheel_x", "wheel_x10"})
+    scene.frames(0.1)
+    assert scene.wheel.choice == ("X", 2)
+
+
+def test_a_switch_that_stood_there_waits_for_the_drives() -> None:
+    scene = Scene(SWITCHES, why="THE DRIVES ARE OFF")
+    scene.on = frozenset({"wheel_x", "wheel_x10"})
+    assert scene.nothing_more()
+    assert scene.said == []
+    scene.why = ""
+    scene.frames(0.1)
+    assert scene.wheel.choice == ("X", 2)

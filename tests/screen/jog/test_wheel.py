@@ -1,0 +1,171 @@
+"""The handwheel by key, mouse wheel and finger on the real executor: what is selected moves, or nothing."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QDialog
+from pytestqt.qtbot import QtBot
+
+from core.executor.snapshot import State
+from tests.screen.jog.bench import INCH, JogBench, Key
+
+THOU = 0.001 * INCH
+
+
+def notches(jog: JogBench, count: int) -> None:
+    """The mouse's wheel over the pad, one notch a tick."""
+    pad = jog.page.pad
+    for _ in range(abs(count)):
+        delta = QPoint(0, 120 if count > 0 else -120)
+        middle = QPointF(pad.rect().center())
+        event = QWheelEvent(
+            middle,
+            QPointF(pad.mapToGlobal(middle.toPoint())),
+            QPoint(),
+            delta,
+            Qt.MouseButton.NoButton,
+            Qt.KeyboardModifier.NoModifier,
+            Qt.ScrollPhase.NoScrollPhase,
+            False,
+        )
+        QApplication.sendEvent(pad, event)
+        jog.run(0.01)
+
+
+def selected(jog: JogBench, axis: str = "X") -> None:
+    """By the key."""
+    for _ in range("XZC".index(axis) + 1):
+        jog.key(Key.Key_V)
+        jog.run(0.05)
+    jog.run(0.2)
+    assert jog.shot.wheel == axis
+
+
+@pytest.mark.parametrize("axis", ["X", "Z"])
+def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
+    selected(wheeled, axis)
+    assert f"MOVES {axis}" in wheeled.prompt
+    notches(wheeled, 5)
+    wheeled.until(lambda: wheeled.shot.state is State.IDLE)
+    wheeled.run(0.3)
+    assert wheeled.shot.demand["XZ".index(axis)] == pytest.approx(5 * THOU, abs=1e-9)
+    notches(wheeled, -5)
+    wheeled.run(0.5)
+    assert wheeled.shot.demand == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_a_finger_round_the_drawn_wheel(wheeled: JogBench) -> None:
+    selected(wheeled)
+    wheeled.page.pad.grab()  # drawing places the controls
+    box = wheeled.page.pad.controls[-1].box
+    for at in wheeled.page.pad.controls:
+        if at.along is not None and at.up is None:
+            box = at.box
+    pad, centre, size = wheeled.page.pad, box.center(), 0.3 * min(box.width(), box.height())
+
+    def around(degrees: float) -> QPoint:
+        angle = math.radians(degrees)
+        return (centre + QPointF(math.cos(angle), math.sin(angle)) * size).toPoint()
+
+    QTest.mousePress(pad, Qt.MouseButton.LeftButton, pos=around(0))
+    for degrees in range(0, 91, 5):
+        QTest.mouseMove(pad, around(degrees))
+        wheeled.run(0.01)
+    QTest.mouseRelease(pad, Qt.MouseButton.LeftButton, pos=around(90))
+    wheeled.run(0.5)
+    assert wheeled.shot.demand[0] == pytest.approx(25 * THOU, abs=1.1 * THOU)  # a quarter of a hundred clicks
+
+
+def test_unselected_it_turns_nothing(wheeled: JogBench) -> None:
+    notches(wheeled, 20)
+    wheeled.run(0.3)
+    selected(wheeled)
+    wheeled.key(Key.Key_Escape)
+    notches(wheeled, 20)
+    wheeled.run(0.3)
+    assert wheeled.shot.demand == (0.0, 0.0, 0.0)
+
+
+def stays(wheeled: JogBench) -> None:
+    """It is off and stays so, whatever the wheel does."""
+    wheeled.run(0.3)
+    assert wheeled.shot.wheel == ""
+    at = wheeled.shot.demand
+    for _ in range(20):
+        station = wheeled.desk.hands.station
+        assert station is not None
+        station.turn_handwheel(4)
+        wheeled.run(0.01)
+    wheeled.run(0.3)
+    assert wheeled.shot.demand == at
+
+
+def test_leaving_the_page_ends_it(wheeled: JogBench) -> None:
+    selected(wheeled)
+    notches(wheeled, 5)
+    wheeled.key(Key.Key_F1)
+    stays(wheeled)
+
+
+def test_a_dialog_in_front_ends_it(wheeled: JogBench, qtbot: QtBot) -> None:
+    selected(wheeled)
+    notches(wheeled, 5)
+    dialog = QDialog(wheeled.window)
+    qtbot.addWidget(dialog)
+    dialog.setModal(True)
+    dialog.show()
+    wheeled.run(0.1)
+    assert "HANDWHEEL IS OFF" in wheeled.prompt
+    dialog.close()
+    stays(wheeled)
+
+
+def test_a_screen_that_stands_still_ends_it(wheeled: JogBench) -> None:
+    selected(wheeled)
+    wheeled.run(0.6, screen=False)
+    assert wheeled.shot.wheel_ended == "the page that asked for it was silent"
+    stays(wheeled)
+
+
+def test_an_entry_ends_it(wheeled: JogBench) -> None:
+    selected(wheeled)
+    wheeled.type("t")
+    wheeled.run(0.1)
+    assert wheeled.shot.wheel == ""
+    wheeled.key(Key.Key_Escape)
+    stays(wheeled)
+
+
+def test_an_arrow_while_it_turns_stops_both(wheeled: JogBench) -> None:
+    selected(wheeled, "Z")
+    wheeled.key(Key.Key_F2)  # .0001
+    wheeled.run(0.3)
+    notches(wheeled, 20)
+    wheeled.down(Key.Key_Right)
+    notches(wheeled, 20)
+    wheeled.up(Key.Key_Right)
+    stays(wheeled)
+    assert "HANDWHEEL" in wheeled.prompt
+
+
+def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
+    selected(wheeled)
+    wheeled.key(Key.Key_F2)
+    wheeled.run(0.3)
+    notches(wheeled, 3)
+    wheeled.run(0.5)
+    assert wheeled.shot.demand[0] == pytest.approx(0.3 * THOU, abs=1e-9)
+    wheeled.key(Key.Key_F2)  # continuous
+    wheeled.run(0.1)
+    assert wheeled.shot.wheel == ""
+
+
+def test_without_one_the_key_says_so_and_nothing_is_drawn(jog: JogBench) -> None:
+    jog.key(Key.Key_V)
+    assert jog.prompt == "THIS MACHINE HAS NO HANDWHEEL"
+    assert not jog.page.model.wheel_drawn
