@@ -90,10 +90,10 @@ class Publisher:
             interrupted=_interrupted(conductor),
             tool_open=standing.tool_open,
             start_refused=standing.start_refused,
-        )
-
             wheel=conductor.wheel.axis,
             wheel_ended=conductor.wheel.ended,
+        )
+
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
         """Of a mill: the system of the last block; between programs nothing is tilted or shifted."""
         if block is not None:
