@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 import sys
+import textwrap
+from collections.abc import Iterator, Sequence
 
 from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE
 from core.machine.load import MachineFileError, named_machine
-from core.machine.model import Machine
-from core.ports import DriverError
 
-Row = tuple[str, str, str]
-# States that are no trouble: an E-stop that is pressed answers as it should.
-_GOOD = ("ok", "on", "off", "E-stop")
+WIDTH = 80
+Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detail
 
 
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
+    from app.compose.checking import check_ports
+
     try:
         machine = named_machine(file)
     except MachineFileError as error:
@@ -24,8 +25,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
         _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
         return EXIT_USAGE
-    rows, warnings, trouble = _connected(machine)
-    ports = [dict(zip(("name", "state", "detail"), row, strict=True)) for row in rows]
+    answers = check_ports(machine)
     _report(
         json_wanted,
         {
@@ -33,36 +33,30 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "machine": machine.name,
             "backend": machine.backend,
             "errors": [],
-            "ports": ports,
-            "warnings": warnings,
+            "ports": [row._asdict() for row in answers.rows],
+            "warnings": answers.warnings,
+            "trouble": answers.trouble,
         },
     )
     if not json_wanted:
-        _write_table(machine, rows)
-    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in (*warnings, *trouble)))
-    return EXIT_ERRORS if trouble else EXIT_OK
+        sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
+        sys.stdout.write("".join(f"{line}\n" for line in table(answers.rows)))
+    said = (*answers.warnings, *answers.trouble)
+    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
+    return EXIT_ERRORS if answers.trouble else EXIT_OK
 
 
-def _connected(machine: Machine) -> tuple[list[Row], list[str], list[str]]:
-    """What the ports answer, what is worth knowing, and what is wrong."""
-    from app.compose.checking import check_ports
-
-    try:
-        rows, warnings = check_ports(machine)
-    except DriverError as error:
-        return [], [], [str(error)]
-    bad = [f"{name}: {state} {detail}".rstrip() for name, state, detail in rows if state not in _GOOD]
-    return rows, warnings, bad
+def table(rows: Rows) -> Iterator[str]:
+    """Lines of at most 80 characters; a detail that is longer goes on below itself."""
+    widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
+    start = " " * (2 + sum(width + 2 for width in widths))
+    for *cells, detail in rows:
+        head = "  " + "".join(f"{cell:<{width}}  " for cell, width in zip(cells, widths, strict=True))
+        text = textwrap.wrap(detail, max(WIDTH - len(start), 30)) or [""]
+        yield (head + text[0]).rstrip()
+        yield from (start + more for more in text[1:])
 
 
 def _report(json_wanted: bool, report: dict[str, object]) -> None:
     if json_wanted:
         sys.stdout.write(json.dumps(report) + "\n")
-
-
-def _write_table(machine: Machine, rows: list[Row]) -> None:
-    width = max((len(name) for name, _, _ in rows), default=0)
-    sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
-    sys.stdout.write(
-        "".join(f"  {name:<{width}}  {state:<4} {detail}".rstrip() + "\n" for name, state, detail in rows)
-    )

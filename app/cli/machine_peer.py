@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import signal
 import sys
+from collections.abc import Callable
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from app.cli.errors import EXIT_OK, CommandError
-from app.compose.grblhal import play_grblhal
 from app.compose.machine import read_machine
-from app.compose.peer import play_peers
 from core.ports import DriverError
+
+if TYPE_CHECKING:
+    from core.machine.model import Machine
 
 
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
     machine = read_machine(file)
-    bus, ended = machine.hardware.canopen, False
-    if bus is None and machine.hardware.grblhal is None:
-        raise CommandError(f"{file}: there is no [canopen] or [grblhal] table, so nothing to be a peer of")
+    player = {"canopen": _drives, "grblhal": _controller}.get(machine.backend)
+    if player is None:
+        why = f"machine.backend is {machine.backend}: nothing to be a peer of; canopen and grblhal have one"
+        raise CommandError(f"{file}: {why}")
+    ended = False
 
     def end(_signal: int, _frame: FrameType | None) -> None:
         nonlocal ended
@@ -26,19 +31,31 @@ def play(file: str) -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-
-    def say(what: str) -> None:
-        sys.stdout.write(f"simulated {what}; end: Ctrl-C\n")
-        sys.stdout.flush()
-
     try:
-        if bus is None:
-            play_grblhal(
-                machine, lambda: not ended, lambda where: say(f"grblHAL of {machine.name} on {where}")
-            )
-        else:
-            say(f"drives of {machine.name} on {bus.interface} {bus.channel}")
-            play_peers(machine, lambda: not ended)
+        player(machine, lambda: not ended)
     except DriverError as error:
         raise CommandError(str(error)) from error
     return EXIT_OK
+
+
+def _drives(machine: Machine, going: Callable[[], bool]) -> None:
+    from app.compose.peer import play_peers
+
+    bus = machine.hardware.canopen
+    assert bus is not None  # a rule of the machine file
+    if bus.interface == "virtual":
+        raise DriverError(
+            "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
+        )
+    play_peers(machine, going, lambda: _say(f"drives of {machine.name} on {bus.interface} {bus.channel}"))
+
+
+def _controller(machine: Machine, going: Callable[[], bool]) -> None:
+    from app.compose.grblhal import play_grblhal
+
+    play_grblhal(machine, going, lambda where: _say(f"grblHAL of {machine.name} on {where}"))
+
+
+def _say(what: str) -> None:
+    sys.stdout.write(f"simulated {what}; end: Ctrl-C\n")
+    sys.stdout.flush()

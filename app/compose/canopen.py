@@ -24,6 +24,7 @@ from drivers.canopen.config import (
 if TYPE_CHECKING:
     from drivers.canopen.machine import CanopenMachine
     from drivers.canopen.peer.machine import Peers
+    from drivers.canopen.survey import Answer
 
 _LIBRARIES = frozenset(("can", "canopen", "msgpack"))
 
@@ -46,6 +47,15 @@ def canopen_peers(machine: Machine, clock: Clock) -> Peers:
     except ImportError as error:
         raise DriverError(lacking(error)) from error
     return Peers(canopen_config(machine), sim_config(machine), clock)
+
+
+def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
+    """Each node of that bus asked what it is. Raises DriverError."""
+    try:
+        from drivers.canopen.survey import survey
+    except ImportError as error:
+        raise DriverError(lacking(error)) from error
+    return survey(canopen_config(machine), clock)
 
 
 def lacking(error: ImportError) -> str:

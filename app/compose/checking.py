@@ -2,51 +2,132 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.compose.backends import connect, real_time
-from core.machine.model import Machine
-from core.ports import Clock, MachinePorts, Spindle
+from app.compose.backends import connect, played, real_time
+from app.compose.inverter import has_inverter
+from core.machine.model import Axis, Machine
+from core.machine.units import Unit, shown
+from core.ports import Clock, DriverError, MachinePorts, StationState
 from drivers.inverter.spindle import InverterSpindle
 from drivers.simulated import RealClock, StepClock
 
-Row = tuple[str, str, str]  # name, state, detail
+FAILED = ("fault", "no answer", "wrong")  # states that are trouble; an E-stop that is pressed is none
+_SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 
 
-class Answers(NamedTuple):
-    """What answered, and what the operator should know although nothing is broken."""
+class Row(NamedTuple):
+    """One thing of the machine: where it hangs, how it is, and what it says."""
 
-    rows: list[Row]
-    warnings: list[str]
+    name: str
+    at: str
+    state: str
+    detail: str
+
+
+@dataclass(slots=True)
+class Answers:
+    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is."""
+
+    rows: list[Row] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    trouble: list[str] = field(default_factory=list)
 
 
 def check_ports(machine: Machine) -> Answers:
-    """(name, state, detail) of each drive, the spindle, the station and each input. Raises DriverError.
+    """Each node of a bus, each drive, spindle, station, input, output and pot. Raises nothing of its own.
 
     Nothing is switched on and nothing moves.
     """
     clock: Clock = RealClock() if real_time(machine) else StepClock()
+    answers = Answers()
+    try:
+        _ask_nodes(machine, clock, answers)
+        if not answers.trouble:
+            _ask_ports(machine, clock, answers)
+    except DriverError as error:
+        answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
+        answers.trouble.append(str(error))
+    return answers
+
+
+def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
+    """On a real bus every node by itself, so that one that is missing does not hide the others."""
+    if machine.backend != "canopen" or played(machine):
+        return
+    from app.compose.canopen import canopen_survey
+
+    for name, node, trouble, detail in canopen_survey(machine, clock):
+        state = "no answer" if "no answer" in trouble else "wrong" if trouble else "ok"
+        answers.rows.append(Row(f"node {name}", str(node), state, detail))
+        if trouble:
+            answers.trouble.append(trouble)
+
+
+def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     connected = connect(machine, clock)
     try:
-        return Answers(_rows(connected.ports), list(connected.ports.warnings))
+        if real_time(machine):
+            clock.sleep_until(clock.now() + _SETTLED)
+        rows = list(_rows(machine, connected.ports))
+        answers.warnings += connected.ports.warnings
     finally:
         connected.close()
-
-
-def _turning(spindle: Spindle) -> str:
-    told = f"{spindle.speed():.0f} rpm"
-    return f"{told}, {spindle.status()}" if isinstance(spindle, InverterSpindle) else told
-
-
-def _rows(ports: MachinePorts) -> list[Row]:
-    sample = ports.axes.sample()
-    rows = [
-        (name, "fault" if sample.fault else "ok", f"homed {homed}, at {at:.4f}")
-        for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True)
+    answers.rows += rows
+    answers.trouble += [
+        f"{row.name}: {row.state} {row.detail}".rstrip() for row in rows if row.state in FAILED
     ]
-    fault = ports.spindle.fault()
-    rows.append(("spindle", "fault" if fault else "ok", fault or _turning(ports.spindle)))
+
+
+def _blamed(machine: Machine) -> str:
+    """What it was that could not be reached."""
+    if machine.backend == "sim":
+        return "spindle" if has_inverter(machine) else "feeder"
+    return "bus" if machine.backend == "canopen" else "controller"
+
+
+def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
+    sample, terminals = ports.axes.sample(), _terminals(machine)
+    for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
+        detail = f"{'homed' if homed else 'not homed'}, at {_place(machine.axis(name), at, machine)}"
+        yield Row(name, _node(machine, name), "fault" if sample.fault else "ok", sample.fault or detail)
+    yield _spindle(machine, ports)
     station = ports.station.snapshot()
-    rows.append(("station", "E-stop" if station.estop else "ok", f"feed pot {station.feed_pot:.0%}"))
-    rows += [(f"input {name}", "on" if on else "off", "") for name, on in ports.io.inputs().items()]
-    return rows
+    yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
+    for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
+        for name, on in states.items():
+            yield Row(f"{kind} {name}", terminals.get(f"{kind} {name}", ""), "on" if on else "off", "")
+
+
+def _spindle(machine: Machine, ports: MachinePorts) -> Row:
+    fault, spindle = ports.spindle.fault(), ports.spindle
+    told = f"{spindle.speed():.0f} rpm"
+    if isinstance(spindle, InverterSpindle):
+        told = f"{told}, {spindle.status()}"
+    return Row("spindle", _node(machine, "spindle"), "fault" if fault else "ok", fault or told)
+
+
+def _hands(station: StationState) -> str:
+    spindle = f"spindle {'AUTO' if station.spindle_auto else 'OFF'} {station.spindle_pot:.0%}"
+    return f"feed pot {station.feed_pot:.0%}, {spindle}"
+
+
+def _place(axis: Axis, at: float, machine: Machine) -> str:
+    return shown(at, Unit.DEGREES if axis.rotary else Unit.LENGTH, machine.inch)
+
+
+def _node(machine: Machine, name: str) -> str:
+    """The node of a drive, or the port of an inverter."""
+    hardware = machine.hardware
+    if name == "spindle" and hardware.spindle_driver == "vfd" and hardware.vfd is not None:
+        return hardware.vfd.port
+    if machine.backend != "canopen" or hardware.canopen is None:
+        return ""
+    return next((f"node {node.id}" for node in hardware.canopen.nodes if node.name == name), "")
+
+
+def _terminals(machine: Machine) -> Mapping[str, str]:
+    wired = {f"input {name}": each.terminal for name, each in machine.inputs.items()}
+    return wired | {f"output {name}": each.terminal for name, each in machine.outputs.items()}

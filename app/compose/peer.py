@@ -13,11 +13,15 @@ _ROUND = 0.001  # s
 _STEP = 0.005  # s; a peer that was away catches up in such steps, frame by frame
 
 
-def play_peers(machine: Machine, going: Callable[[], bool]) -> None:
-    """Answer on the machine file's bus while ``going``. Raises DriverError when it cannot be opened."""
+def play_peers(machine: Machine, going: Callable[[], bool], ready: Callable[[], None]) -> None:
+    """Answer on the machine file's bus while ``going``; ``ready`` is called once it is open.
+
+    Raises DriverError when it cannot be opened.
+    """
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = canopen_peers(machine, clock)
     peers.arrival = lambda stamp: stamp - epoch
+    ready()
     try:
         while going():
             while (late := time.monotonic() - zero - clock.now()) > _STEP:

@@ -18,6 +18,8 @@ from core.ports import Clock, DriverError
 from drivers.canopen.config import BusConfig
 
 _log = logging.getLogger(__name__)
+for _library in ("can", "canopen"):  # what goes wrong there is raised, and told by us in one sentence
+    logging.getLogger(_library).addHandler(logging.NullHandler())
 
 _GARBLED = 3  # frames of a wrong shape
 _BUS_OFF = 0x40  # class of an error frame: the controller has switched itself off
@@ -177,6 +179,10 @@ class Node(canopen.RemoteNode):
         return client
 
 
+# NotImplementedError: an interface that python-can does not know.
+_NOT_OPENED = (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError, NotImplementedError)
+
+
 def opened(config: BusConfig) -> can.BusABC:
     """The interface; raises DriverError. On udp_multicast a channel may end in ``:port``.
 
@@ -189,11 +195,13 @@ def opened(config: BusConfig) -> can.BusABC:
         return can.Bus(
             interface=config.interface, channel=channel, bitrate=config.bitrate, ignore_config=True, **more
         )
-    except (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError) as error:
+    except _NOT_OPENED as error:
         _refuse(config, error)
 
 
 def _refuse(config: BusConfig, error: Exception) -> NoReturn:
     hint = f"is it up? ip link set {config.channel} up type can bitrate {config.bitrate}"
     how = hint if config.interface == "socketcan" else "check [canopen] interface and channel"
+    if "not installed" in str(error):  # msgpack, of udp_multicast
+        how = "pip install 'turndesk[canopen]'"
     raise DriverError(f"CAN {config.interface} {config.channel} cannot be opened: {error}; {how}") from error

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import resources
+from app.cli.machine_check import table
 from app.cli.main import main
 
 Captured = pytest.CaptureFixture[str]
@@ -58,3 +59,32 @@ def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
 def test_unreadable_file_is_told(capsys: Captured, tmp_path: Path) -> None:
     assert main(["machine", "check", str(tmp_path / "none.toml")]) == 2
     assert "No such file" in capsys.readouterr().err
+
+
+def test_the_table_fits_a_terminal() -> None:
+    rows = [
+        ("node X", "1", "ok", "CiA 402, " + "vendor 0000015Ah, " * 5),
+        ("input a", "401.6000.1.0", "on", ""),
+    ]
+    lines = list(table(rows))
+    assert max(map(len, lines)) <= 80
+    assert lines[0].startswith("  node X   1             ok  CiA 402, vendor")
+    assert lines[1].startswith(" " * 29 + "vendor") or lines[1].startswith(" " * 29 + "0000015Ah")
+    assert lines[-1] == "  input a  401.6000.1.0  on"
+
+
+def test_terminals_positions_and_outputs_are_in_the_table(capsys: Captured) -> None:
+    assert main(["machine", "check"]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["X", "ok", "homed,", "at", "0", "in"] in lines
+    assert ["output", "collet", "OUT-2", "on"] in lines
+    assert ["input", "end_of_bar", "IN-6", "off"] in lines
+
+
+def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    path.write_text(resources.machine_file("gt75-vfd.toml").replace("/dev/ttyUSB1", str(tmp_path / "none")))
+    assert main(["machine", "check", str(path), "--json"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    assert [(port["name"], port["state"]) for port in report["ports"]] == [("spindle", "no answer")]
+    assert "cannot be opened" in report["trouble"][0]

@@ -33,7 +33,7 @@ def test_every_drive_and_input_of_a_bus_answers(capsys: Captured, tmp_path: Path
     report = json.loads(capsys.readouterr().out)
     ports = {port["name"]: (port["state"], port["detail"]) for port in report["ports"]}
     assert report["backend"] == "canopen"
-    assert ports["X"] == ("ok", "homed False, at 0.0000")
+    assert ports["X"] == ("ok", "not homed, at 0 in")
     assert ports["spindle"] == ("ok", "0 rpm")
     assert ports["input collet_closed"][0] == "on"
     assert ports["input guard"][0] == "off"
@@ -92,4 +92,4 @@ def test_a_program_runs_on_the_bus(capsys: Captured, tmp_path: Path, monkeypatch
 
 def test_peer_needs_a_bus(capsys: Captured) -> None:
     assert main(["machine", "peer", str(Path(resources.__file__).parent / "machines" / "gt75.toml")]) == 2
-    assert "there is no [canopen]" in capsys.readouterr().err
+    assert "machine.backend is sim: nothing to be a peer of" in capsys.readouterr().err

@@ -1,0 +1,78 @@
+"""The nodes of a bus asked one by one: who answers, who does not, who is something else."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from app.compose.canopen import canopen_config, canopen_peers
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.canopen.survey import Answer, survey
+from drivers.simulated import StepClock
+from tests.drivers.canopen.bench import can_machine
+
+
+def on_one_bus(there: Machine, asked: Machine) -> Machine:
+    """The machine that asks, on the channel of the one that is there."""
+    bus, own = there.hardware.canopen, asked.hardware.canopen
+    assert bus is not None
+    assert own is not None
+    moved = dataclasses.replace(own, channel=bus.channel)
+    return dataclasses.replace(asked, hardware=dataclasses.replace(asked.hardware, canopen=moved))
+
+
+def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, Answer]:
+    """What the shipped machine's peers say to a machine file with ``changes``."""
+    clock, machine = StepClock(), can_machine()
+    peers = canopen_peers(machine, clock)
+    try:
+        if silent:
+            peers.nodes[silent].silent = True
+        asking = on_one_bus(machine, can_machine(*changes))
+        return {found.name: found for found in survey(canopen_config(asking), clock, peers.pump)}
+    finally:
+        peers.close()
+
+
+def test_every_node_says_what_it_is() -> None:
+    found = surveyed()
+    assert {name: answer.node for name, answer in found.items()} == {"X": 1, "Z": 2, "spindle": 3, "io": 10}
+    assert not any(answer.trouble for answer in found.values())
+    assert found["X"].detail == "CiA 402, modes PP homing IP CSP"
+    assert found["io"].detail == "CiA 401"
+
+
+def test_one_that_is_silent_hides_no_other() -> None:
+    found = surveyed(silent="Z")
+    assert "Z: node 2" in found["Z"].trouble
+    assert "no answer" in found["Z"].trouble
+    assert [name for name, answer in found.items() if answer.trouble] == ["Z"]
+
+
+def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
+    found = surveyed(("Z = { id = 2 }", "Z = { id = 10 }"), ("io = { id = 10,", "io = { id = 2,"))
+    assert "node 10 is a device of profile 401, expected 402" in found["Z"].trouble
+    assert "node 2 is a device of profile 402, expected 401" in found["io"].trouble
+    assert not found["X"].trouble
+
+
+def test_asking_leaves_no_heartbeat_that_somebody_could_miss() -> None:
+    clock, machine = StepClock(), can_machine()
+    peers = canopen_peers(machine, clock)
+    heard: list[int] = []
+    take = peers.nodes["X"].take
+    peers.nodes["X"].take = lambda cob, data: (heard.append(cob), take(cob, data))[1]  # type: ignore[method-assign]
+    try:
+        survey(canopen_config(machine), clock, peers.pump)
+    finally:
+        peers.close()
+    assert 0x601 in heard  # SDO requests to node 1
+    assert 0x700 + 127 not in heard
+
+
+def test_a_bus_that_is_not_there_is_one_sentence() -> None:
+    machine = can_machine(('interface = "virtual"', 'interface = "nobody"'))
+    with pytest.raises(DriverError, match=r"CAN nobody bench-\d+ cannot be opened"):
+        survey(canopen_config(machine), StepClock())
