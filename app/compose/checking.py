@@ -16,6 +16,7 @@ from drivers.simulated import RealClock, StepClock
 
 FAILED = ("fault", "no answer", "wrong")  # states that are trouble; an E-stop that is pressed is none
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
+_LOOK = 0.02  # s
 
 
 class Row(NamedTuple):
@@ -70,7 +71,7 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     connected = connect(machine, clock)
     try:
         if real_time(machine):
-            clock.sleep_until(clock.now() + _SETTLED)
+            _settle(clock, connected.ports)
         rows = list(_rows(machine, connected.ports))
         answers.warnings += connected.ports.warnings
     finally:
@@ -79,6 +80,14 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     answers.trouble += [
         f"{row.name}: {row.state} {row.detail}".rstrip() for row in rows if row.state in FAILED
     ]
+
+
+def _settle(clock: Clock, ports: MachinePorts) -> None:
+    """Look on like a control that is awake."""
+    end = clock.now() + _SETTLED
+    while clock.now() < end:
+        ports.axes.sample()
+        clock.sleep_until(clock.now() + _LOOK)
 
 
 def _blamed(machine: Machine) -> str:

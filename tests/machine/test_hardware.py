@@ -128,6 +128,8 @@ def test_addresses_of_terminals() -> None:
         ('at = "401.6200.1.0"', 'at = "OUT-1"', "io.out.coolant.at", '"401.6200.1.0"'),
         ('at = "401.6200.1.0"', 'at = "401.6000.9.0"', "io.out.coolant.at", "6200"),
         ('at = "401.6200.1.0"', 'at = "401.6200.1.8"', "io.out.coolant.at", "0…7"),
+        ('at = "401.6200.1.0"', 'at = "401.6200.9.0"', "io.out.coolant.at", "sub-index 1…8"),
+        ('at = "401.6401.1"', 'at = "401.6401.5"', "io.analog.feed_pot.at", "sub-index 1…4"),
         ('at = "401.6200.1.0"', 'at = "io2.6200.1.0"', "io.out.coolant.at", "[canopen.nodes]: io"),
         ('at = "401.6200.1.0"', 'at = "X.60FD.0.1"', "io.out.coolant.at", "inputs only"),
         ('at = "401.6401.1"', 'at = "401.6401.1.3"', "io.analog.feed_pot.at", '"401.6401.1"'),

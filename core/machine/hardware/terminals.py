@@ -11,6 +11,7 @@ from core.machine.schema import written
 
 _ANALOG, _INPUT, _OUTPUT = 0x6401, 0x6000, 0x6200
 _DRIVE_INPUT = 0x60FD
+_BYTES, _WORDS = 8, 4  # of a module: what one PDO of each kind carries
 
 
 def on_the_bus(reading: HardwareReading, signals: Mapping[str, str]) -> Iterator[Finding]:
@@ -60,6 +61,7 @@ def _object(terminal: CanTerminal, profile: int, *, output: bool, analog: bool) 
         right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit < 32
         return "" if right else "a drive has inputs only: 60FD.0 and bits 0…31"
     wanted = _ANALOG if analog else _OUTPUT if output else _INPUT
-    if terminal.index != wanted or terminal.sub < 1:
-        return f"expected object {wanted:04X}, sub-index 1 or more"
+    most = _WORDS if analog else _BYTES
+    if terminal.index != wanted or not 1 <= terminal.sub <= most:
+        return f"expected object {wanted:04X}, sub-index 1…{most}"
     return "" if terminal.bit < 8 else "expected a bit, 0…7"
