@@ -72,7 +72,7 @@ class StationWatch:
     def __init__(self) -> None:
         self._feed = Pot()
         self._spindle = Pot()
-        self._started = False
+        self._started = True  # a start that is on when the control begins to look is no press
         self._last_start = -1e9
 
     def hear(self, state: StationState, now: float) -> Heard:

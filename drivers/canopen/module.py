@@ -28,6 +28,7 @@ class Module401:
         self.inputs = bytearray(BYTES)
         self.outputs = bytearray(BYTES)
         self.analog = [0] * 4
+        self.counting: set[int] = set()  # sub-indices of analog words that count: each count matters
         self.heard = self.answered = bus.clock.now()
         self.missing = 0
         self.trouble = ""
@@ -42,7 +43,7 @@ class Module401:
             self.setup.write(od.ERROR_VALUE, i + 1, safe[i])
         self.setup.write(od.ANALOG_EVENTS, 0, 1)
         for i in range(len(self.analog)):
-            self.setup.write(od.ANALOG_DELTA, i + 1, _DELTA)
+            self.setup.write(od.ANALOG_DELTA, i + 1, 1 if i + 1 in self.counting else _DELTA)
         self.setup.write_all((*watching(self._bus.config), *self.config.objects))
         self.setup.receive(1, *_bytes(od.DIGITAL_OUT), at_once=True)
         self.setup.transmit(1, self._digital, *_bytes(od.DIGITAL_IN))

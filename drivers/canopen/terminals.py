@@ -21,6 +21,9 @@ class CanopenIO:
         self._bus = bus
         self._drives = drives
         self.modules = {module.name: Module401(module, bus) for module in config.modules}
+        wheel = config.pots.get("handwheel")
+        if wheel is not None:
+            self._module(wheel.terminal).counting.add(wheel.terminal.sub)
         self._written: dict[str, bool] = {}
         self._wheel: tuple[int, int] | None = None  # its counter at the last look, and what was counted
 

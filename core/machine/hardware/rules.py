@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from core.machine.errors import Finding
 from core.machine.hardware import drive_limits, wiring
 from core.machine.hardware.fields import AXIS_FAULTS
+from core.machine.hardware.palms import broken as wrong_palms
 from core.machine.hardware.reading import HardwareReading
 from core.machine.hardware.terminals import on_the_bus
 from core.machine.hardware.wheel import broken as wrong_wheel
@@ -28,6 +29,7 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: Mapping[str
     yield from _renewed(reading.values, signals)
     yield from _ports(reading.values)
     yield from wrong_wheel(reading, axes)
+    yield from wrong_palms(reading)
     yield from drive_limits.outside(reading, axes)
     if "canopen" in reading.tables:
         yield from _bus_times(reading.values)
