@@ -91,7 +91,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
 
     def tell(why: str) -> None:
         desk.say(tr("NO SHOP-FLOOR DATA: {why}").format(why=why))
-        journal.hear(Event(executor.snapshot.t, "warning", f"no shop-floor data: {why}"))
+        journal.hear(Event(executor.snapshot.t, "warning", why))
 
     assert desk.lathe is not None
     return open_shop_floor(desk.lathe, lambda: executor.snapshot, tell)

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from datetime import datetime
 
-from app.desk.shopfloor.reading import FloorReader, Reading
+from app.shopfloor.reading import FloorReader, Reading
 from core.executor.snapshot import Snapshot
 from core.machine.hardware.model import MtconnectModel
 from core.machine.model import Machine

@@ -55,6 +55,11 @@
     </message>
     <message>
       <location filename="app/compose/screen.py" />
+      <source>NO SHOP-FLOOR DATA: {why}</source>
+      <translation>SIN DATOS PARA LA PLANTA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
       <source>SIMULATED</source>
       <translation>SIMULADO</translation>
     </message>

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.shopfloor.conditions import PLACES
-from app.desk.shopfloor.reading import FloorReader, Value
+from app.shopfloor.conditions import PLACES
+from app.shopfloor.reading import FloorReader, Value
 from core.executor.alarms import TroubleError, alarm_of
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal import Modal

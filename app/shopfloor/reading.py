@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.pulse import Pulse
-from app.desk.shopfloor.conditions import Condition, conditions_of
-from app.desk.shopfloor.execution import Execution, mode_of
+from app.shopfloor.conditions import Condition, conditions_of
+from app.shopfloor.execution import Execution, mode_of
 from core.executor.snapshot import Snapshot, State
 from core.machine.model import Machine
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.shopfloor.execution import Execution, mode_of
+from app.shopfloor.execution import Execution, mode_of
 from core.executor.snapshot import Snapshot, Starts, State
 
 RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE, program="a.nc")
