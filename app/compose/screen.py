@@ -204,7 +204,11 @@ def workshop(
 
         return sketched(timed_series(Timeline.of(job.source, job.setup, machine)), watch)
 
-    return Workshop(_read, new_job, prove_job, draw)
+    def renewed(job: Job) -> Job:
+        tools, secondary = offsets()
+        return make_job(job.source, replace(job.setup, tools=tools, secondary=secondary, zero=zero()))
+
+    return Workshop(_read, new_job, prove_job, draw, renewed)
 
 
 def _read(path: Path) -> Source:

@@ -1,28 +1,38 @@
-"""The program on the desk is read and proved anew when something it was proved with has changed."""
+"""The program on the desk is proved anew when something it was proved with has changed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from app.desk.offsets.book import OffsetBook
 from app.desk.offsets.force import secondary_offsets, tool_offsets
 from app.desk.prompts import UNDER_WAY
+from app.desk.renewing import Renewing
 from app.desk.session import Phase, Session
+from app.desk.words import tr
 from app.desk.zero_offsets.book import ZeroBook
-from core.executor.commands import Command, SetSwitch, UseOffsets
+from core.executor.commands import Command, UseOffsets
 from core.executor.job import outdated
 from core.executor.snapshot import Snapshot, State
 
 
 @dataclass(slots=True)
 class Rebuilding:
-    """Offsets of both kinds, and the unit that the job before has left; only between two programs."""
+    """Offsets of both kinds, and the unit that the job before has left.
+
+    Between two programs it is read, proved and drawn again; under a running one it is proved with the new
+    offsets meanwhile, and the executor takes it up at the end of the part.
+    """
 
     session: Session
     say: Callable[[str], None]
     wanted: bool = False
+    renewing: Renewing = field(init=False)
     _changes: int = 0  # of the books, as far as they were seen
+
+    def __post_init__(self) -> None:
+        self.renewing = Renewing(self.session)
 
     def look(
         self, snapshot: Snapshot, book: OffsetBook, zero: ZeroBook, post: Callable[[Command], None]
@@ -32,17 +42,27 @@ class Rebuilding:
         self._changes = book.changes + zero.changes
         if trouble:
             self.say(f"REFUSED: {trouble}")
-        if self._changes != before and snapshot.state in UNDER_WAY and snapshot.cycle_repeat:
-            post(SetSwitch("cycle_repeat", on=False))  # it would go on with what was before
-        if self._changes != before or self._outdated(snapshot):
+        changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
+        if changed and under_way:
+            self.renewing.begin()
+        elif self.renewing.taken(snapshot) and not changed:
+            self.wanted = False
+        if changed or self._outdated(snapshot):
             self.wanted = True
-        if self.wanted and snapshot.state not in UNDER_WAY and not (book.busy or zero.busy):
+        self._tell_trouble(snapshot)
+        if self.wanted and not under_way and not (book.busy or zero.busy):
             self.wanted = False
             # Active at once, for the loaded tool too.
             post(UseOffsets(tool_offsets(book.tools), secondary_offsets(book.secondary)))
             now = self.session.now
             if now.path is not None:
                 self.session.load(now.path, now.block_delete)
+
+    def _tell_trouble(self, snapshot: Snapshot) -> None:
+        """While there is still time to take a change back."""
+        why = self.renewing.trouble()
+        if why and snapshot.state in UNDER_WAY:
+            self.say(tr("NO NEXT PART WITH THE CHANGED OFFSETS: {why}").format(why=why))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
         """The job before has left another unit than this program was proved with, and it names none."""

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 Watch = Callable[[float], None]
 
 
+def _same(job: Job) -> Job:
+    """Where no offsets are kept nothing ever changes."""
+    return job
+
+
 class Phase(StrEnum):
     """How far loading has come."""
 
@@ -53,6 +58,7 @@ class Workshop:
     make_job: Callable[[Source, bool], Job]  # text, block delete
     prove: Callable[[Job, Watch], Proved]
     draw: Callable[[Job, Watch], Picture]
+    renew_job: Callable[[Job], Job] = _same  # the same program with the offsets of now
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +118,7 @@ class Session:
             error = future.exception()
             self._future = None
             if error is not None and not isinstance(error, AbandonedError):
-                self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=_sentence(error))
+                self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=sentence(error))
         return self._now
 
     def load(self, path: Path, block_delete: bool = False) -> None:
@@ -122,6 +128,19 @@ class Session:
             ticket = self._ticket
             self._now = Loaded(Phase.READING, path, block_delete)
         self._future = self._pool.submit(self._work, ticket, path, block_delete)
+
+    @property
+    def loads(self) -> int:
+        """How often loading has begun."""
+        return self._ticket
+
+    def submit(self, work: Callable[[], None]) -> Future[None]:
+        """Have something done by the worker that loads, after what it has in hand."""
+        return self._pool.submit(work)
+
+    def adopt(self, loaded: Loaded) -> None:
+        """The same program under other circumstances is the one on the desk now."""
+        self._now = loaded
 
     def settled(self, timeout: float) -> Loaded:
         """Wait until loading is over and look; for scripts and tests, never for the screen."""
@@ -174,7 +193,8 @@ def _keep_out_of_collections() -> None:
     gc.freeze()
 
 
-def _sentence(error: BaseException) -> str:
+def sentence(error: BaseException) -> str:
+    """What a failure on a worker is called on the screen."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return str(error) or type(error).__name__

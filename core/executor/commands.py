@@ -26,6 +26,19 @@ class GiveProof:
 
 
 @dataclass(frozen=True, slots=True)
+class Renew:
+    """The offsets of the loaded program have changed: from the next part on it is this job.
+
+    It may come while the program is under way, which keeps its offsets to the end of the part. Without a
+    proof it is an announcement: nothing is begun before the job with its proof, or ``trouble``, follows.
+    """
+
+    job: Job | None = None
+    proof: Proof | None = None
+    trouble: str = ""  # why there will be none
+
+
+@dataclass(frozen=True, slots=True)
 class CycleStart:
     """Start, or go on after hold, single block, M00, M01. The station's two-hand relay means the same."""
 
@@ -158,6 +171,7 @@ class Prepare:
 Command = (
     LoadJob
     | GiveProof
+    | Renew
     | CycleStart
     | FeedHold
     | Reset

@@ -50,7 +50,7 @@ class Conductor:
     @property
     def modal(self) -> Modal:
         """In force now: of the block being executed, or what stands between two programs."""
-        return self.cycle.modal if self.cycle is not None else self.standing.modal
+        return self.rounds.modal
 
     def enter(self, state: State) -> None:
         """Change the state; raises TransitionError for a change that the table does not hold."""

@@ -93,6 +93,11 @@ class Cycle:
             self._reason, self._held_at = "SETPOINTS RAN LOW", self._bench.now
             self._change(State.HOLDING)
 
+    def wait_for(self, label: str) -> None:
+        """Its program is over; stand still until another cycle takes its place."""
+        if self._wait is None:
+            self._wait = Wait(lambda: label, lambda _: False, self._bench.now)
+
     def abandon(self) -> None:
         """Come to rest and be given up; the caller waits for ``at_rest``."""
         if self._mover.moving:

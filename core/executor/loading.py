@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.executor.bench import Bench
-from core.executor.commands import GiveProof, LoadJob, Prepare
+from core.executor.commands import GiveProof, LoadJob, Prepare, Renew
 from core.executor.conductor import Conductor
 from core.executor.snapshot import Starts
 from core.executor.states import CYCLE
@@ -18,10 +18,12 @@ class Loading:
         self._bench = bench
         self._conductor = conductor
 
-    def obey(self, command: LoadJob | GiveProof | Prepare) -> None:
+    def obey(self, command: LoadJob | GiveProof | Renew | Prepare) -> None:
         """Do it, or say why not."""
         if isinstance(command, GiveProof):
             self._conductor.standing.proof = command.proof
+        elif isinstance(command, Renew):
+            self._renew(command)
         elif self._conductor.state in CYCLE:
             self._bench.say("refused", _UNDER_WAY)
         elif isinstance(command, LoadJob):
@@ -33,9 +35,19 @@ class Loading:
         """A restart belonged to the program before; an open SEARCHTO or MDI stays open."""
         standing = self._conductor.standing
         standing.job, standing.proof, standing.start_refused = command.job, command.proof, ""
+        self._conductor.rounds.renewal.forget()
         if standing.starts is Starts.RESTART:
             self._prepare(Prepare(Starts.RESTART))
         self._bench.say("load", command.job.source.name)
+
+    def _renew(self, command: Renew) -> None:
+        """Under a running program it waits for the end of the part; else it counts at once."""
+        rounds, standing = self._conductor.rounds, self._conductor.standing
+        why = rounds.renewal.ask(command, standing.job)
+        if why:
+            self._bench.say("refused", why)
+        elif self._conductor.state not in CYCLE:
+            rounds.renewal.take_up(standing)
 
     def _prepare(self, command: Prepare) -> None:
         standing = self._conductor.standing

@@ -20,6 +20,7 @@ from core.executor.commands import (
     JogStop,
     LoadJob,
     Prepare,
+    Renew,
     Reset,
     SetSwitch,
     SpindleLimit,
@@ -62,7 +63,7 @@ class Orders:
             simple()
             return
         match command:
-            case LoadJob() | GiveProof() | Prepare():
+            case LoadJob() | GiveProof() | Renew() | Prepare():
                 self._loading.obey(command)
             case SetSwitch(name=name, on=on):
                 self._switch(name, on)

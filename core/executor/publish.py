@@ -50,6 +50,7 @@ class Publisher:
             state=standing.state,
             waiting_for=cycle.waiting_for if cycle else "",
             program=job.source.name if job else "",
+            job=job.digest if job else "",
             axes=tuple(axis.name for axis in bench.machine.axes),
             demand=bench.sample.demand,
             actual=bench.sample.actual,
@@ -69,9 +70,9 @@ class Publisher:
             optional_stop=bench.switches.optional_stop,
             block_delete=job.setup.block_delete if job else False,
             cycle_repeat=bench.switches.cycle_repeat,
-            outputs=frozenset(name for name, on in bench.ports.io.outputs().items() if on),
             no_count=bench.switches.no_count,
-            counts=cycle is not None and not conductor.rounds.uncounted,
+            counts=conductor.rounds.will_count,
+            outputs=frozenset(name for name, on in bench.ports.io.outputs().items() if on),
             inputs=frozenset(name for name, on in bench.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
@@ -80,9 +81,9 @@ class Publisher:
             cycle_elapsed=counters.cycle,
             last_cycle=counters.last_cycle,
             parts=counters.parts,
+            ends=counters.ends,
             underruns=counters.underruns,
             max_following_error=conductor.supervisor.max_following_error,
-            ends=counters.ends,
             proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
             starts=standing.starts,
             prepared=standing.prepared.digest if standing.prepared else "",
@@ -140,7 +141,7 @@ def _next_text(cycle: Cycle | None) -> str:
 
 def _interrupted(conductor: Conductor) -> int:
     """The line at which the loaded program was given up."""
-    job, (name, line) = conductor.standing.job, conductor.rounds.piece.broken_off
+    job, (name, line) = conductor.standing.job, conductor.rounds.parts.piece.broken_off
     return line if job is not None and job.source.name == name else 0
 
 

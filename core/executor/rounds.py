@@ -14,10 +14,11 @@ from core.executor.interpret import circumstances
 from core.executor.job import Job, outdated
 from core.executor.mover import Mover
 from core.executor.moving import Moving
-from core.executor.piece import Piece
+from core.executor.parts import PartCount
 from core.executor.player import Player
+from core.executor.renewal import Renewal
 from core.executor.snapshot import Starts, State
-from core.executor.standing import Counters, Standing
+from core.executor.standing import Standing
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
@@ -36,11 +37,13 @@ class Rounds:
         self._enter = enter
         self.mover = _mover(bench)
         self.standing = Standing()
-        self.counters = Counters()
+        self.parts = PartCount(bench)
+        self.counters = self.parts.counters
+        self.renewal = Renewal(bench)
         self.cycle: Cycle | None = None
         self._source: Pass | None = None
         self._line = False  # what is under way is a line of MDI
-        self.piece = Piece()
+        self._between = False  # the part is made, and the next one waits for the proof of changed offsets
 
     def refusal(self, state: State) -> str:
         """Why what Cycle Start would begin may not begin; empty when it may."""
@@ -58,7 +61,7 @@ class Rounds:
             standing.starts = Starts.PROGRAM
         standing.prepared = standing.prepared_proof = None
         if not self._line:
-            self.piece.begin(job)
+            self.parts.piece.begin(job)
         self._open(job)
         self._enter(State.RUN)
         bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
@@ -67,11 +70,9 @@ class Rounds:
             bench.say("restart", f"from line {begin.line}")
 
     @property
-    def uncounted(self) -> str:
-        """Why what is under way will be no part; empty when it will be one."""
-        if self._line:
-            return "a line of MDI"
-        return "NO COUNT is on" if self._bench.switches.no_count else self.piece.why_none
+    def will_count(self) -> bool:
+        """Whether a program is under way that will have made a part when it ends."""
+        return self.cycle is not None and not (self._line or self._between or self.parts.why_none)
 
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
@@ -86,15 +87,22 @@ class Rounds:
 
     def forget(self) -> None:
         """What an interrupted program leaves in force is what M30 would have left; MDI keeps its modes."""
-        if self.cycle is not None:
-            left = self.cycle.modal
-            self._stand(interrupted(left) if self._line else given_up(left))
-            job, block = self.standing.job, self.cycle.current
-            if not self._line and job is not None and block is not None:
-                self.piece.break_off(job.source.name, block.line, block.n)
+        cycle, job = self.cycle, self.standing.job
+        if cycle is None:
+            self.mover.forget()
+            return
+        if not (self._line or self._between) and job is not None and cycle.current is not None:
+            self.parts.piece.break_off(job.source.name, cycle.current.line, cycle.current.n)
+        self._put_away(interrupted(cycle.modal) if self._line else given_up(cycle.modal))
+
+    def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
+        """Nothing is under way any more; offsets that were changed meanwhile count from here on."""
+        self._stand(left, tool_open=tool_open)
         self.cycle = self._source = None
+        self._between = False
         self._bench.line = 0
         self.mover.forget()
+        self.renewal.take_up(self.standing)
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
         """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
@@ -104,9 +112,11 @@ class Rounds:
         self.standing.modal, self.standing.tool_open = modal, tool_open
 
     def look(self) -> None:
-        """Between two cycles: what stands is what the machine really does."""
+        """Between two cycles: what stands is what the machine really does; the next part may begin."""
         if self.cycle is None:
             self.standing.modal = as_it_is(self.standing.modal, self._bench)
+        elif self._between and self.standing.state in {State.RUN, State.WAIT}:
+            self._go_round(self.cycle)
 
     def _open(self, job: Job) -> None:
         """A pass from where the slides stand now; nothing is kept of an earlier one."""
@@ -126,45 +136,56 @@ class Rounds:
         if self._line:
             self._line_ended()
             return
-        job, bench = self.standing.job, self._bench
-        self._count()
-        if end is not None and end.reset and bench.switches.cycle_repeat and job is not None:
-            old = outdated(job, self.cycle.modal) if self.cycle is not None else ""
-            if not old:
-                self._open(job)
-                return
-            bench.say("refused", f"no repeat: {old}, and the program says nothing of it")
-        bench.say("end", "program end")
-        self._over()
-
-    def _count(self) -> None:
-        """A part, unless it is none; the time of a restart is not that of a cycle."""
-        counters, seconds, why = self.counters, self.counters.cycle, self.uncounted
-        counters.cycle = 0.0
-        counters.ends += 1
-        if not self.piece.restarted:
-            counters.last_cycle = seconds
-        if why:
-            self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
+        self.parts.ended()
+        self._between = end is not None and end.reset and self._bench.switches.cycle_repeat
+        if self.cycle is not None and self._between:
+            self._go_round(self.cycle)
         else:
-            counters.parts += 1
-            self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
-        self.piece.end()
+            self._program_ended()
+
+    def _go_round(self, cycle: Cycle) -> None:
+        """The next part begins once changed offsets are proved; or why it does not is said."""
+        repeat = self._bench.switches.cycle_repeat
+        if repeat and self.renewal.pending:
+            cycle.wait_for("PROOF WITH THE CHANGED OFFSETS")
+            return
+        why = self._why_not_again(cycle.modal)
+        if why or not repeat:
+            self._program_ended(why)
+            return
+        self.renewal.take_up(self.standing)
+        self._between = False
+        self.counters.cycle = 0.0
+        assert self.standing.job is not None
+        self._open(self.standing.job)
+        self._enter(State.RUN)
+
+    def _why_not_again(self, left: Modal) -> str:
+        if self.renewal.wanted:
+            return self.renewal.refusal(left)
+        old = outdated(self.standing.job, left) if self.standing.job is not None else ""
+        return f"{old}, and the program says nothing of it" if old else ""
+
+    def _program_ended(self, no_repeat: str = "") -> None:
+        if no_repeat:
+            self._bench.say("refused", f"no repeat: {no_repeat}")
+        self._bench.say("end", "program end")
+        self._put_away(self.modal)
+        self._enter(State.IDLE)
 
     def _line_ended(self) -> None:
-        left = self._source.left() if self._source is not None and self._source.left is not None else None
-        self._over()
-        if left is not None:
-            self._stand(as_it_is(left.modal, self._bench), tool_open=left.tool_line != 0)
+        """What the line leaves to the next one, where the interpreter tells it."""
+        source = self._source
+        left = source.left() if source is not None and source.left is not None else None
+        modal = self.modal if left is None else as_it_is(left.modal, self._bench)
+        self._put_away(modal, tool_open=left is not None and left.tool_line != 0)
+        self._enter(State.IDLE)
         self._bench.say("mdi", "done")
 
-    def _over(self) -> None:
-        left = self.cycle.modal if self.cycle is not None else self.standing.modal
-        self.forget()
-        self._stand(left)
-        if not self._line:
-            self.piece.end()
-        self._enter(State.IDLE)
+    @property
+    def modal(self) -> Modal:
+        """In force now: of the block being executed, or what stands between two programs."""
+        return self.cycle.modal if self.cycle is not None else self.standing.modal
 
     def _end_functions(self) -> None:
         """M30 ends what M functions have begun; the collet stays."""

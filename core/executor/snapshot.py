@@ -55,6 +55,7 @@ class Snapshot:
     state: State = State.DISABLED
     waiting_for: str = ""  # in words, when state is WAIT: AT SPEED, COLLET, TB2-5, DWELL
     program: str = ""
+    job: str = ""  # digest of the loaded job: program, offsets and switches
     line: int = 0  # source line being executed, 0 none
     block: int = 0  # elementary block being executed, 0 none
     block_text: str = ""
@@ -104,9 +105,9 @@ class Snapshot:
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     start_refused: str = ""  # why the last Cycle Start did nothing
-
     wheel: str = ""  # axis that the handwheel moves, empty for none
     wheel_ended: str = ""  # why the control has taken the handwheel away
+
     @property
     def tip(self) -> tuple[float, float]:
         """Actual machine X and Z: where the pictures of a lathe show the tool."""

@@ -1055,21 +1055,6 @@
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
-      <source> AND </source>
-      <translation> Y </translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
-      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
       <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
     </message>
@@ -1077,6 +1062,11 @@
       <location filename="app/desk/jogging/desk.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
       <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/desk.py" />
+      <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1090,16 +1080,6 @@
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
-      <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
-      <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
-      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
       <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
       <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
     </message>
@@ -1110,23 +1090,18 @@
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
-      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+      <source>THE HANDWHEEL IS OFF</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
-      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
-      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+      <source>THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
       <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
-      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1137,11 +1112,6 @@
       <location filename="app/desk/jogging/desk.py" />
       <source>TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS</source>
       <translation>ESCRIBA UN VALOR O UNA SUMA COMO .5-.002 Y RETURN; ESC LO DEJA COMO ESTABA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
-      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/hold.py" />
@@ -1219,6 +1189,56 @@
       <translation>{axis} CONOCE SU POSICIÓN</translation>
     </message>
     <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source> AND </source>
+      <translation> Y </translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
+      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
+      <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
+      <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
+      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
+      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
+      <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/notices.py" />
+      <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
+      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
+    </message>
+    <message>
       <location filename="app/desk/jogging/tool.py" />
       <source>REFUSED: {why}</source>
       <translation>RECHAZADO: {why}</translation>
@@ -1287,6 +1307,26 @@
       <location filename="app/desk/jogging/touch.py" />
       <source>{axis} would be out of range</source>
       <translation>{axis} quedaría fuera de alcance</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/wheel.py" />
+      <source>THE HANDWHEEL IS OFF: {why}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/jogging/wheel.py" />
+      <source>THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/jogging/wheel.py" />
+      <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/jogging/wheel.py" />
+      <source>THIS MACHINE HAS NO HANDWHEEL</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/keep.py" />
@@ -1420,28 +1460,23 @@
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
-      <source>A CORRECTION SWITCHES CYCLE REPEAT OFF: IT COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>UNA CORRECCIÓN APAGA REPETIR CICLO: CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+      <source>; IT COUNTS FROM THE NEXT PART</source>
+      <translation>; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
-      <source>A CYCLE IS UNDER WAY: CORRECTIONS CHANGE BETWEEN CYCLES, OR AT AN M00 OR M01 STOP</source>
-      <translation>HAY UN CICLO EN CURSO: LAS CORRECCIONES CAMBIAN ENTRE CICLOS, O EN UN PARO M00 O M01</translation>
+      <source>A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
+      <translation>HAY UN PROGRAMA EN MARCHA: SÓLO EL DESGASTE Y LAS CORRECCIONES DE F9 PUEDEN CAMBIAR</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
-      <source>A PROGRAM IS UNDER WAY: AT A STOP ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
-      <translation>HAY UN PROGRAMA EN CURSO: EN UN PARO SÓLO PUEDEN CAMBIAR EL DESGASTE Y LAS CORRECCIONES F9</translation>
+      <source>PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED</source>
+      <translation>HAY PIEZAS EN MARCHA: UNA CORRECCIÓN CUENTA DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADA</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
-      <source>A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY</source>
-      <translation>HAY UN PROGRAMA EN CURSO: LAS COMPENSACIONES DE HERRAMIENTA SÓLO CAMBIAN ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/offsets/allowed.py" />
-      <source>THE JOB UNDER WAY KEEPS ITS OFFSETS: A CHANGE COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>EL TRABAJO EN CURSO CONSERVA SUS COMPENSACIONES: UN CAMBIO CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
+      <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
+      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/allowed.py" />
@@ -1527,6 +1562,11 @@
       <location filename="app/desk/offsets/dialogue.py" />
       <source>FINISH D{number} FIRST, OR PRESS ESC</source>
       <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
+    </message>
+    <message>
+      <location filename="app/desk/offsets/dialogue.py" />
+      <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
+      <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/entry.py" />
@@ -2087,6 +2127,11 @@
       <location filename="app/desk/readout.py" />
       <source>X IS A RADIUS</source>
       <translation>X ES RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/rebuilding.py" />
+      <source>NO NEXT PART WITH THE CHANGED OFFSETS: {why}</source>
+      <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/opening.py" />
@@ -3655,6 +3700,16 @@
     </message>
     <message>
       <location filename="app/screen/jog/pad.py" />
+      <source>WHEEL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
+      <source>WHEEL {axis}</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/jog/pad.py" />
       <source>in</source>
       <translation>pulg</translation>
     </message>
@@ -4769,9 +4824,19 @@
       <translation>no hay interruptor %1</translation>
     </message>
     <message>
-      <location filename="core/executor/piece.py" />
+      <location filename="core/executor/parts.py" />
+      <source>NO COUNT is on</source>
+      <translation>SIN CONT está puesto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/parts.py" />
       <source>a restart left something of it out</source>
       <translation>un rearranque omitió algo de ella</translation>
+    </message>
+    <message>
+      <location filename="core/executor/parts.py" />
+      <source>part %1, %2 s</source>
+      <translation>pieza %1, %2 s</translation>
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
@@ -4819,14 +4884,24 @@
       <translation>el estado cambió desde que se comprobó la línea: oprima Enter otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
-      <source>NO COUNT is on</source>
-      <translation>SIN CONT está puesto</translation>
+      <location filename="core/executor/renewal.py" />
+      <source>another program is under way: new offsets are taken by the same program only</source>
+      <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/renewal.py" />
+      <source>the changed offsets are in force</source>
+      <translation>las compensaciones cambiadas están en vigor</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />
-      <source>a line of MDI</source>
-      <translation>una línea de MDI</translation>
+      <source>%1, and the program says nothing of it</source>
+      <translation>%1, y el programa no dice nada de ello</translation>
+    </message>
+    <message>
+      <location filename="core/executor/rounds.py" />
+      <source>PROOF WITH THE CHANGED OFFSETS</source>
+      <translation>COMPROBACIÓN CON LAS COMPENSACIONES CAMBIADAS</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />
@@ -4835,13 +4910,8 @@
     </message>
     <message>
       <location filename="core/executor/rounds.py" />
-      <source>no repeat: %1, and the program says nothing of it</source>
-      <translation>sin repetición: %1, y el programa no dice nada de eso</translation>
-    </message>
-    <message>
-      <location filename="core/executor/rounds.py" />
-      <source>part %1, %2 s</source>
-      <translation>pieza %1, %2 s</translation>
+      <source>no repeat: %1</source>
+      <translation>sin repetición: %1</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from app.compose.effect import drawer
@@ -52,7 +53,11 @@ def desk_on(
         machine.blocks = list(timed_blocks(Timeline.of(job.source, job.setup, lathe)))
         return sketched(machine.blocks, watch)
 
-    work = Workshop(load_source, make_job, proved, draw)
+    def renewed(job: Job) -> Job:
+        setup = replace(job.setup, secondary=_secondary(built[0]))
+        return replace(job, setup=setup, digest=f"{job.digest} {sorted(setup.secondary.items())}")
+
+    work = Workshop(load_source, make_job, proved, draw, renewed)
     archive = archive or NoArchive()
     desk = Desk(
         post=machine.post,

@@ -78,13 +78,8 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     day.key(Key.Key_F2)
     correct(day, "-.001")
     day.key(Key.Key_O)
-    day.sees(lambda: not day.shot.cycle_repeat)  # or a part would follow with the old correction
     day.palms()
-    day.reaches(State.IDLE)
-    assert made(day) == "3/5"
-    day.sees(lambda: day.prompt.startswith("TO START"))
-    day.key(Key.Key_C)
-    day.palms()
+    day.until(lambda: made(day) == "3/5")
     # .001 on the diameter more: half of it on the slide
     assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
     day.reaches(State.IDLE)
@@ -94,6 +89,40 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     assert day.count("part") == 5
     assert day.journal.parts(PARTS) == 5
     assert [change.why for change in day.store.history()][:2] == ["X -.001", "X -.002 Z .001"]
+
+
+def test_a_correction_while_parts_run_and_nothing_stops(day: Day) -> None:
+    """Gauged beside the machine: D1 -.001 is typed while the second part is turned, the third one has it."""
+    day.key(Key.Key_C)
+    day.palms()
+    day.until(lambda: made(day) == "1")
+    correct(day, "-.001")
+    assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR / 2)  # this part as it was begun
+    day.until(lambda: made(day) == "2")
+    assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
+    day.sees(lambda: day.desk.session.now.picture is not None)
+    job = day.desk.session.now.job
+    assert job is not None
+    assert job.digest == day.shot.job
+    assert day.shot.cycle_repeat
+    day.key(Key.Key_C)
+    day.reaches(State.IDLE)
+    assert day.count("stop") == 0
+    assert day.count("part") == 3
+
+
+def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) -> None:
+    """-9 typed for -.0009, and the slide would leave its travel: told while it can be taken back."""
+    day.key(Key.Key_C)
+    day.palms()
+    day.until(lambda: made(day) == "1")
+    correct(day, "-9")
+    day.sees(lambda: day.prompt.startswith("NO NEXT PART WITH THE CHANGED OFFSETS: "))
+    day.reaches(State.IDLE)
+    day.sees(lambda: "WILL NOT RUN" in day.prompt or "NO REPEAT" in day.prompt.upper())
+    assert day.count("part") == 2
+    day.palms()
+    assert day.shot.state is State.IDLE
 
 
 def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
@@ -124,7 +153,9 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
         pytest.approx(ENDS[line], abs=NEAR) for line in (11, 12, 13, 14)
     ]
     assert day.slides == pytest.approx(ENDS[15], abs=NEAR)
-    assert day.count("part") == 1
+    # The rest of the turning was left out: no part, and that is said.
+    assert (day.count("part"), day.count("uncounted")) == (0, 1)
+    assert day.prompt.startswith("NOT COUNTED AS A PART: a restart left something of it out")
 
 
 def clear_of_the_part(day: Day) -> None:

@@ -15,7 +15,7 @@ from app.desk.offsets.book import OffsetBook
 from app.desk.session import Phase
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
-from core.executor.commands import FeedHold, LoadJob, UseOffsets
+from core.executor.commands import FeedHold, LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
 from core.store.store import Store
@@ -136,30 +136,35 @@ def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     hands.sees(page.table.isVisible)
 
 
-def test_no_correction_while_running_but_at_a_stop_and_it_counts_afterwards(
-    hands: Hands, store: Store
-) -> None:
+def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store: Store) -> None:
+    """Announced and proved with the new offset under the running part; reading anew waits for its end."""
     hands.load("bushing")
     hands.both_palms()
     hands.sees_state(State.RUN)
     loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
     hands.key(Key.Key_F9)
-    hands.sees(lambda: hands.prompt().startswith("A CYCLE IS UNDER WAY"))
-    answer(hands, "1")
-    assert page_of(hands).asked.asked.question == "Offset Number?"
+    hands.sees(lambda: hands.prompt().startswith("THE PART UNDER WAY KEEPS ITS OFFSETS"))
     hands.key(Key.Key_Space)
     assert FeedHold() in hands.machine.posted
-    hands.machine.now = replace(hands.machine.now, state=State.PROGRAM_STOP)
-    hands.sees_state(State.PROGRAM_STOP)
-    hands.key(Key.Key_Delete)
     answer(hands, "1", ".1", "", "")
     hands.sees(lambda: hands.prompt() == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START")
+    hands.sees(lambda: len(renewals(hands)) == 2)
+    announced, ready = renewals(hands)
+    assert announced == Renew()
+    assert ready.job is not None
+    assert ready.proof is not None
+    assert (ready.proof.digest, ready.proof.errors) == (ready.job.digest, ())
+    assert ready.job.setup.secondary[1].x == pytest.approx(0.05 * 25.4)
     assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
-    hands.machine.idle()
+    hands.machine.idle()  # a machine that did not take it up: it is read anew
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
     used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
     assert used[-1].secondary[1].x == pytest.approx(0.05 * 25.4)
+
+
+def renewals(hands: Hands) -> list[Renew]:
+    return [command for command in hands.machine.posted if isinstance(command, Renew)]
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
@@ -188,7 +193,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     assert store.tools()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
     hands.machine.now = replace(hands.machine.now, state=State.HOLD)
     answer(hands, "1")
-    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY")
+    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
     assert store.tools()[9].nose_radius == 0.0156 * 25.4
 
 

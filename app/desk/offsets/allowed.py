@@ -1,4 +1,4 @@
-"""When an offset may change: never under a running program, corrections also at a stop between parts."""
+"""When an offset may change: corrections at any time at which no hand moves the slides, the rest at rest."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ CORRECTIONS = frozenset({"wear_x", "wear_z", "remark"})  # of a tool; all of a s
 def refusal(snapshot: Snapshot, *, correction: bool) -> str:
     """Why nothing may be changed now; empty when it may.
 
-    A correction (wear, secondary offset) may also be entered while M00 or M01 stands; all the rest, which
-    says where a tip is, only when no program is under way.
+    A correction (wear, secondary offset) may be entered while parts run: the part under way keeps the
+    offsets that it was proved with. What says where a tip is waits until no program is under way.
     """
     state = snapshot.state
     if state in {State.JOG, State.HOME}:
         return tr("THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST")
-    if state is State.PROGRAM_STOP:
-        if correction:
-            return ""
-        return tr("A PROGRAM IS UNDER WAY: AT A STOP ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
-    if state in prompts.MOVING | prompts.INTERRUPTED:
-        if correction:
-            return tr("A CYCLE IS UNDER WAY: CORRECTIONS CHANGE BETWEEN CYCLES, OR AT AN M00 OR M01 STOP")
-        return tr("A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY")
+    if state in prompts.UNDER_WAY and not correction:
+        return tr("A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
     return ""
 
 
 def standing(snapshot: Snapshot) -> str:
-    """What a change entered at a stop will count for; empty between cycles."""
-    if snapshot.state is not State.PROGRAM_STOP:
+    """What a change entered now will count for; empty between cycles."""
+    if snapshot.state not in prompts.UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
-        return tr("A CORRECTION SWITCHES CYCLE REPEAT OFF: IT COUNTS FROM THE NEXT CYCLE START")
-    return tr("THE JOB UNDER WAY KEEPS ITS OFFSETS: A CHANGE COUNTS FROM THE NEXT CYCLE START")
+        return tr("PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED")
+    return tr("THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START")
 
 
 def counts_later(snapshot: Snapshot) -> str:
     """What stands behind SAVED."""
-    return tr("; IT COUNTS FROM THE NEXT CYCLE START") if snapshot.state is State.PROGRAM_STOP else ""
+    if snapshot.state not in prompts.UNDER_WAY:
+        return ""
+    return (
+        tr("; IT COUNTS FROM THE NEXT PART")
+        if snapshot.cycle_repeat
+        else tr("; IT COUNTS FROM THE NEXT CYCLE START")
+    )

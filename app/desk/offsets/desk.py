@@ -37,12 +37,13 @@ class SeccmpDesk:
 
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
-        why = self.book.locked or allowed.refusal(snapshot, correction=True) or allowed.standing(snapshot)
+        why = self.book.locked or allowed.refusal(snapshot, correction=True)
         if why:
             return why
         if self.ledger.looking_back is not None:
             return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
-        return tr("EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE")
+        standing = allowed.standing(snapshot)
+        return standing or tr("EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE")
 
     @property
     def foot(self) -> str:
@@ -84,7 +85,7 @@ class SeccmpDesk:
         return self.dialogue.type(key)
 
     def _clear(self) -> None:
-        why = self.barred()
+        why = self.book.locked or allowed.refusal(self.desk.snapshot(), correction=False)
         if why:
             self.desk.say(why)
         elif self.dialogue.step is not Step.NUMBER:

@@ -57,13 +57,14 @@ class Dialogue:
         return SecondaryRow(*new)
 
     def follow(self, mode: Mode) -> None:
-        """The control's mode now; an entry that was begun in another one is given up."""
-        if mode != self.mode:
-            begun = self.step is not Step.NUMBER
-            self.mode = mode
-            if begun:
-                self.restart()
-                self.say(tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN"))
+        """The control's mode now; an entry that was begun in another unit is given up.
+
+        X is a diameter correction whatever the control's X is, which every part changes as it begins.
+        """
+        other, self.mode = mode.metric != self.mode.metric, mode
+        if other and self.step is not Step.NUMBER:
+            self.restart()
+            self.say(tr("THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN"))
 
     def restart(self) -> None:
         """Back to the number; what was entered so far is forgotten."""

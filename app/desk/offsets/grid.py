@@ -58,16 +58,17 @@ class ToolGrid:
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
         correction = self.name in allowed.CORRECTIONS
-        why = (
-            self.book.locked or allowed.refusal(snapshot, correction=correction) or allowed.standing(snapshot)
-        )
+        why = self.book.locked or allowed.refusal(snapshot, correction=correction)
         if why:
             return why
         if self.ledger.looking_back is not None:
             return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
         if self.writing:
             return tr("TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
-        return tr("ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE")
+        standing = allowed.standing(snapshot)
+        return standing or tr(
+            "ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE"
+        )
 
     def barred(self, snapshot: Snapshot) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""
@@ -76,10 +77,16 @@ class ToolGrid:
         return self.book.locked or allowed.refusal(snapshot, correction=self.name in allowed.CORRECTIONS)
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: an entry in another unit is given up."""
+        """Once a frame: an entry in another unit is given up, or one of X where X has changed.
+
+        Wear is a diameter whatever the control's X is, which every part changes as it begins.
+        """
         before = self.ledger.mode
         self.ledger.look(snapshot)
-        if self.ledger.mode != before and (self.text or self.cells.new.number):
+        now = self.ledger.mode
+        position = self.name not in allowed.CORRECTIONS or bool(self.cells.new.number)
+        changed = now != before if position else now.metric != before.metric
+        if changed and (self.text or self.cells.new.number):
             self._drop()
             self.desk.say(
                 tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")

@@ -192,18 +192,64 @@ def test_a_change_loads_the_program_again(room: Room) -> None:
     assert room.desk.session.now.block_delete
 
 
-@pytest.mark.parametrize("state", [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END])
-def test_no_correction_while_a_cycle_is_under_way(room: Room, state: State) -> None:
+UNDER_WAY = [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP]
+
+
+@pytest.mark.parametrize("state", UNDER_WAY)
+@pytest.mark.parametrize(("repeat", "when"), [(True, "NEXT PART"), (False, "NEXT CYCLE START")])
+def test_a_correction_while_parts_run_counts_from_the_next_one(
+    room: Room, state: State, repeat: bool, when: str
+) -> None:
+    page = room.page()
+    room.at(state)
+    room.now[0] = replace(room.now[0], cycle_repeat=repeat)
+    assert f"COUNTS FROM THE {when}" in page.prompt(room.now[0])
+    room.enter(page, "1", ".1", "", "")
+    assert room.desk.notice == f"D1 SAVED; IT COUNTS FROM THE {when}"
+    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+    page.undo()
+    room.settle(page)
+    assert room.desk.notice == f"D1 TAKEN BACK; IT COUNTS FROM THE {when}"
+
+
+@pytest.mark.parametrize("state", UNDER_WAY)
+def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: State) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "")
     room.at(state)
-    room.enter(page, "1", "")
     page.typed("C")
-    page.undo()
-    assert room.desk.notice.startswith("A CYCLE IS UNDER WAY: CORRECTIONS CHANGE BETWEEN CYCLES")
-    assert page.prompt(room.now[0]) == room.desk.notice
+    page.typed("C")
+    assert room.desk.notice == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE"
     room.settle(page)
     assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+
+
+@pytest.mark.parametrize("state", [State.JOG, State.HOME])
+def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: State) -> None:
+    page = room.page()
+    room.at(state)
+    room.enter(page, "1")
+    assert room.desk.notice == "THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST"
+
+
+def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(room: Room) -> None:
+    """Every part begins with G73 and goes over to its G72; the correction is a diameter all the same."""
+    page = room.page()
+    room.at(State.RUN, diameter=True)
+    room.enter(page, "3", "-.0002")
+    room.at(State.RUN, diameter=False)
+    room.enter(page, "", "")
+    assert room.store.secondary()[3].x == pytest.approx(-0.0001 * 25.4)
+
+
+def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
+    page = room.page()
+    room.at(State.RUN)
+    room.enter(page, "3", "-.0002")
+    room.at(State.RUN, metric=True)
+    room.settle(page)
+    assert room.desk.notice.startswith("THE CONTROL HAS CHANGED ITS UNIT")
+    assert 3 not in room.store.secondary()
 
 
 def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:
@@ -221,11 +267,6 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
     room.desk.look()
     room.desk.session.settled(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
-
-
-def test_cycle_repeat_is_named(room: Room) -> None:
-    stopped = replace(room.now[0], state=State.PROGRAM_STOP, cycle_repeat=True)
-    assert room.page().prompt(stopped).startswith("A CORRECTION SWITCHES CYCLE REPEAT OFF")
 
 
 def test_offsets_of_a_file_are_read_only(room: Room) -> None:

@@ -166,13 +166,13 @@ GEOMETRY = ("x", "z", "nose_radius", "quadrant", "master")
 
 
 @pytest.mark.parametrize("state", [State.RUN, State.WAIT, State.HOLD, State.BLOCK_END, State.HOLDING])
-@pytest.mark.parametrize("name", [*GEOMETRY, "wear_x", "remark"])
-def test_nothing_changes_while_a_cycle_is_under_way(room: Room, state: State, name: str) -> None:
+@pytest.mark.parametrize("name", GEOMETRY)
+def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State, name: str) -> None:
     set_tools(room)
     before = room.store.tools()
     room.at(state)
     grid = at(room, 1, name)
-    room.enter(grid, "1" if name not in {"master", "remark"} else "")
+    room.enter(grid, "1" if name != "master" else "")
     assert "UNDER WAY" in room.desk.notice
     assert "UNDER WAY" in grid.prompt(room.now[0])
     grid.escape()
@@ -183,9 +183,10 @@ def test_nothing_changes_while_a_cycle_is_under_way(room: Room, state: State, na
 
 
 @pytest.mark.parametrize("name", GEOMETRY)
-def test_at_a_stop_only_wear_may_change(room: Room, name: str) -> None:
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.PROGRAM_STOP])
+def test_while_a_part_runs_only_wear_may_change(room: Room, state: State, name: str) -> None:
     set_tools(room)
-    room.at(State.PROGRAM_STOP)
+    room.at(state)
     grid = at(room, 1, name)
     room.enter(grid, "1" if name != "master" else "")
     assert "ONLY WEAR" in room.desk.notice
@@ -214,6 +215,17 @@ def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
     grid.look(room.now[0])
     assert grid.text == ""
     assert "NOTHING WAS CHANGED" in room.desk.notice
+
+
+def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "wear_x")
+    room.at(State.RUN)
+    grid.look(room.now[0])
+    write(grid, "-.001")
+    room.at(State.RUN, diameter=True)
+    room.enter(grid, "")
+    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
 
 
 @pytest.mark.parametrize(

@@ -68,10 +68,8 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
     assert cut(jog) - first == pytest.approx(-0.001 * INCH, abs=1e-6)
 
 
-def test_a_correction_at_a_stop_ends_cycle_repeat_and_counts_in_the_next_part(
-    jog: JogBench, tmp_path: Path
-) -> None:
-    """Gauged at M00 with Cycle Repeat on: this part ends as it began, none follows with the old wear."""
+def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBench, tmp_path: Path) -> None:
+    """Gauged at M00 with Cycle Repeat on: this part ends as it began, the next one has the new wear."""
     jog.store.set_tool(1, "touched off", x=-1.0 * INCH, z=-2.0 * INCH).result(5)
     jog.desk.book.__post_init__()
     load(jog, tmp_path, PROGRAM.replace("M30", "M00\nX.6Z.5\nM30"))
@@ -80,27 +78,32 @@ def test_a_correction_at_a_stop_ends_cycle_repeat_and_counts_in_the_next_part(
     jog.key(Key.Key_C)
     start(jog)
     jog.until(lambda: jog.shot.state is State.PROGRAM_STOP, 60.0)
-    assert jog.shot.cycle_repeat
     jog.key(Key.Key_F8)
     jog.run(0.02)
-    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY: AT A STOP ONLY WEAR")
+    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY: ONLY WEAR")
     for _ in range(4):
         jog.key(Key.Key_Right)
-    assert jog.prompt.startswith("A CORRECTION SWITCHES CYCLE REPEAT OFF")
+    assert jog.prompt.startswith("PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART")
     jog.enter("-.002")
     jog.saved()
     jog.run(0.05)
-    assert jog.prompt == "T1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
-    assert not jog.shot.cycle_repeat
+    assert jog.prompt == "T1 SAVED; IT COUNTS FROM THE NEXT PART"
+    assert jog.shot.cycle_repeat
+    jog.desk.rebuilding.renewing.settled(30)
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
     start(jog)
-    jog.until(lambda: jog.shot.state is State.IDLE, 60.0)
-    assert jog.shot.parts == 1
-    proved(jog)
+    jog.until(lambda: jog.shot.parts == 1, 60.0)
+    jog.until(lambda: jog.shot.line == 7, 60.0)
+    assert jog.shot.demand[0] == pytest.approx((-1.0 - 0.001 + 0.25) * INCH, abs=1e-6)
     job = jog.desk.session.now.job
     assert job is not None
     assert job.setup.tools[1].x == pytest.approx((-1.0 - 0.001) * INCH)
+    jog.key(Key.Key_C)
+    jog.until(lambda: jog.shot.state is State.PROGRAM_STOP, 60.0)
+    start(jog)
+    jog.until(lambda: jog.shot.state is State.IDLE, 60.0)
+    assert jog.shot.parts == 2
 
 
 def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> None:
@@ -113,7 +116,7 @@ def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> N
     jog.key(Key.Key_F8)
     jog.enter("5")
     jog.run(0.02)
-    assert jog.prompt == "A PROGRAM IS UNDER WAY: TOOL OFFSETS CHANGE BETWEEN CYCLES ONLY"
+    assert jog.prompt == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE"
     assert jog.store.tools()[1].x == -1.0 * INCH
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)

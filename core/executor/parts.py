@@ -1,8 +1,10 @@
-"""The piece in the collet: how much of its program has been begun, and whether its end makes a part."""
+"""The piece in the collet, and whether the end of its program makes a part."""
 
 from __future__ import annotations
 
+from core.executor.bench import Bench
 from core.executor.job import Job
+from core.executor.standing import Counters
 
 
 class Piece:
@@ -47,3 +49,31 @@ class Piece:
     def why_none(self) -> str:
         """Why its end makes no part; empty when it makes one."""
         return "" if self._whole else "a restart left something of it out"
+
+
+class PartCount:
+    """Counts parts and keeps cycle times; ``counters`` is what everybody reads."""
+
+    def __init__(self, bench: Bench) -> None:
+        self._bench = bench
+        self.counters = Counters()
+        self.piece = Piece()
+
+    @property
+    def why_none(self) -> str:
+        """Why the program under way will make no part; empty when it will make one."""
+        return "NO COUNT is on" if self._bench.switches.no_count else self.piece.why_none
+
+    def ended(self) -> None:
+        """The program has come to its end. The time of a restart is not that of a cycle."""
+        counters, seconds, why = self.counters, self.counters.cycle, self.why_none
+        counters.cycle = 0.0
+        counters.ends += 1
+        if not self.piece.restarted:
+            counters.last_cycle = seconds
+        if why:
+            self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
+        else:
+            counters.parts += 1
+            self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
+        self.piece.end()

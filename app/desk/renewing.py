@@ -1,0 +1,102 @@
+"""The program under way with the offsets of now: proved and drawn while the old one runs."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from app.desk.session import AbandonedError, Loaded, Phase, Session, sentence
+from core.executor.commands import Renew
+from core.executor.snapshot import Snapshot
+
+
+@dataclass(slots=True)
+class Renewing:
+    """One renewal at a time; a later one takes its place, and so does a program that is loaded.
+
+    The text is that of the program under way, not what stands on the disk by now. On the screen the old
+    program stays until the executor has taken the new one up.
+    """
+
+    session: Session
+    _ticket: int = 0
+    _loads: int = 0  # of the session when it was begun
+    _next: Loaded | None = None
+    _shown: Loaded | None = None
+    _told: bool = True
+    _future: Future[None] | None = None
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def begin(self) -> bool:
+        """Announce it, so that nothing is begun with the old offsets, and prove; False without a program."""
+        now = self.session.now
+        if now.job is None:
+            return False
+        with self._lock:
+            self._ticket += 1
+            self._loads, self._next, self._told = self.session.loads, None, False
+        self.session.post(Renew())
+        self._future = self.session.submit(partial(self._work, self._ticket, now))
+        return True
+
+    def taken(self, snapshot: Snapshot) -> bool:
+        """Whether the executor goes by it; what the screen shows follows."""
+        ready = self._next
+        if ready is None or ready.job is None or self.session.loads != self._loads:
+            return False
+        if ready.job.digest != snapshot.job:
+            return False
+        if ready is not self._shown:
+            self._shown = ready
+            self.session.adopt(ready)
+        return True
+
+    def trouble(self) -> str:
+        """Told once: why no next part will be begun; the executor hears what could not be proved at all."""
+        failed = self._failure()
+        if failed:
+            self.session.post(Renew(trouble=failed))
+            return failed
+        ready = self._next
+        if self._told or ready is None or ready.proof is None:
+            return ""
+        self._told = True
+        return ready.proof.errors[0] if ready.proof.errors else ""
+
+    def settled(self, timeout: float) -> None:
+        """Wait until the worker has done with it; for scripts and tests, never for the screen."""
+        if self._future is not None:
+            self._future.exception(timeout)
+
+    def _failure(self) -> str:
+        future = self._future
+        if future is None or not future.done():
+            return ""
+        self._future = None
+        error = None if future.cancelled() else future.exception()
+        return "" if error is None or isinstance(error, AbandonedError) else sentence(error)
+
+    def _work(self, ticket: int, now: Loaded) -> None:
+        assert now.job is not None
+        workshop, watch = self.session.workshop, partial(self._still, ticket)
+        job = workshop.renew_job(now.job)
+        proved = workshop.prove(job, watch)
+        fresh = replace(
+            now, job=job, proof=proved.proof, diagnostics=proved.diagnostics, phase=Phase.DRAWING, reached=0
+        )
+        self._publish(ticket, fresh)
+        self.session.post(Renew(job, proved.proof))
+        picture = workshop.draw(job, watch)
+        phase = Phase.REFUSED if proved.proof.errors else Phase.READY
+        self._publish(ticket, replace(fresh, phase=phase, picture=picture))
+
+    def _still(self, ticket: int, _reached: float = 0.0) -> None:
+        if ticket != self._ticket or self.session.loads != self._loads:
+            raise AbandonedError
+
+    def _publish(self, ticket: int, fresh: Loaded) -> None:
+        with self._lock:
+            self._still(ticket)
+            self._next = fresh

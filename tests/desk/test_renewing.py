@@ -1,0 +1,125 @@
+"""A program proved with other offsets while the old one runs: what is posted, shown, told and dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.desk.renewing import Renewing
+from app.desk.session import Phase, Workshop
+from core.executor.commands import Renew
+from core.executor.job import Job
+from core.executor.snapshot import Snapshot, State
+from tests.desk.test_session import BAD, LIMIT, Bench
+
+
+class Shop(Bench):
+    """Every renewal has another digest; the offsets cannot be read when ``broken``."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.renewals = 0
+        self.broken = False
+        self.session.workshop = Workshop(self.read, self.make, self.prove, self.draw, self.renewed)
+        self.renewing = Renewing(self.session)
+        self.session.load(Path("part.nc"))
+        self.settled()
+        self.posted.clear()
+
+    def renewed(self, job: Job) -> Job:
+        if self.broken:
+            raise OSError(5, "Input/output error")
+        self.renewals += 1
+        return replace(job, digest=f"renewed {self.renewals}")
+
+    def running(self, digest: str) -> Snapshot:
+        """The executor goes by this job."""
+        return Snapshot(state=State.RUN, job=digest)
+
+
+@pytest.fixture
+def shop() -> Iterator[Shop]:
+    shop = Shop()
+    yield shop
+    shop.go_on.set()
+    shop.session.close()
+
+
+def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
+    shop.go_on.clear()
+    assert shop.renewing.begin()
+    assert shop.posted == [Renew()]
+    shop.go_on.set()
+    shop.renewing.settled(LIMIT)
+    ready = shop.posted[1]
+    assert isinstance(ready, Renew)
+    assert ready.job is not None
+    assert ready.proof is not None
+    assert (ready.job.digest, ready.proof.digest) == ("renewed 1", "renewed 1")
+
+
+def test_the_screen_keeps_the_old_program_until_the_executor_has_the_new_one(shop: Shop) -> None:
+    before = shop.session.now
+    shop.renewing.begin()
+    shop.renewing.settled(LIMIT)
+    assert not shop.renewing.taken(shop.running("digest of part.nc"))
+    assert shop.session.now is before
+    assert shop.renewing.taken(shop.running("renewed 1"))
+    now = shop.session.now
+    assert now.job is not None
+    assert (now.job.digest, now.phase, now.path) == ("renewed 1", Phase.READY, before.path)
+    assert now.picture is not None
+
+
+def test_a_later_one_takes_its_place(shop: Shop) -> None:
+    shop.go_on.clear()
+    shop.renewing.begin()
+    assert shop.proving.wait(LIMIT)
+    shop.renewing.begin()
+    shop.go_on.set()
+    shop.renewing.settled(LIMIT)
+    jobs = [command.job.digest for command in shop.posted if isinstance(command, Renew) and command.job]
+    assert jobs == ["renewed 2"]
+    assert shop.renewing.trouble() == ""
+
+
+def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
+    shop.go_on.clear()
+    shop.renewing.begin()
+    assert shop.proving.wait(LIMIT)
+    shop.session.load(Path("other.nc"))
+    shop.go_on.set()
+    shop.renewing.settled(LIMIT)
+    assert shop.settled().name == "other.nc"
+    assert not shop.renewing.taken(shop.running("renewed 1"))
+    assert shop.renewing.trouble() == ""
+    assert [command for command in shop.posted if isinstance(command, Renew)] == [Renew()]
+
+
+def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
+    shop.found = (BAD,)
+    shop.renewing.begin()
+    shop.renewing.settled(LIMIT)
+    assert shop.renewing.trouble() == "The arc's radius is too small."
+    assert shop.renewing.trouble() == ""
+    assert shop.renewing.taken(shop.running("renewed 1"))
+    assert shop.session.now.phase is Phase.REFUSED
+
+
+def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) -> None:
+    shop.broken = True
+    shop.renewing.begin()
+    shop.renewing.settled(LIMIT)
+    assert shop.renewing.trouble() == "Input/output error"
+    assert shop.posted[-1] == Renew(trouble="Input/output error")
+    assert shop.renewing.trouble() == ""
+
+
+def test_without_a_program_there_is_nothing_to_renew() -> None:
+    bench = Bench()
+    assert not Renewing(bench.session).begin()
+    assert bench.posted == []
+    bench.session.close()

@@ -1,0 +1,240 @@
+"""Offsets changed while parts run: taken at the next part, proved before anything moves, or a stop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from core.executor.commands import CycleStart, FeedHold, LoadJob, Renew, Reset, SetSwitch
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import State
+from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from tests.executor.lines import mdi
+from tests.executor.rig import INCH, Rig
+
+TOOLS = {1: ToolOffset(-12.7, -50.8)}
+PART = "G90G94F300G73\nT1\nX1Z.1\nX.5Z.1D3\nZ-.3\nD0X1Z.1\nM30\n"
+DEPTH = -12.7 + 0.5 * INCH  # machine X of the cut with D3 at nought, by hand
+
+
+def running(rig: Rig, *, repeat: bool = True, text: str = PART) -> Job:
+    """The first part is being cut."""
+    rig.ready()
+    job = rig.load(text, TOOLS)
+    rig.post(SetSwitch("cycle_repeat", repeat), CycleStart())
+    rig.until_true(lambda shot: shot.line == 5)
+    return job
+
+
+def corrected(job: Job, x: float) -> Job:
+    """The same program with D3 X at so many mm, a radius."""
+    return make_job(job.source, replace(job.setup, secondary={3: SecondaryOffset(x=x)}))
+
+
+def good(job: Job) -> Proof:
+    return Proof(job.digest, ())
+
+
+def depth(rig: Rig) -> float:
+    """Machine X while line 5 of the next part is cut, mm."""
+    rig.until_true(lambda shot: shot.line != 5)
+    rig.until_true(lambda shot: shot.line == 5)
+    return rig.shot.demand[0]
+
+
+def test_the_next_part_is_cut_with_the_new_offset_and_this_one_is_not() -> None:
+    rig = Rig()
+    job = running(rig)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH, abs=1e-6)
+    new = corrected(job, -0.00254)  # -.0002 on the diameter is a tenth of a thousandth on the slide
+    rig.post(Renew(), Renew(new, good(new)))
+    rig.run(0.05)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH, abs=1e-6)
+    assert depth(rig) == pytest.approx(DEPTH - 0.00254, abs=1e-6)
+    assert depth(rig) == pytest.approx(DEPTH - 0.00254, abs=1e-6)
+    assert rig.shot.cycle_repeat
+    assert rig.shot.parts == 2
+    assert State.WAIT.value not in rig.said("state")
+
+
+def test_the_part_waits_for_its_proof() -> None:
+    """M30 has come before the proof: everything stands until it is there."""
+    rig = Rig()
+    job = running(rig)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    assert rig.shot.waiting_for == "PROOF WITH THE CHANGED OFFSETS"
+    assert rig.shot.parts == 1
+    assert not rig.shot.counts
+    stood = rig.shot.demand
+    rig.run(5.0)
+    assert rig.shot.demand == stood
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, good(new)))
+    rig.until(State.RUN)
+    rig.until_true(lambda shot: shot.line == 5)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
+    assert rig.shot.cycle_elapsed < 1.0  # the wait is not a part's time
+
+
+def test_a_program_that_fails_its_proof_is_not_repeated() -> None:
+    rig = Rig()
+    job = running(rig)
+    new = corrected(job, 99.0)
+    rig.post(Renew(new, Proof(new.digest, ("line 4: X leaves its travel",))))
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.said("refused") == ["no repeat: the program has errors: line 4: X leaves its travel"]
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state is State.IDLE
+    assert rig.shot.start_refused.startswith("the program has errors: line 4")
+
+
+def test_a_proof_of_other_offsets_does_not_count() -> None:
+    rig = Rig()
+    job = running(rig)
+    rig.post(Renew(corrected(job, -0.1), good(job)))
+    rig.until(State.IDLE)
+    assert "the proof belongs to another program" in rig.said("refused")[0]
+
+
+def test_what_could_not_be_proved_stops_with_its_reason() -> None:
+    rig = Rig()
+    running(rig)
+    rig.post(Renew(), Renew(trouble="the offsets cannot be read"))
+    rig.until(State.IDLE)
+    assert rig.said("refused") == ["no repeat: the offsets cannot be read"]
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "the program is not proved yet"
+
+
+def test_the_second_correction_takes_the_place_of_the_first() -> None:
+    """The first one has failed its proof; the operator takes it back before the part ends."""
+    rig = Rig()
+    job = running(rig)
+    bad, mended = corrected(job, 99.0), corrected(job, 0.0127)
+    rig.post(Renew(bad, Proof(bad.digest, ("too far",))), Renew(), Renew(mended, good(mended)))
+    assert depth(rig) == pytest.approx(DEPTH + 0.0127, abs=1e-6)
+    assert rig.said("refused") == []
+
+
+def test_another_program_is_not_slipped_in() -> None:
+    rig = Rig()
+    job = running(rig)
+    other = make_job(Source("PART", PART.replace("X.5", "X.1")), job.setup)
+    rig.post(Renew(other, good(other)))
+    assert rig.said("refused") == [
+        "another program is under way: new offsets are taken by the same program only"
+    ]
+    assert depth(rig) == pytest.approx(DEPTH, abs=1e-6)
+
+
+@pytest.mark.parametrize("end", ["M30", "M02"])
+def test_without_repeat_the_next_start_takes_it(end: str) -> None:
+    rig = Rig()
+    job = running(rig, repeat=False, text=PART.replace("M30", end))
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, good(new)))
+    rig.until(State.IDLE)
+    assert rig.shot.program == "PART"
+    assert not rig.shot.proof_wanted
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.line == 5)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
+
+
+@pytest.mark.parametrize("how", ["reset", "estop"])
+def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
+    """Announced and not yet proved: neither the old job nor an unproved one may begin."""
+    rig = Rig()
+    job = running(rig)
+    rig.post(Renew())
+    if how == "reset":
+        rig.post(Reset())
+        rig.until(State.IDLE)
+    else:
+        rig.sim.machine.press_estop()
+        rig.until(State.ESTOP)
+        rig.sim.machine.release_estop()
+        rig.until(State.DISABLED)
+        rig.ready()
+    assert rig.shot.proof_wanted
+    assert rig.shot.interrupted == 5
+    rig.run(0.4)
+    rig.post(CycleStart())
+    assert rig.state is State.IDLE
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, good(new)))
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.line == 5)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
+
+
+def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
+    rig = Rig()
+    job = running(rig)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    rig.post(FeedHold())
+    assert rig.state is State.HOLD
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, good(new)))
+    rig.run(1.0)
+    assert rig.state is State.HOLD  # nothing begins behind a hand that holds
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.line == 5)
+    assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    rig.post(SetSwitch("cycle_repeat", False))
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 2
+    assert rig.shot.interrupted == 0
+
+
+def test_reset_between_two_parts_has_broken_nothing_off() -> None:
+    rig = Rig()
+    running(rig)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert (rig.shot.parts, rig.shot.interrupted) == (1, 0)
+
+
+def test_m31_ends_the_repeating_all_the_same() -> None:
+    rig = Rig()
+    job = running(rig, text=PART.replace("M30", "M31\nM30"))
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, good(new)))
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_at_rest_it_counts_at_once_and_mdi_knows_it() -> None:
+    rig = Rig()
+    rig.ready()
+    job = rig.load(PART, TOOLS)
+    mdi(rig, "G90T1X1Z.1G94F300")
+    moved = make_job(job.source, replace(job.setup, tools={1: ToolOffset(-12.6, -50.8)}))
+    rig.post(Renew(moved, good(moved)))
+    assert rig.shot.modal.tool_x == -12.6
+    assert rig.said("refused") == []
+
+
+def test_another_program_that_is_loaded_forgets_it() -> None:
+    rig = Rig()
+    job = running(rig, repeat=False)
+    rig.until(State.IDLE)
+    other = make_job(Source("OTHER", "G90G94F300\nX.5\nX0\nM30\n"), job.setup)
+    rig.post(Renew(), LoadJob(other, good(other)), SetSwitch("cycle_repeat", True))
+    rig.run(0.4)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.parts == 3)
+    assert rig.shot.program == "OTHER"
