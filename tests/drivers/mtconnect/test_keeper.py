@@ -1,0 +1,93 @@
+"""The adapter's own thread: it begins, it ends, and what goes wrong in it is seen by the agents."""
+
+from __future__ import annotations
+
+import socket
+import threading
+
+import pytest
+
+from core.ports import DriverError
+from drivers.mtconnect.adapter import Adapter, Settings
+from drivers.mtconnect.keeper import Keeper
+from drivers.mtconnect.lines import Report
+from drivers.simulated import RealClock
+from tests.drivers.mtconnect.bench import lathe
+
+HERE = "127.0.0.1"
+
+
+class Machine:
+    """Its state, and whether asking for it fails."""
+
+    def __init__(self) -> None:
+        self.state, self.broken = "READY", threading.Event()
+
+    def report(self) -> Report:
+        if self.broken.is_set():
+            raise RuntimeError("a mistake of our own")
+        return Report({"execution": self.state}, {})
+
+
+def adapter(machine: Machine, port: int = 0) -> Adapter:
+    return Adapter(Settings(HERE, port, 10.0), tuple(lathe().all_items()), machine.report, RealClock())
+
+
+def threads() -> list[str]:
+    return [thread.name for thread in threading.enumerate() if thread.name == "mtconnect"]
+
+
+def all_of(wire: socket.socket) -> str:
+    """What comes until the other side hangs up."""
+    told = b""
+    while more := wire.recv(65536):
+        told += more
+    return told.decode("utf-8")
+
+
+def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
+    machine = Machine()
+    one = adapter(machine)
+    keeper = Keeper(one)
+    keeper.start()
+    address = one.address
+    with socket.create_connection(address, 5.0) as wire:
+        assert b"execution|READY" in wire.recv(65536)
+        machine.state = "STOPPED"  # the last word, whether a look comes before the end or not
+        keeper.close()
+        assert "execution|STOPPED" in all_of(wire)
+    assert not keeper.alive
+    assert threads() == []
+    with pytest.raises(ConnectionError):
+        socket.create_connection(address, 5.0)
+
+
+def test_closing_twice_is_closing_once() -> None:
+    keeper = Keeper(adapter(Machine()))
+    keeper.start()
+    keeper.close()
+    keeper.close()
+
+
+def test_a_port_that_is_taken_leaves_no_thread() -> None:
+    with socket.create_server((HERE, 0)) as other:
+        keeper = Keeper(adapter(Machine(), other.getsockname()[1]))
+        with pytest.raises(DriverError, match="cannot be opened"):
+            keeper.start()
+        keeper.close()
+    assert threads() == []
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_should_it_fail_agents_are_hung_up_on() -> None:
+    """Then they say UNAVAILABLE by themselves instead of showing what was true once."""
+    machine = Machine()
+    one = adapter(machine)
+    keeper = Keeper(one)
+    keeper.start()
+    with socket.create_connection(one.address, 5.0) as wire:
+        wire.recv(65536)
+        machine.broken.set()
+        all_of(wire)
+    keeper.close()
+    assert not keeper.alive
