@@ -137,7 +137,7 @@ TOP = (
     "kinematics",
     *HARDWARE,
 )
-CHILDREN = {"spindle": ("vfd",), "sim": ("faults",)}  # read with what the machine is wired to
+CHILDREN = {"spindle": ("vfd", "encoder"), "sim": ("faults",)}  # read with what the machine is wired to
 # A mill has none of these; its model holds what stands here.
 TABLES_OF_A_LATHE: dict[str, tuple[Field, ...]] = {
     "c_axis": C_OPTION,

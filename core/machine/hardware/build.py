@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from core.machine.hardware import encoder
+from core.machine.hardware.addresses import sdo_address
 from core.machine.hardware.model import (
     AnalogModel,
     CanNode,
     CanopenModel,
     DncModel,
+    EncoderModel,
     GrblhalModel,
     Hardware,
     HomeModel,
@@ -27,6 +30,7 @@ def hardware_of(reading: HardwareReading, axes: tuple[str, ...], outputs: list[s
         spindle_driver=values.text("spindle.driver"),
         canopen=_canopen(reading) if "canopen" in tables else None,
         vfd=_vfd(values) if "spindle.vfd" in tables else None,
+        encoder=_encoder(values) if encoder.PATH in tables else None,
         grblhal=_grblhal(reading) if "grblhal" in tables else None,
         dnc=_dnc(values) if "dnc" in tables else None,
         mtconnect=_mtconnect(values) if "mtconnect" in tables else None,
@@ -86,7 +90,14 @@ def _vfd(values: Values) -> VfdModel:
         id=_int(values, f"{path}.id"),
         comm_loss=values.number(f"{path}.comm_loss_s"),
         hz_per_rpm=values.number(f"{path}.hz_per_rpm"),
+        disagree=values.number(f"{path}.disagree_pct"),
     )
+
+
+def _encoder(values: Values) -> EncoderModel:
+    path = encoder.PATH
+    index, sub = sdo_address(values.text(f"{path}.object") or encoder.POSITION) or (0, 0)
+    return EncoderModel(values.text(f"{path}.node"), index, sub, _int(values, f"{path}.counts_per_rev"))
 
 
 def _grblhal(reading: HardwareReading) -> GrblhalModel:

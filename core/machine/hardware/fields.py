@@ -39,7 +39,7 @@ CANOPEN = (
 )
 NODE = (
     Field("id", _WHOLE, low=1, high=127),
-    Field("profile", _WHOLE, low=401, high=402, default=402),
+    Field("profile", _WHOLE, low=401, high=406, default=402),
     Field("eds", _TEXT, default=""),
     Field("counts_per_rev", _WHOLE, low=0, high=100_000_000, default=0),
 )
@@ -52,6 +52,12 @@ VFD = (
     Field("id", _WHOLE, low=1, high=247, default=1),
     Field("comm_loss_s", _NUMBER, Unit.SECONDS, 0.2, 10.0, default=1.5),
     Field("hz_per_rpm", _NUMBER, Unit.PLAIN, 0.001, 1.0),
+    Field("disagree_pct", _NUMBER, Unit.PERCENT, 0.05, 0.5, default=0.15),
+)
+ENCODER = (
+    Field("node", _TEXT),
+    Field("object", _TEXT, default=""),
+    Field("counts_per_rev", _WHOLE, low=-100_000_000, high=100_000_000),
 )
 GRBLHAL = (
     Field("port", _TEXT),

@@ -26,7 +26,7 @@ class CanNode:
 
     name: str
     id: int
-    profile: int  # 402 or 401
+    profile: int  # 402, 401 or 406
     eds: str = ""  # file of the object dictionary; empty: the standard objects
     counts_per_rev: int = 0  # the drive counts velocities in rpm of this many counts; 0: in counts/s
     sdo: tuple[SdoValue, ...] = ()  # those for all nodes of its profile, then its own
@@ -60,6 +60,17 @@ class VfdModel:
     id: int
     comm_loss: float  # s, the inverter's own time-out
     hz_per_rpm: float
+    disagree: float = 0.15  # fraction by which an encoder may differ from what the inverter gives
+
+
+@dataclass(frozen=True, slots=True)
+class EncoderModel:
+    """An encoder on the spindle, on the bus: a node of its own, or a drive's second input."""
+
+    node: str  # name in [canopen.nodes]
+    index: int
+    sub: int
+    counts_per_rev: int  # negative: it counts down with M03
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +164,7 @@ class Hardware:
     spindle_driver: str = "sim"  # sim, cia402, vfd or grblhal
     canopen: CanopenModel | None = None
     vfd: VfdModel | None = None
+    encoder: EncoderModel | None = None  # beside an inverter
     grblhal: GrblhalModel | None = None
     dnc: DncModel | None = None
     mtconnect: MtconnectModel | None = None

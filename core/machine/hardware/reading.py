@@ -41,6 +41,7 @@ class HardwareReading:
         self._read_sdo(bus.get("sdo", {}))
         self._read_settings(_table(self.data.get("grblhal")).get("settings", {}))
         self._read_vfd(_table(self.data.get("spindle")).get("vfd"))
+        self._read_encoder(_table(self.data.get("spindle")).get("encoder"))
         self.analog = self._read_analog(_table(self.data.get("io")).get("analog", {}))
         self._read_faults(_table(self.data.get("sim")).get("faults", []))
 
@@ -59,6 +60,11 @@ class HardwareReading:
         if table is not None:
             self.tables.append("spindle.vfd")
             self.findings += read_table(table, fields.VFD, "spindle.vfd", self.values)
+
+    def _read_encoder(self, table: object) -> None:
+        if table is not None:
+            self.tables.append("spindle.encoder")
+            self.findings += read_table(table, fields.ENCODER, "spindle.encoder", self.values)
 
     def _read_analog(self, table: object) -> list[str]:
         if isinstance(table, dict):

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from core.machine.errors import Finding
 from core.machine.hardware import drive_limits, wiring
+from core.machine.hardware.encoder import broken as wrong_encoder
 from core.machine.hardware.fields import AXIS_FAULTS
 from core.machine.hardware.palms import broken as wrong_palms
 from core.machine.hardware.reading import HardwareReading
@@ -30,6 +31,7 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: Mapping[str
     yield from _ports(reading.values)
     yield from wrong_wheel(reading, axes)
     yield from wrong_palms(reading)
+    yield from wrong_encoder(reading)
     yield from drive_limits.outside(reading, axes)
     if "canopen" in reading.tables:
         yield from _bus_times(reading.values)
@@ -139,7 +141,7 @@ def _nodes(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]
         if profile == _DRIVE and name not in (*axes, _SPINDLE):
             known = ", ".join((*axes, _SPINDLE))
             yield Finding(path, "", f"a drive is named after what it moves: {known}; I/O has profile = 401")
-        if profile == _MODULE and name in (*axes, _SPINDLE):
+        if profile != _DRIVE and name in (*axes, _SPINDLE):
             yield Finding(f"{path}.profile", str(profile), "expected 402, a drive")
 
 
