@@ -12,7 +12,7 @@ from core.machine.model import Machine
 from core.ports import Clock, DriverError
 from drivers.feeder.client import Line
 from drivers.feeder.links import SocketLink
-from drivers.feeder.loop import real_time, serve
+from drivers.feeder.loop import keep_memory, real_time, serve
 from drivers.feeder.wire import NOTHING, Inbox, Message, packed, text
 from drivers.simulated import RealClock
 
@@ -76,6 +76,7 @@ def main(arguments: list[str]) -> int:
     except DriverError as error:
         sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
         return 1
+    warnings += keep_memory()
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
     serve(sock, machine_driven, warnings, machine.hardware.refresh)
     return 0

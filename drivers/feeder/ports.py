@@ -4,9 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.ports import AxisSample, Cam, Geared, MachinePorts, Segments, StationState, Stop
+from core.ports import AxisSample, Cam, DriverError, Geared, MachinePorts, Segments, StationState, Stop
 from drivers.feeder.client import Line
-from drivers.feeder.wire import NOTHING, Message, cam_message, floats, items, number, rows, text, texts
+from drivers.feeder.wire import (
+    NOTHING,
+    VERSION,
+    Message,
+    cam_message,
+    floats,
+    items,
+    number,
+    rows,
+    text,
+    texts,
+)
 
 
 class FeederAxes:
@@ -156,6 +167,11 @@ class FeederStation:
 def feeder_ports(line: Line) -> MachinePorts:
     """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
     hello = line.ask(Message({"do": "hello"}, NOTHING)).head
+    if hello.get("version") != VERSION:
+        raise DriverError(
+            f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control, and"
+            " start it again once its installation is whole"
+        )
     return MachinePorts(
         clock=line.clock,
         axes=FeederAxes(line, hello),

@@ -10,7 +10,8 @@ from typing import Protocol
 import numpy as np
 
 from core.ports import DriverError, MachinePorts, Stop
-from drivers.feeder.wire import NOTHING, Message, cam_of, number, segments, text
+from drivers.feeder.orders import act, use_hand
+from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segments, text
 
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
@@ -134,6 +135,7 @@ class Feeder:
     def _hello(self, _message: Message) -> Message:
         axes = self._ports.axes
         head = {
+            "version": VERSION,
             "axes": axes.axes,
             "commit": axes.commit,
             "gear": self._ports.gear is not None,
@@ -174,32 +176,11 @@ class Feeder:
         return _value(0.0)
 
     def _act(self, message: Message) -> Message:
-        ports, head = self._ports, message.head
-        on = head.get("on") is True
-        acts: dict[str, Callable[[], None]] = {
-            "enable": lambda: ports.axes.enable(on),
-            "stop": lambda: ports.axes.stop(Stop(text(head, "how"))),
-            "home": lambda: ports.axes.home(text(head, "name")),
-            "clear_fault": ports.axes.clear_fault,
-            "run": lambda: ports.spindle.run(number(head, "rpm")),
-            "coast": ports.spindle.coast,
-            "write": lambda: ports.io.write(text(head, "name"), on),
-            "safe": ports.io.safe,
-        }
-        act = acts.get(text(head, "what"))
-        if act is None:
-            raise DriverError("the feeder does not know this order; are both of the same version?")
-        act()
+        act(self._ports, message.head)
         return _value(0.0)
 
     def _hand(self, message: Message) -> Message:
-        """A hand at the simulated station, by the name of its method."""
-        hands, name = self._driven.hands, text(message.head, "name")
-        act = None if name.startswith("_") or hands is None else getattr(hands, name, None)
-        values = message.head.get("values")
-        if not callable(act) or not isinstance(values, list):
-            raise DriverError("this machine has no simulated station")
-        return Message({"value": act(*values)}, NOTHING)
+        return Message({"value": use_hand(self._driven.hands, message.head)}, NOTHING)
 
 
 def _value(value: float) -> Message:

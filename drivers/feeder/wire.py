@@ -13,6 +13,8 @@ from core.ports import Cam, DriverError, FloatArray, Segments
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
 LARGEST = 64_000_000  # bytes; more is no message
+_HUGE = 1e300  # a number beyond is none, and NaN neither
+VERSION = 1  # of what is asked and answered; both sides say it in their first words
 
 
 class Message(NamedTuple):
@@ -57,7 +59,7 @@ class Inbox:
 def _head(text: bytes) -> Mapping[str, object]:
     try:
         head = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise DriverError("the feeder's socket carries something that is no message") from error
     if not isinstance(head, dict):
         raise DriverError("the feeder's socket carries something that is no message")
@@ -73,7 +75,7 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
     """The segments of one row. Raises DriverError for a row of another length."""
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
-    if left or not count:
+    if left or not count or not np.isfinite(numbers).all():
         raise DriverError("setpoints were damaged on their way to the feeder")
     cuts = np.cumsum([count, count, count * axes, count * axes])
     t, dt, p, v, a = np.split(numbers, cuts)
@@ -88,9 +90,9 @@ def cam_message(cam: Cam) -> Message:
 
 
 def number(head: Mapping[str, object], key: str) -> float:
-    """A number of the head. Raises DriverError where there is none."""
+    """A finite number of the head. Raises DriverError where there is none."""
     value = head.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
         raise DriverError(f"the feeder was sent no number as {key}")
     return float(value)
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import socket
-import threading
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -13,12 +10,11 @@ import pytest
 from core.ports import DriverError, MachinePorts
 from drivers.feeder.client import Line
 from drivers.feeder.hands import FeederHands
-from drivers.feeder.links import LoopLink, SocketLink
-from drivers.feeder.loop import serve
+from drivers.feeder.links import LoopLink
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.simulated import RealClock, Simulation, StepClock, build_simulation
+from drivers.simulated import Simulation, StepClock, build_simulation
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG, ramp
 
@@ -125,6 +121,12 @@ def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
         ({"do": "do", "what": "explode"}, "does not know this order"),
         ({"do": "do", "what": "run"}, "no number as rpm"),
         ({"do": "do", "what": "run", "rpm": "fast"}, "no number as rpm"),
+        ({"do": "do", "what": "run", "rpm": float("nan")}, "no number as rpm"),
+        ({"do": "do", "what": "run", "rpm": float("inf")}, "no number as rpm"),
+        ({"do": "do", "what": "run", "rpm": 10**400}, "no number as rpm"),
+        ({"do": "do", "what": "stop", "how": "gently"}, "does not know the stop 'gently'"),
+        ({"do": "do", "what": "stop"}, "does not know the stop"),
+        ({"do": "hand", "name": "press_estop", "values": [1, 2]}, "cannot press_estop"),
         ({"do": "splice"}, "damaged"),
         ({"do": "demand"}, "no number as t"),
         ({"do": "hand", "name": "__class__", "values": []}, "no simulated station"),
@@ -138,6 +140,27 @@ def test_nonsense_is_refused_and_changes_nothing(
     assert expected in str(answer.head["error"])
     assert not bench.sim.ports.axes.sample().enabled
     assert not bench.sim.ports.station.snapshot().estop
+
+
+@pytest.mark.parametrize("damage", [float("nan"), float("inf")])
+def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage: float) -> None:
+    bench.ports.axes.enable(True)
+    way = ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0)
+    way.p[1, 1] = damage
+    with pytest.raises(DriverError, match="damaged"):
+        bench.ports.axes.splice(way)
+    bench.alone(0.5)
+    assert bench.sim.ports.axes.sample().actual[0] == pytest.approx(0.0, abs=0.002)
+
+
+def test_a_feeder_of_another_version_is_not_driven(bench: Bench) -> None:
+    class Older(LoopLink):
+        def ask(self, message: Message) -> Message:
+            answer = super().ask(message)
+            return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
+
+    with pytest.raises(DriverError, match="speaks version None, this control 1"):
+        feeder_ports(Line(Older(bench.feeder), bench.clock))
 
 
 def test_messages_in_pieces_and_in_heaps() -> None:
@@ -156,6 +179,8 @@ def test_messages_in_pieces_and_in_heaps() -> None:
     [
         b"\x04\x00\x00\x00\x00\x00\x00\x00nope",
         b"\x02\x00\x00\x00\x00\x00\x00\x00[]",
+        (100_000).to_bytes(4, "little") + bytes(4) + b"[" * 100_000,
+        b"\x02\x00\x00\x00\x00\x00\x00\x00\xff\xfe",
         b"\x02\x00\x00\x00\x07\x00\x00\x00{}1234567",
         (LARGEST + 1).to_bytes(4, "little") + b"\x00\x00\x00\x00",
     ],
@@ -163,62 +188,6 @@ def test_messages_in_pieces_and_in_heaps() -> None:
 def test_garbage_on_the_socket_is_an_error(data: bytes) -> None:
     with pytest.raises(DriverError, match="no message"):
         list(Inbox().feed(data))
-
-
-@pytest.fixture
-def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
-    """The loop of the feeder's process in a thread, and the control's end of its socket."""
-    ours, theirs = socket.socketpair()
-    clock = RealClock()
-    sim = build_simulation(CONFIG, clock)
-    thread = threading.Thread(target=serve, args=(theirs, SimDriven(sim.ports, sim.machine), []))
-    thread.start()
-    yield ours, sim, thread
-    ours.close()
-    thread.join(20.0)
-    theirs.close()
-    assert not thread.is_alive()
-
-
-def assert_off(sim: Simulation) -> None:
-    """The drives lose power with the next step of the model."""
-    clock = sim.ports.clock
-    end = clock.now() + 5.0
-    while sim.ports.axes.sample().enabled:
-        assert clock.now() < end
-
-
-def test_the_loop_answers_and_ends_with_its_control(
-    served: tuple[socket.socket, Simulation, threading.Thread],
-) -> None:
-    ours, sim, thread = served
-    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
-    ports.axes.enable(True)
-    assert ports.axes.sample().enabled
-    ours.close()
-    thread.join(20.0)
-    assert not thread.is_alive()
-    assert_off(sim)
-
-
-def test_garbage_from_the_control_counts_as_its_end(
-    served: tuple[socket.socket, Simulation, threading.Thread],
-) -> None:
-    ours, sim, thread = served
-    ports = feeder_ports(Line(SocketLink(ours), RealClock()))
-    ports.axes.enable(True)
-    ours.sendall(b"\xff" * 64)
-    thread.join(20.0)
-    assert not thread.is_alive()
-    assert_off(sim)
-    assert "feeder process has ended" in ports.axes.sample().fault
-
-
-def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
-    ours, theirs = socket.socketpair()
-    line = Line(SocketLink(ours), RealClock())
-    with ours, theirs, pytest.raises(DriverError, match="has not answered"):
-        feeder_ports(line)
 
 
 def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
