@@ -34,7 +34,7 @@ def _restore(args: argparse.Namespace) -> int:
 def _export(args: argparse.Namespace) -> int:
     with opened_store(read_only=True) as store:
         count = export.export(store, Path(args.path))
-    sys.stdout.write(f"{args.path} holds programs: {count}, the offsets and the events\n")
+    sys.stdout.write(f"{args.path} holds programs: {count}, the offsets, the events and the runs\n")
     return EXIT_OK
 
 

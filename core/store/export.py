@@ -5,20 +5,20 @@ from __future__ import annotations
 import csv
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from core.store.errors import StoreError
 from core.store.fields import FIELDS, Field, Sort
-from core.store.rows import EventRow, Kind, Value, inches
+from core.store.rows import EventRow, Kind, RunRow, Value, inches
 from core.store.store import Store
 
-PROGRAMS, OFFSETS, EVENTS = "programs", "offsets.toml", "events.csv"
+PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
 _ALL = 2**62
 
 
 def export(store: Store, folder: Path) -> int:
-    """Writes the newest version of every program, offsets and event log; answers how many programs.
+    """Writes the newest version of every program, offsets, event log and runs; answers how many programs.
 
     The folder appears when all of it is written. Raises StoreError when it is there already and not empty.
     """
@@ -42,7 +42,8 @@ def _write_all(store: Store, folder: Path) -> int:
     for name in names:
         (folder / PROGRAMS / name).write_bytes(store.load_program(name))
     (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
-    _write_events(store, folder / EVENTS)
+    _write_table(folder / EVENTS, EventRow._fields, reversed(store.events(limit=_ALL)))
+    _write_table(folder / RUNS, _run_columns(), store.runs())
     return len(names)
 
 
@@ -67,11 +68,18 @@ def _toml(field: Field, value: Value) -> str:
     return repr(inches(value)) if field.sort is Sort.LENGTH else str(value)
 
 
-def _write_events(store: Store, path: Path) -> None:
+def _run_columns() -> Iterator[str]:
+    """Times say that they are seconds."""
+    for name in RunRow._fields:
+        yield f"{name}_s" if name in {"best", "latest", "planned"} else name
+
+
+def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
+    """For spreadsheets; what is not known is an empty cell."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
-        table.writerow(EventRow._fields)
-        table.writerows(reversed(store.events(limit=_ALL)))
+        table.writerow(head)
+        table.writerows(rows)
 
 
 def program_files(folder: Path) -> dict[str, bytes]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from core.store.errors import StoreError
+from core.store.export import export
 from core.store.store import Store
 
 
@@ -69,3 +71,30 @@ def test_events_of_some_kinds(store: Store) -> None:
     assert [event.text for event in store.events("SPIN", kinds={"alarm", "end"})] == ["spindle"]
     assert len(store.events()) == 4
     assert store.events(kinds={"nothing"}) == ()
+
+
+def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> None:
+    store.run_started("pin.nc")
+    store.cycle_finished("pin.nc", 30.5)
+    store.run_ended("pin.nc", 'ALARM 102, "X"')
+    store.count_part("pin.nc")
+    store.program_proved("ring.nc", "2 ERRORS: line 4", None).result(5)
+    export(store, tmp_path / "out")
+    with (tmp_path / "out" / "runs.csv").open(newline="", encoding="utf-8") as file:
+        pin, ring = csv.DictReader(file)
+    assert (pin["program"], pin["parts"], pin["cycles"], pin["best_s"], pin["latest_s"]) == (
+        "pin.nc",
+        "1",
+        "1",
+        "30.5",
+        "30.5",
+    )
+    assert pin["outcome"] == 'ALARM 102, "X"'
+    assert pin["started"].endswith("Z")
+    assert (ring["proof"], ring["planned_s"], ring["started"]) == ("2 ERRORS: line 4", "", "")
+
+
+def test_an_export_without_runs_has_the_head_alone(store: Store, tmp_path: Path) -> None:
+    export(store, tmp_path / "out")
+    told = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
+    assert told == ["program,parts,started,outcome,cycles,best_s,latest_s,proved,proof,planned_s"]
