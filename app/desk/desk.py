@@ -135,12 +135,18 @@ class Desk(DeskParts):
         else:
             self.say("THE DRIVES ARE ON")
 
-    def escape(self) -> None:
-        """Esc takes a question back; while something moves it holds, because it is what a hand hits first."""
+    def escape(self) -> bool:
+        """Esc takes a question back; while something moves it holds, because it is what a hand hits first.
+
+        False when there was neither.
+        """
         if self.notice:
             self.clear()
         elif self.snapshot().state in prompts.MOVING:
             self.feed_hold()
+        else:
+            return False
+        return True
 
     # --- station -------------------------------------------------------------------------------------
 

@@ -23,7 +23,8 @@ It is made when it is first opened. What a page gives:
 ``opened()``  it has come up; it may take the focus (the window has it otherwise).
 ``leave()``   it is about to go, or the window is about to close; False keeps it (it then says why by
               ``desk.say``).
-``escape()``  Esc; False when nothing was closed by it, then the desk holds or takes its question back.
+``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
+              where it has neither the Automatic page comes up.
 ``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
 ``dress()``   the colours have changed; painted parts are updated by the frame anyway.
 

@@ -10,6 +10,7 @@ from PySide6.QtGui import QCloseEvent, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
+from app.desk.pages import AUTOMATIC
 from app.desk.prompts import UNDER_WAY
 from app.screen.frame import Frame
 from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
@@ -105,8 +106,10 @@ class MainWindow(QWidget):
             frame.dress()
 
     def _escape(self) -> None:
-        if self.frame is not None and not self.frame.escape():
-            self.frame.desk.escape()
+        """One step back: in the page, then a question or the feed, and from the last step to Automatic."""
+        frame = self.frame
+        if frame is not None and not (frame.escape() or frame.desk.escape()):
+            frame.go(AUTOMATIC)
 
     def put_away(self) -> None:
         """Stop polling and go, without asking; for scripts that only look."""

@@ -385,6 +385,11 @@
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
+      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
+      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
       <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
       <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
     </message>

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
+from app.desk import prompts
 from app.desk.mdi.findings import never_set, prompt
 from app.desk.mdi.typing import Typing
 from app.desk.pages import STOPPING
@@ -120,7 +121,8 @@ class MdiDesk:
 
     def escape(self) -> bool:
         """Take a ready line back, then what is typed; False when there was neither."""
-        if self.snapshot().state is not State.IDLE or not (self.ready or self.typing.text or self._asked):
+        begun = self.ready or self.typing.text or self._asked
+        if self.snapshot().state in prompts.UNDER_WAY or not begun:
             return False
         if self.ready is None and self._asked is None:
             self.typing.put("")

@@ -69,7 +69,7 @@ class EditorPage(EditorParts):
         return found
 
     def escape(self) -> bool:
-        """A question is taken back, else the answer of the last key."""
+        """A question is taken back, else the answer of the last key; what has nothing to save is left."""
         if self._moving:
             self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
         elif self.editor.stage is Stage.OFFERED:
@@ -78,8 +78,13 @@ class EditorPage(EditorParts):
             self.back()
         elif self.editor.notice:
             self.editor.clear()
-        else:
+        elif self.desk.notice:
             return False
+        elif self.editor.is_dirty(self.draft.now()):
+            self.editor.notice = words.UNSAVED
+        else:
+            self._target = pages.AUTOMATIC
+            self.abandon()
         return True
 
     def prompt(self) -> str:

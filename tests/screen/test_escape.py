@@ -1,0 +1,192 @@
+"""Esc, one step after the other, ends on the Automatic page; what moves is held first, nothing is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.desk import pages
+from app.desk.editing import words
+from app.screen.editor.page import EditorPage
+from core.executor.snapshot import State
+from tests.screen.chapters import drives_on
+from tests.screen.day import SHIFT, Day, Key, begun
+
+CTRL = Qt.KeyboardModifier.ControlModifier
+TEXT = "G90G94F10\nX1Z1\nM30\n"
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "slow.nc").write_text(TEXT, encoding="utf-8")
+    with begun(qtbot) as day:
+        yield day
+
+
+def opened(day: Day, key: Key, name: str) -> None:
+    """A page of the main menu."""
+    day.key(Key.Key_F1, key)
+    day.sees(lambda: day.page == name)
+
+
+KEYS = {
+    Key.Key_F4: pages.MDI,
+    Key.Key_F5: pages.JOG,
+    Key.Key_F6: pages.PROGRAMS,
+    Key.Key_F8: pages.TOOLS,
+    Key.Key_F9: pages.SECCMP,
+    Key.Key_F10: pages.SPECIAL,
+    Key.Key_G: pages.ZERO,
+}
+
+
+@pytest.mark.parametrize("switched_on", [True, False])
+def test_every_page_leads_to_automatic(day: Day, switched_on: bool) -> None:
+    if switched_on:
+        drives_on(day)
+    for key, name in KEYS.items():
+        opened(day, key, name)
+        day.key(Key.Key_Escape)
+        day.sees(lambda: day.page == pages.AUTOMATIC)
+
+
+@pytest.mark.parametrize("switched_on", [True, False])
+def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
+    if switched_on:
+        drives_on(day)
+    opened(day, Key.Key_F4, pages.MDI)
+    if switched_on:
+        day.type("X1")
+        day.key(Key.Key_Escape)
+        assert day.page == pages.MDI
+        assert day.desk.mdi is not None
+        assert day.desk.mdi.typing.text == ""
+    day.key(Key.Key_Escape)
+    assert day.page == pages.AUTOMATIC
+
+
+def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
+    drives_on(day)
+    opened(day, Key.Key_F4, pages.MDI)
+    assert day.desk.mdi is not None
+    day.type("G90G94F5X1")
+    day.key(Key.Key_Return)
+    day.desk.mdi.settle(5.0)
+    day.run(0.05)
+    day.palms()
+    day.reaches(State.RUN)
+    day.key(Key.Key_Escape)
+    day.reaches(State.HOLD)
+    assert day.page == pages.MDI
+    day.key(Key.Key_Escape)
+    assert day.page == pages.MDI  # a line that is held is not walked away from
+    day.key(Key.Key_Escape, Key.Key_R, Key.Key_R)
+    day.reaches(State.IDLE)
+
+
+def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
+    drives_on(day)
+    opened(day, Key.Key_F5, pages.JOG)
+    day.type("t")
+    day.key(Key.Key_Escape)
+    assert day.page == pages.JOG
+    QTest.keyPress(day.window, Key.Key_Right)
+    day.reaches(State.JOG)
+    day.key(Key.Key_Escape)
+    assert day.page == pages.JOG
+    day.reaches(State.IDLE)
+    QTest.keyRelease(day.window, Key.Key_Right)
+    assert day.desk.notice == "ANOTHER KEY HAS ENDED THE JOG"
+    day.key(Key.Key_Escape)
+    assert (day.page, day.desk.notice) == (pages.JOG, "")
+    day.key(Key.Key_Escape)
+    day.sees(lambda: day.page == pages.AUTOMATIC)
+
+
+def test_an_answer_is_taken_back_before_the_page(day: Day) -> None:
+    drives_on(day)
+    opened(day, Key.Key_F5, pages.JOG)
+    day.desk.say("AN ANSWER")
+    day.key(Key.Key_Escape)
+    assert (day.page, day.desk.notice) == (pages.JOG, "")
+
+
+def edited(day: Day) -> EditorPage:
+    """F3 on the program of the folder."""
+    day.key(Key.Key_F2)
+    day.type("slow")
+    day.key(Key.Key_Return)
+    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.key(Key.Key_F3)
+    day.sees(lambda: day.page == pages.EDITOR)
+    page = day.frame.page
+    assert isinstance(page, EditorPage)
+    day.sees(lambda: bool(page.field.toPlainText()))
+    return page
+
+
+def test_the_editor_is_left_where_there_is_nothing_to_save(day: Day, tmp_path: Path) -> None:
+    drives_on(day)
+    edited(day)
+    day.key(Key.Key_F4)
+    day.key(Key.Key_Escape)  # the search first
+    assert day.page == pages.EDITOR
+    day.key(Key.Key_Escape)
+    day.sees(lambda: day.page == pages.AUTOMATIC)
+    assert day.prompt.startswith("TO START")
+    assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
+
+
+def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
+    drives_on(day)
+    page = edited(day)
+    day.key(Key.Key_End, modifier=CTRL)
+    day.type("(END)")
+    day.key(Key.Key_Escape)
+    assert day.prompt == words.UNSAVED
+    for _ in range(3):
+        day.key(Key.Key_Escape)
+        assert day.page == pages.EDITOR
+    assert page.field.toPlainText().endswith("(END)")
+    assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
+
+
+def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
+    drives_on(day)
+    day.key(Key.Key_F2)
+    day.type("slow")
+    day.key(Key.Key_Return)
+    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.palms()
+    day.reaches(State.RUN)
+    day.key(Key.Key_Escape)
+    day.reaches(State.HOLD)
+    assert day.page == pages.AUTOMATIC
+    day.palms()
+    day.reaches(State.RUN)
+    opened(day, Key.Key_F5, pages.JOG)
+    day.key(Key.Key_Escape)
+    day.reaches(State.HOLD)
+    assert day.page == pages.JOG
+    day.key(Key.Key_Escape)
+    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.key(Key.Key_R, Key.Key_R)
+    day.reaches(State.IDLE)
+
+
+def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
+    drives_on(day)
+    opened(day, Key.Key_F5, pages.JOG)
+    day.key(Key.Key_E)
+    day.reaches(State.ESTOP)
+    day.key(Key.Key_Escape)
+    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.key(Key.Key_E, modifier=SHIFT)
