@@ -20,7 +20,7 @@ from app.compose.machine import read_machine, setup_for
 from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.searchto import give_searchto
-from app.compose.shop_floor import open_shop_floor
+from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special import furnish
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.desk import Desk
@@ -34,7 +34,7 @@ from app.desk.shelf import Shelf
 from app.desk.words import tr
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
-from core.executor.snapshot import Event
+from core.executor.snapshot import Event, Snapshot
 from core.executor.thread import ExecutorThread
 from core.interpreter.modal import Modal
 from core.language.dialect import Dialect
@@ -87,14 +87,28 @@ def build_desk(
 
 
 def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[], None]:
-    """Told to agents from now on; what is in the way goes to the prompt line and to the log."""
+    """Told to agents, and kept in the status file; what is in the way goes to the prompt line and to the log.
+
+    A folder that another TurnDesk has, as its store tells, has that one's status.
+    """
 
     def tell(why: str) -> None:
         desk.say(tr("NO SHOP-FLOOR DATA: {why}").format(why=why))
         journal.hear(Event(executor.snapshot.t, "warning", why))
 
+    def snapshot() -> Snapshot:
+        return executor.snapshot
+
     assert desk.lathe is not None
-    return open_shop_floor(desk.lathe, lambda: executor.snapshot, tell)
+    open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
+    if not journal.trouble:
+        open_ones.append(keep_status(desk.lathe, snapshot, home()))
+
+    def close() -> None:
+        for each in open_ones:
+            each()
+
+    return close
 
 
 def desk_and_executor(

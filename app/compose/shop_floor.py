@@ -5,16 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from datetime import datetime
+from pathlib import Path
 
-from app.shopfloor.reading import FloorReader, Reading
+from app.shopfloor.reading import UNKNOWN, FloorReader, Reading
+from app.shopfloor.status import NAME, StatusFile, StatusKeeper, status_of
 from core.executor.snapshot import Snapshot
 from core.machine.hardware.model import MtconnectModel
 from core.machine.model import Machine
 from core.ports import DriverError
-from drivers.mtconnect.adapter import Adapter, Settings
+from drivers.mtconnect.adapter import Adapter, Settings, utc_now
 from drivers.mtconnect.items import Category, Component, Layout, machine_items
 from drivers.mtconnect.keeper import Keeper
-from drivers.mtconnect.lines import Active, Report
+from drivers.mtconnect.lines import Active, Report, stamp
 from drivers.mtconnect.probe import devices_xml
 from drivers.simulated import RealClock
 
@@ -38,23 +40,37 @@ def open_shop_floor(
     return keeper.close
 
 
+def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path) -> Callable[[], None]:
+    """Begin to keep the status file in this folder; returns how to end it."""
+    reader = FloorReader(machine, _conditions(device_of(machine, machine.name)), time.monotonic)
+    keeper = StatusKeeper(
+        StatusFile(folder / NAME, lambda: stamp(utc_now())),
+        lambda: status_of(machine.name, reader.look(snapshot())),
+        status_of(machine.name, UNKNOWN),
+    )
+    keeper.start()
+    return keeper.close
+
+
 def adapter_of(machine: Machine, model: MtconnectModel, snapshot: Callable[[], Snapshot]) -> Adapter:
     """The adapter on real time; it looks at snapshots and at nothing else."""
-    items = tuple(device_of(machine, model).all_items())
-    conditions = frozenset(item.key for item in items if item.category is Category.CONDITION)
-    reader = FloorReader(machine, conditions, time.monotonic)
+    device = device_of(machine, model.device)
+    reader = FloorReader(machine, _conditions(device), time.monotonic)
     settings = Settings(model.bind, model.port, model.heartbeat)
-    return Adapter(settings, items, lambda: _report(reader.look(snapshot())), RealClock())
+    return Adapter(settings, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
 
 
-def device_of(machine: Machine, model: MtconnectModel) -> Component:
-    """What is told of this machine. On a lathe the spindle is the C axis too, unless C has its own drive."""
+def device_of(machine: Machine, name: str) -> Component:
+    """What is told of this machine under a name.
+
+    On a lathe the spindle is the C axis too, unless C has its own drive.
+    """
     lathe = machine.kind == "lathe"
     one = lathe and machine.spindle_is_c
     linear = tuple(axis.name for axis in machine.axes if not axis.rotary)
     rotary = tuple(axis.name for axis in machine.axes if axis.rotary and not (one and axis.name == "C"))
     layout = Layout(linear, rotary, "C" if one else "S", one, lathe)
-    return machine_items(layout, model.device)
+    return machine_items(layout, name)
 
 
 def device_model(machine: Machine, at: datetime) -> str:
@@ -65,7 +81,11 @@ def device_model(machine: Machine, at: datetime) -> str:
             f"{machine.source}: there is no [mtconnect] table; it says under which name and port "
             "this machine tells the shop floor about itself"
         )
-    return devices_xml(device_of(machine, model), f"{machine.name}, {machine.kind}", at)
+    return devices_xml(device_of(machine, model.device), f"{machine.name}, {machine.kind}", at)
+
+
+def _conditions(device: Component) -> frozenset[str]:
+    return frozenset(item.key for item in device.all_items() if item.category is Category.CONDITION)
 
 
 def _report(reading: Reading) -> Report:

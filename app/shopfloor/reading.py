@@ -32,6 +32,9 @@ class Reading:
         return self.values.get("avail") == _AVAILABLE
 
 
+UNKNOWN = Reading({"avail": _UNAVAILABLE})
+
+
 @dataclass(slots=True)
 class FloorReader:
     """Looks at snapshots of one machine; ``clock`` in s tells when they no longer come."""
@@ -45,7 +48,7 @@ class FloorReader:
     def look(self, snapshot: Snapshot) -> Reading:
         """What is true now. Of a control that is silent nothing is known but that."""
         if self._pulse.silent(snapshot.t, self.clock()):
-            return Reading({"avail": _UNAVAILABLE})
+            return UNKNOWN
         values: dict[str, Value] = {
             "avail": _AVAILABLE,
             "estop": "TRIGGERED" if snapshot.state is State.ESTOP else "ARMED",

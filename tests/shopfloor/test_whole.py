@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import re
 import socket
 import threading
@@ -158,7 +159,7 @@ def test_what_is_told_of_each_shipped_machine_is_what_its_model_declares(name: s
     told = set(report.values) - ({"chuck", "chuckil"} if machine.kind == "mill" else set())
     assert told == {key for key, kind in kinds.items() if kind != "CONDITION"}
     assert set(report.conditions) == {key for key, kind in kinds.items() if kind == "CONDITION"}
-    assert device_of(machine, MODEL).name == "GT75"
+    assert device_of(machine, "GT75").name == "GT75"
 
 
 def machine_file(folder: Path, port: int, **changes: str) -> Path:
@@ -176,7 +177,7 @@ def free_port() -> int:
 
 
 def threads() -> list[str]:
-    return [thread.name for thread in threading.enumerate() if thread.name == "mtconnect"]
+    return [thread.name for thread in threading.enumerate() if thread.name in {"mtconnect", "status"}]
 
 
 def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path: Path) -> None:
@@ -188,6 +189,8 @@ def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path
     finally:
         desk.close()
     assert threads() == []
+    status = json.loads((home / "status.json").read_text())
+    assert (status["machine"], status["available"]) == ("GT-75", False)  # the control has ended
     with pytest.raises(ConnectionError):
         socket.create_connection(("127.0.0.1", port), 5.0)
 
@@ -206,6 +209,20 @@ def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path:
     assert threads() == []
 
 
+def test_a_store_that_another_has_leaves_its_status_alone(home: Path, tmp_path: Path) -> None:
+    path = machine_file(tmp_path, free_port(), enabled="false")
+    first = build_desk(str(path))
+    try:
+        second = build_desk(str(path))
+        try:
+            assert threads() == ["status"]
+        finally:
+            second.close()
+        assert threads() == ["status"]
+    finally:
+        first.close()
+
+
 @pytest.mark.parametrize("enabled", ["false", None])
 def test_where_the_file_does_not_want_it_nothing_listens(
     home: Path, tmp_path: Path, enabled: str | None
@@ -216,7 +233,7 @@ def test_where_the_file_does_not_want_it_nothing_listens(
         path.write_text(resources.machine_file("gt75.toml"))
     desk = build_desk(str(path))
     try:
-        assert threads() == []
+        assert threads() == ["status"]
         with pytest.raises(ConnectionError):
             socket.create_connection(("127.0.0.1", port), 5.0)
     finally:

@@ -1,0 +1,150 @@
+"""The status file: what it says, when it is written, and what happens where it cannot be."""
+
+from __future__ import annotations
+
+import json
+import threading
+from pathlib import Path
+
+import pytest
+
+from app.shopfloor.reading import Reading
+from app.shopfloor.status import Status, StatusFile, StatusKeeper, status_of
+
+RUNNING = Reading(
+    {
+        "avail": "AVAILABLE",
+        "execution": "ACTIVE",
+        "mode": "AUTOMATIC",
+        "estop": "ARMED",
+        "program": "pin.nc",
+        "pcount": "12",
+    },
+    {"system": (), "Xservo": (("FAULT", "102", "FOLLOWING ERROR: X"),)},
+)
+
+
+class Hours:
+    """A clock on the wall, a second a look."""
+
+    def __init__(self) -> None:
+        self.seconds = 0
+
+    def __call__(self) -> str:
+        self.seconds += 1
+        return f"2026-01-01T00:00:{self.seconds:02}Z"
+
+
+def read(path: Path) -> dict[str, object]:
+    told: dict[str, object] = json.loads(path.read_text(encoding="utf-8"))
+    return told
+
+
+def test_what_it_says(tmp_path: Path) -> None:
+    path = tmp_path / "home" / "status.json"
+    StatusFile(path, Hours()).show(status_of("GT-75", RUNNING))
+    assert read(path) == {
+        "updated": "2026-01-01T00:00:01Z",
+        "since": "2026-01-01T00:00:01Z",
+        "machine": "GT-75",
+        "available": True,
+        "execution": "ACTIVE",
+        "mode": "AUTOMATIC",
+        "estop": "ARMED",
+        "program": "pin.nc",
+        "parts": 12,
+        "alarms": [{"of": "Xservo", "level": "FAULT", "code": "102", "text": "FOLLOWING ERROR: X"}],
+    }
+    assert [each.name for each in path.parent.iterdir()] == ["status.json"]
+
+
+def test_of_a_silent_control_nothing_is_said() -> None:
+    status = status_of("GT-75", Reading({"avail": "UNAVAILABLE"}))
+    assert (status["available"], status["execution"], status["parts"]) == (False, None, None)
+
+
+def test_it_is_written_for_a_change_and_every_ten_looks(tmp_path: Path) -> None:
+    path, hours = tmp_path / "status.json", Hours()
+    file = StatusFile(path, hours)
+    for _ in range(10):
+        file.show({"execution": "ACTIVE"})
+    assert hours.seconds == 1
+    file.show({"execution": "ACTIVE"})
+    assert read(path) == {
+        "updated": "2026-01-01T00:00:02Z",
+        "since": "2026-01-01T00:00:01Z",
+        "execution": "ACTIVE",
+    }
+    file.show({"execution": "ACTIVE", "parts": 1})  # another part: since then it has been active all the same
+    assert read(path)["since"] == "2026-01-01T00:00:01Z"
+    file.show({"execution": "STOPPED"})
+    assert read(path)["since"] == read(path)["updated"] == "2026-01-01T00:00:04Z"
+
+
+def test_a_disk_that_fails_is_told_once_and_tried_again(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "home").write_text("a file where the folder should be")
+    file = StatusFile(tmp_path / "home" / "status.json", Hours())
+    for _ in range(3):
+        file.show({"execution": "ACTIVE"})
+    assert len(caplog.records) == 1
+    assert "status.json cannot be written" in caplog.text
+    (tmp_path / "home").unlink()
+    file.show({"execution": "ACTIVE"})
+    assert read(tmp_path / "home" / "status.json")["execution"] == "ACTIVE"
+
+
+def test_a_file_that_was_left_half_written_is_replaced(tmp_path: Path) -> None:
+    (tmp_path / "status.json").write_text('{"upda')
+    (tmp_path / "status.json.new").write_text("rubbish")
+    StatusFile(tmp_path / "status.json", Hours()).show({"execution": "READY"})
+    assert read(tmp_path / "status.json")["execution"] == "READY"
+
+
+def test_whoever_reads_while_it_is_written_sees_a_whole_one(tmp_path: Path) -> None:
+    path = tmp_path / "status.json"
+    file = StatusFile(path, lambda: "now")
+    file.show({"parts": 0})
+    over = threading.Event()
+
+    def write() -> None:
+        for parts in range(1, 300):
+            file.show({"parts": parts})
+        over.set()
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    seen = [read(path)["parts"]]
+    while not over.is_set():
+        seen.append(read(path)["parts"])
+    writer.join()
+    assert seen == sorted(seen)  # type: ignore[type-var]
+
+
+def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
+    looked = threading.Event()
+
+    def look() -> Status:
+        looked.set()
+        return {"execution": "READY"}
+
+    path = tmp_path / "status.json"
+    keeper = StatusKeeper(StatusFile(path, Hours()), look, {"available": False})
+    keeper.start()
+    assert looked.wait(5.0)
+    keeper.close()
+    assert read(path)["available"] is False
+    assert [thread.name for thread in threading.enumerate() if thread.name == "status"] == []
+    keeper.close()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_mistake_in_it_leaves_a_file_that_says_so(tmp_path: Path) -> None:
+    def look() -> Status:
+        raise RuntimeError("a mistake of our own")
+
+    keeper = StatusKeeper(StatusFile(tmp_path / "status.json", Hours()), look, {"available": False})
+    keeper.start()
+    keeper.close()
+    assert read(tmp_path / "status.json")["available"] is False
