@@ -8,13 +8,14 @@ from core.ports import DriverError
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import AxisConfig, Objects
-from drivers.canopen.drive import Drive402
+from drivers.canopen.drive import SYNCS, Drive402
 from drivers.canopen.standing import standing
 from drivers.canopen.states import HM, IP, MODE_BITS, DriveState
 
 _POWER = 1.5  # s in which the drives must come on, or leave their faults
 _CUBIC = -1  # 0x60C0: position, velocity and time
 _REST = 2  # counts from one answer to the next; less is standing
+_REACTION = 1.0  # s in which a drive that has lost its host is at rest: three heartbeats and its ramp
 _FAULTS = frozenset((DriveState.FAULT, DriveState.REACTING))
 
 
@@ -129,11 +130,18 @@ class DriveSet:
         return trouble
 
     def note_motion(self, now: float) -> None:
-        """Whether they move, by two answers; without drives there is nothing to wait for."""
-        seen = min((axis.drive.answered for axis in self.axes), default=now)
+        """Whether they move, by two answers; without drives there is nothing to wait for.
+
+        One that no longer answers keeps nobody waiting once its own reaction must be over.
+        """
+        speaking = [axis for axis in self.axes if axis.drive.missing <= SYNCS]
+        for axis in self.axes:
+            if axis not in speaking and now - axis.drive.answered > _REACTION:
+                axis.moving = False
+        seen = min((axis.drive.answered for axis in speaking), default=now)
         if seen <= self.seen:
             return
-        for axis in self.axes:
+        for axis in speaking:
             axis.moving = abs(axis.drive.position - axis.last) > _REST
             axis.last = axis.drive.position
         self.seen = seen
