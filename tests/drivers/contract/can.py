@@ -42,7 +42,7 @@ class Canopen(Rig):
         "two masters": _DEAF,
         "dead reader": _DEAF,
     }
-    harmless = ("late answers",)
+    harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {"blocks": "its motion is planned here"}
     hold = 0.25
     runs_on = 0.14  # what is in the drives' queues
@@ -137,9 +137,16 @@ class FedCanopen(Canopen):
     """As it is shipped: the control here, bus and queue in the feeder."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        **Canopen.faults,
-        **{f"feeder: {fault}": outcome for fault, outcome in FEEDER_FAULTS.items()},
+        **{fault: Canopen.faults[fault] for fault in ("cable out", "node reboot", "bus-off")},
+        **FEEDER_FAULTS,
     }
+    missing: ClassVar[Mapping[str, str]] = {
+        **Canopen.missing,
+        **dict.fromkeys(
+            ("late answers", "two masters"), "the bus below the feeder is that of canopen: there"
+        ),
+    }
+    harmless: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         super().__init__(homing=homing, turns=turns)
@@ -148,9 +155,12 @@ class FedCanopen(Canopen):
         self.ports = feeder_ports(Line(self.link, self.clock))
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
-        """The feeder's own come on top."""
-        own = {f"feeder: {fault}": partial(self._gone, why) for fault, why in FEEDER_WORDS.items()}
-        return {**super().acts(), **own}
+        """What becomes of the feeder itself, and some of its bus."""
+        own: dict[str, Callable[[], None]] = {
+            fault: partial(self._gone, why) for fault, why in FEEDER_WORDS.items()
+        }
+        below = super().acts()
+        return {fault: own.get(fault, below[fault]) for fault in self.faults}
 
     def round(self) -> None:
         """By the feeder; one that has ended does none."""

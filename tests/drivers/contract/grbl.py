@@ -108,14 +108,14 @@ class Grblhal(Rig):
     """On an in-memory wire."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.02, rests=0.02),
+        "drive fault": Fault(told=0.02, rests=0.02, homeless=True),
         "cable out": Fault(told=0.02, rests=0.9, final=True, spins=_ALONE, flows=_ALONE),
         "silence": Fault(told=1.4, rests=2.2),
         "garbage": Fault(told=0.15, rests=0.3),
-        "node reboot": Fault(told=0.15, rests=0.1),
+        "node reboot": Fault(told=0.15, rests=0.1, homeless=True),
         "two masters": Fault(told=0.15, rests=0.3),
     }
-    harmless = ("late answers",)
+    harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {
         "bus-off": "a serial line and a TCP connection have no such state",
         "dead reader": "there is no reading thread: the executor's look reads the wire",
@@ -140,14 +140,19 @@ class Grblhal(Rig):
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What wire and controller can do."""
         return {
-            "drive fault": lambda: self.peer.raise_alarm(17),
+            "drive fault": self._motor_fault,
             "cable out": lambda: setattr(self.wire, "cut", True),
             "silence": lambda: setattr(self.peer.quirks, "deaf", True),
             "garbage": lambda: self.peer.say("o*\\xffk\r\n"),
             "node reboot": self.peer.reset,
-            "two masters": lambda: self.peer.feed(b"G4P0\n"),
+            "two masters": lambda: self.peer.feed(b"G8\n"),
             "late answers": lambda: setattr(self.wire, "late", 0.15),
         }
+
+    def _motor_fault(self) -> None:
+        """As its firmware does on this input: all off, then the alarm."""
+        self.peer.reset()
+        self.peer.raise_alarm(17)
 
     def mend(self) -> None:
         """It speaks again."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import threading
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
@@ -67,7 +68,8 @@ class OnALine(Simulated):
         "dead reader": Fault(told=0.1, rests=0.2, final=True),
         "two masters": _DISOBEYS,
     }
-    harmless = ("late answers", "noise")
+    harmless: ClassVar[tuple[str, ...]] = ("late answers", "noise")
+    heals = 2.0  # a port that has gone is tried again each second
     missing: ClassVar[Mapping[str, str]] = {
         "bus-off": "RS-485 has no such state",
         "blocks": Simulated.missing["blocks"],
@@ -96,6 +98,7 @@ class OnALine(Simulated):
         )
         self.world = InverterWorld(self.hands, ports.io.outputs)
         self.world.inverter = self.inverter
+        self._hook = threading.excepthook
         self.keeper.start()
         self.clock.attend(self.keeper.thread)
 
@@ -113,7 +116,7 @@ class OnALine(Simulated):
             "garbage": lambda: setattr(wire, "spoils", True),
             "answers too late": lambda: setattr(wire, "delay", 0.7),
             "node reboot": self.inverter.restart,
-            "dead reader": lambda: setattr(wire, "kills", True),
+            "dead reader": self._kill,
             "two masters": self._another_commands,
             "late answers": lambda: setattr(wire, "delay", 0.1),
             "noise": lambda: setattr(wire, "noise", b"\x00\xff\x01"),
@@ -123,7 +126,7 @@ class OnALine(Simulated):
         """The line is as it was."""
         super().mend()
         wire = self.wire
-        wire.out = wire.silent = wire.spoils = False
+        wire.out = wire.silent = wire.spoils = wire.kills = False
         wire.delay = 0.02
 
     def close(self) -> None:
@@ -132,6 +135,11 @@ class OnALine(Simulated):
         self.mend()
         self.clock.release()
         self.keeper.close()
+        threading.excepthook = self._hook
+
+    def _kill(self) -> None:
+        threading.excepthook = lambda _: None  # its end is what is tried here
+        self.wire.kills = True
 
     def _another_commands(self) -> None:
         self.inverter.hz = 45.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -37,7 +37,7 @@ class Fault:
 
     ``told`` and ``rests``: s until the driver says so, and until every slide stands. ``final``: the control
     has to be started again. ``spins`` and ``flows``: why spindle or coolant stay on, where nothing can be
-    said to them any more. ``homeless``: axes that only count have lost their reference.
+    said to them any more. ``homeless``: nobody knows any more where the slides are.
     """
 
     told: float
@@ -45,16 +45,18 @@ class Fault:
     final: bool = False
     spins: str = ""
     flows: str = ""
+    homeless: bool = False
 
 
 class Rig(ABC):
     """One machine behind one driver, on a clock that the test moves. A new driver is one more of these."""
 
     faults: ClassVar[Mapping[str, Fault]]  # each stops everything and is told
-    harmless: ClassVar[Iterable[str]] = ()  # each goes by, and nobody notices
+    harmless: ClassVar[tuple[str, ...]] = ()  # each goes by, and nobody notices
     missing: ClassVar[Mapping[str, str]] = {}  # of ``NINE`` and of demands: why not here
     hold: ClassVar[float]  # s from 127 mm/s to rest
     runs_on: ClassVar[float] = 0.0  # s that a jog let go still goes at its speed
+    heals: ClassVar[float] = 0.3  # s until it sees that a wire has been mended
 
     machine: Machine
     clock: StepClock

@@ -128,7 +128,7 @@ class Fed(Simulated):
     """Through the feeder."""
 
     faults: ClassVar[Mapping[str, Fault]] = {**Simulated.faults, **FEEDER_FAULTS}
-    harmless = ("late answers",)
+    harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {
         **FEEDER_MISSING,
         "bus-off": "a socket pair has no such state",

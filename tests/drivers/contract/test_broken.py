@@ -1,10 +1,12 @@
-"""Wires that break while everything moves: all slides stop, the reason is told, nothing starts by itself."""
+"""Wires that break while everything moves, at the ports: it is told in time, and nothing starts by itself."""
 
 from __future__ import annotations
 
 import pytest
 
-from tests.drivers.contract.rig import NINE
+from core.ports import DriverError
+from tests.drivers.contract.conftest import Broken
+from tests.drivers.contract.rig import NINE, Rig
 from tests.drivers.contract.rigs import RIGS, make
 
 FULL = "full queue"  # is a load and no fault: test_setpoints, test_program
@@ -29,3 +31,72 @@ def test_every_fault_has_its_hammer(name: str) -> None:
     assert set(rig.acts()) == {*kind.faults, *kind.harmless}
     assert not {*kind.faults, *kind.harmless} & set(kind.missing)
     rig.close()
+
+
+def costs_no_time(rig: Rig) -> None:
+    """On this clock whoever waits moves it."""
+    now, ports = rig.clock.now(), rig.ports
+    for look in (ports.axes.sample, ports.station.snapshot, ports.io.inputs, ports.io.outputs):
+        look()
+    for ask in (ports.spindle.speed, ports.spindle.angle, ports.spindle.fault):
+        ask()
+    if ports.blocks is not None:
+        ports.blocks.state()
+    assert rig.clock.now() == now
+
+
+def takes_no_orders(rig: Rig) -> None:
+    """Power for what is broken is refused."""
+    axes = rig.ports.axes
+    if not axes.sample().fault:
+        with pytest.raises(DriverError):
+            rig.ports.spindle.run(300.0)
+        return
+    assert not axes.sample().enabled
+    with pytest.raises(DriverError):
+        axes.enable(True)
+    with pytest.raises(DriverError):
+        rig.go(10.0, 0.1)
+
+
+def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken: Broken) -> None:
+    (rig, fault), axes = broken, broken[0].ports.axes
+    rig.ports.spindle.run(600.0)
+    rig.under_way()
+    rig.acts()[fault]()
+    rig.until(lambda: rig.told != "", rig.faults[fault].told)
+    costs_no_time(rig)
+    rig.run(0.8)
+    costs_no_time(rig)
+    takes_no_orders(rig)
+    rig.mend()
+    rig.run(rig.heals)
+    takes_no_orders(rig)
+    if rig.faults[fault].final:
+        with pytest.raises(DriverError, match=r"start the control again|feeder"):
+            axes.clear_fault()
+        return
+    tripped = axes.sample().fault != ""
+    axes.clear_fault()
+    rig.until(lambda: rig.told == "", 2.0)
+    rig.run(0.5)
+    assert rig.told == ""
+    assert axes.sample().enabled is not tripped
+    assert rig.stands()
+    axes.enable(True)
+    rig.run(0.3)
+    end = rig.go(-30.0, 0.2)
+    rig.until(lambda: abs(rig.world.place()[0] - end) < 0.01, 2.0)
+    assert rig.told == ""
+
+
+def test_a_disturbance_that_does_not_matter_does_not_matter(disturbed: Broken) -> None:
+    rig, what = disturbed
+    end = rig.under_way()
+    rig.ports.spindle.run(600.0)
+    rig.acts()[what]()
+    rig.run(1.5)
+    assert rig.told == ""
+    assert rig.ports.axes.sample().enabled
+    assert rig.world.place()[0] == pytest.approx(end, abs=0.003)
+    assert rig.world.rpm() == pytest.approx(600.0, abs=1.0)

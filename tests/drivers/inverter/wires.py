@@ -9,6 +9,10 @@ from drivers.simulated import StepClock
 from drivers.wire import WireError
 
 
+class UnexpectedError(Exception):
+    """Nobody thought of it."""
+
+
 class Slave(Protocol):
     """Whatever answers frames."""
 
@@ -77,6 +81,6 @@ class BenchWire:
 
     def _look(self) -> None:
         if self.kills:
-            raise SystemExit
+            raise UnexpectedError
         if self.out:
             raise WireError("/dev/bench has failed: Input/output error")

@@ -1,0 +1,77 @@
+"""Every fault of every driver under the executor: what an operator sees, from the alarm to the next part."""
+
+from __future__ import annotations
+
+import math
+
+from core.executor.commands import EnableDrives, Reset
+from core.executor.snapshot import State
+from tests.drivers.contract.conftest import Broken
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import STILL, Fault
+
+OVER = "G90G94F300\nM03S600\nM08\nX0Z0\nG01F300\n" + "X3Z-.2\nX0Z0\n" * 6 + "M30\n"
+SHORT = "G90G94F300\nM03S600\nX.1\nG01F100X0\nM30\n"
+
+
+def cutting(control: Control) -> None:
+    """At 300 in/min, spindle and coolant on."""
+    control.start(OVER)
+    control.until_true(lambda shot: shot.velocity > 125.0)
+    control.run(0.3)
+    assert control.state is State.RUN
+    assert control.world.outputs()["coolant"]
+
+
+def all_off(control: Control, outcome: Fault) -> None:
+    """Spindle and coolant, as far as anything can still be said to them."""
+    if outcome.spins:
+        control.run(3.0)
+        assert abs(control.world.rpm()) > 100.0
+    else:
+        control.until_true(lambda _: control.world.rpm() == 0.0, limit=4.0)
+    assert control.world.outputs()["coolant"] is (outcome.flows != "")
+    assert control.shot.rpm_command == 0.0
+    if not outcome.final:  # of a wire that is gone the last that was known is shown
+        assert "coolant" not in control.shot.outputs
+    codes = [alarm.code for alarm in control.shot.alarms]
+    assert len(codes) == len(set(codes))  # each told once
+    assert "internal" not in codes
+
+
+def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None:
+    rig, fault = broken
+    outcome = rig.faults[fault]
+    control = Control(rig)
+    cutting(control)
+    struck = control.clock.now()
+    rig.acts()[fault]()
+    control.until(State.FAULT, limit=outcome.told + 0.01)
+    control.rest(max(outcome.rests + struck - control.clock.now(), 0.0))
+    all_off(control, outcome)
+    stood, powered = control.world.place(), rig.ports.axes.sample().enabled
+    control.press()
+    rig.mend()
+    control.run(rig.heals)
+    assert control.state is State.FAULT
+    control.post(Reset())
+    # an inverter's fault leaves the drives their power: they hold the slides
+    on = State.IDLE if powered else State.DISABLED
+    if outcome.final:
+        control.run(0.5)
+        control.post(EnableDrives())
+        on = State.FAULT
+    control.until(on, limit=2.0)
+    control.run(0.5)
+    assert math.dist(control.world.place(), stood) < STILL
+    assert control.world.rpm() == 0.0 or outcome.spins
+    if outcome.final:
+        return
+    assert control.shot.alarms == ()
+    parts = control.shot.parts
+    control.start(SHORT)
+    if outcome.homeless:
+        assert "must be homed first" in control.shot.start_refused
+        return
+    control.until(State.IDLE, limit=20.0)
+    assert control.shot.parts == parts + 1
