@@ -15,8 +15,8 @@ from app.cli.progress import Progress
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from app.desk.headless import Outcome
+    from core.executor.job import Job
     from core.language.dialect import Dialect
-    from core.language.source import Source
     from core.proving.report import Report
 
 
@@ -33,14 +33,15 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prove, then run one cycle; 1 when the program or the run has errors."""
+    from core.executor.job import make_job
     from core.proving.prove import prove
 
     path = Path(args.file)
     if not args.headless:
         raise CommandError(f"add --headless, or open the screen with: turndesk --program {path}")
     around = circumstances(args)
-    source = read_source(path, args)
-    report = prove(source, around.setup, around.machine)
+    job = make_job(read_source(path, args), around.setup)
+    report = prove(job.reading, around.setup, around.machine)
     sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in report.diagnostics))
     if report.errors:
         return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
@@ -48,15 +49,13 @@ def run(args: argparse.Namespace) -> int:
         names = ", ".join(f"T{n}" for n in report.missing_tools)
         why = f"{path}: no offset was ever set for {names}; set it with: turndesk offsets set, or --offsets"
         return _refused(args, why, report)
-    return _run(args, around, source, report)
+    return _run(args, around, job, report)
 
 
-def _run(args: argparse.Namespace, around: Circumstances, source: Source, report: Report) -> int:
+def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
     from app.compose.headless import EventLog, headless
     from app.compose.proof import proof_of
-    from core.executor.job import make_job
 
-    job = make_job(source, around.setup)
     inputs = input_states(args.inputs, around.machine.inputs)
     path = Path(args.file)
     with (

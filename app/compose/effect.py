@@ -23,7 +23,7 @@ def drawer(machine: Machine) -> Draw:
         from app.desk.picture import sketched
         from core.proving.timeline import Timeline, timed_blocks
 
-        blocks = timed_blocks(Timeline.of(job.source, job.setup, machine))
+        blocks = timed_blocks(Timeline.of(job.reading, job.setup, machine))
         return sketched(_seen(blocks, frame), watch)
 
     return draw

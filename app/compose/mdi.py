@@ -38,7 +38,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
             begin=Begin(point_of(snapshot), single=True),
         )
         job = make_job(Source("MDI", text), setup)
-        report = prove(job.source, job.setup, machine, watch)
+        report = prove(job.reading, job.setup, machine, watch)
         return job, Proved(proof_of(job, report), report.diagnostics)
 
     return prove_line

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from core.executor.feed import Pass
 from core.executor.job import Job
-from core.interpreter.dialects import interpretation, line_alone
+from core.interpreter.dialects import line_alone
 from core.interpreter.setup import Setup
 
 
@@ -16,7 +16,7 @@ def interpret(job: Job, setup: Setup) -> Pass:
     if setup.begin is not None and setup.begin.single:
         line = line_alone(job.source, setup)
         return Pass(line.blocks(to_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint)
-    interpreter = interpretation(job.source, setup)
+    interpreter = job.reading.begin(setup)
     return Pass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from core.interpreter.carried import RAPID, UNITS, carried
+from core.interpreter.dialects import Reading
 from core.interpreter.modal import Modal
 from core.interpreter.needs import Need
 from core.interpreter.setup import Setup
@@ -15,11 +16,15 @@ from core.language.source import Source
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What is going to run: text, offsets and switches, by value. ``digest`` names exactly this job."""
+    """What is going to run: text, offsets and switches, by value. ``digest`` names exactly this job.
+
+    ``reading`` is its text for whoever goes through it; who proves the job has read it for who runs it.
+    """
 
     source: Source
     setup: Setup
     digest: str
+    reading: Reading = field(compare=False, repr=False)
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
     carries: frozenset[str] = frozenset()  # what the program has from the job before it
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
@@ -37,11 +42,12 @@ class Proof:
     needs: tuple[Need, ...] = ()  # what it asks of the machine beyond straight lines
 
 
-def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
-    """The job of this program under these circumstances.
+def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
+    """The job of this program under these circumstances; of ``whole`` when it begins in the middle of that.
 
     The digest covers all that the elementary blocks depend on except live inputs and where the slides stand.
     """
+    part_of = whole.digest if whole is not None else ""
     circumstances = (
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
@@ -56,7 +62,8 @@ def make_job(source: Source, setup: Setup, part_of: str = "") -> Job:
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     text.update(repr(circumstances).encode())
-    return Job(source, setup, text.hexdigest(), frozenset(setup.tools), carried(source), part_of)
+    reading = whole.reading if whole is not None else Reading(source, strict=setup.strict)
+    return Job(source, setup, text.hexdigest(), reading, frozenset(setup.tools), carried(source), part_of)
 
 
 def outdated(job: Job, left: Modal) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 from core.interpreter.begin import Checkpoint
@@ -69,16 +70,16 @@ class Line(Interpretation, Protocol):
         ...
 
 
-def _omniturn(source: Source, setup: Setup) -> Interpretation:
-    if len(setup.start) != _LATHE_AXES:
-        why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
-        return Refused(why, "Choose the machine file of a lathe.")
+Begin = Callable[[Setup], Interpretation]
+"""One more pass through a text that has been read."""
+
+
+def _omniturn(source: Source, strict: bool) -> Begin:
     from core.interpreter.program import read_program
     from core.interpreter.run import Interpreter
 
-    if setup.begin is not None and setup.begin.single:
-        return line_alone(source, setup)
-    return Interpreter(read_program(source, setup.strict), setup)
+    program = read_program(source, strict)
+    return lambda setup: Interpreter(program.for_one_pass(), setup)
 
 
 def line_alone(source: Source, setup: Setup) -> Line:
@@ -89,41 +90,81 @@ def line_alone(source: Source, setup: Setup) -> Line:
     return Interpreter(read_single(source), setup)
 
 
-def _sinumerik(source: Source, setup: Setup) -> Interpretation:
-    if len(setup.start) != _LATHE_AXES:
-        why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
-        return Refused(why, "Choose the machine file of a lathe.")
-    if setup.begin is not None:
-        why = "A SINUMERIK program begins with its first block."
-        return Refused(why, "Start it from the beginning.")
+def _sinumerik(source: Source, _strict: bool) -> Begin:
     from core.interpreter.sinumerik.run import Interpreter
 
-    return Interpreter(source, setup)
+    return lambda setup: Interpreter(source, setup)
 
 
-def _klartext(source: Source, setup: Setup) -> Interpretation:
-    if setup.kinematics is None:
-        why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
-        return Refused(why, "Choose the machine file of a mill: --machine ac-table-mill.")
-    if setup.begin is not None:
-        return Refused("A Klartext program begins with its first block.", "Start it from the beginning.")
+def _klartext(source: Source, _strict: bool) -> Begin:
     from core.interpreter.klartext.program import read_program
     from core.interpreter.klartext.run import Interpreter
 
-    return Interpreter(read_program(source), setup, setup.kinematics)
+    program = read_program(source)
 
+    def begin(setup: Setup) -> Interpretation:
+        assert setup.kinematics is not None  # else it was refused
+        return Interpreter(program, setup, setup.kinematics)
+
+    return begin
+
+
+def _refusal(dialect: Dialect, setup: Setup) -> Refused | None:
+    """What this machine, or this start, cannot be asked."""
+    lathe = len(setup.start) == _LATHE_AXES
+    if dialect is Dialect.OMNITURN and not lathe:
+        why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
+        return Refused(why, "Choose the machine file of a lathe.")
+    if dialect is Dialect.SINUMERIK and not lathe:
+        why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
+        return Refused(why, "Choose the machine file of a lathe.")
+    if dialect is Dialect.KLARTEXT and setup.kinematics is None:
+        why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
+        return Refused(why, "Choose the machine file of a mill: --machine ac-table-mill.")
+    if dialect is not Dialect.OMNITURN and setup.begin is not None:
+        why = f"A {_NAMES[dialect]} program begins with its first block."
+        return Refused(why, "Start it from the beginning.")
+    return None
+
+
+_NAMES = {Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
 
 # A language is loaded when a program of it is: the others cost nothing.
-_INTERPRETERS: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
+_READERS: Mapping[Dialect, Callable[[Source, bool], Begin]] = {
     Dialect.OMNITURN: _omniturn,
     Dialect.SINUMERIK: _sinumerik,
     Dialect.KLARTEXT: _klartext,
 }
 
 
+class Reading:
+    """A program's text, read with its first pass and kept for all others: to prove, to draw, to run.
+
+    Reading a million blocks takes the better part of a second, which whoever moves the slides has not.
+    Passes may be made on several threads at once.
+    """
+
+    def __init__(self, source: Source, *, strict: bool = False) -> None:
+        self.source = source
+        self._strict = strict
+
+    def begin(self, setup: Setup) -> Interpretation:
+        """One more pass under these circumstances."""
+        dialect = self.source.dialect
+        if refused := _refusal(dialect, setup):
+            return refused
+        if dialect is Dialect.OMNITURN and setup.begin is not None and setup.begin.single:
+            return line_alone(self.source, setup)
+        return self._begin(setup)
+
+    @cached_property
+    def _begin(self) -> Begin:
+        return _READERS[self.source.dialect](self.source, self._strict)
+
+
 def interpretation(source: Source, setup: Setup) -> Interpretation:
-    """One pass through this program."""
-    return _INTERPRETERS[source.dialect](source, setup)
+    """One pass through a program that is read for it alone."""
+    return Reading(source, strict=setup.strict).begin(setup)
 
 
 def passed_on(interpreter: Interpretation) -> Iterator[Block | Series]:

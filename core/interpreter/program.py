@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.interpreter import codes
 from core.interpreter.plain import read_move
@@ -33,6 +33,10 @@ class Program:
     blocks: int  # lines that hold more than a comment
     names_units: bool  # G70 or G71 stands somewhere
     m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
+
+    def for_one_pass(self) -> Program:
+        """The same; what the pass finds out about a line is its own."""
+        return replace(self, steps=self.steps.copy())
 
     def line(self, number: int) -> Line:
         """The words of a line, counted from 1."""

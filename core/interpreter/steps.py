@@ -30,6 +30,11 @@ class LongSteps(Sequence[Step]):
         other = np.where(columns.known, len(index), index)
         self._stop = np.minimum.accumulate(other[::-1])[::-1].copy()
 
+    def copy(self) -> LongSteps:
+        """Lines of their own, the numbers in them are shared."""
+        known = self.columns.known.copy()
+        return LongSteps(self.columns._replace(known=known), self._rare.copy())
+
     def __len__(self) -> int:
         return len(self._stop)
 

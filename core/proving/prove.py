@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from core.interpreter.actions import Dwell
 from core.interpreter.blocks import Block
+from core.interpreter.dialects import Reading
 from core.interpreter.needs import Need, first_needs, needs_of
 from core.interpreter.series import Series
 from core.interpreter.setup import Setup
@@ -28,7 +29,7 @@ MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the tr
 
 
 def prove(
-    source: Source,
+    program: Source | Reading,
     setup: Setup,
     machine: Machine,
     progress: Callable[[float], None] | None = None,
@@ -37,15 +38,17 @@ def prove(
 ) -> Report:
     """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed.
 
+    A program that others go through too is given as its one reading.
+
     ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
     """
-    timeline = Timeline.of(source, setup, machine, ideal=ideal)
+    timeline = Timeline.of(program, setup, machine, ideal=ideal)
     proof = _Proof(machine)
     for stretch in timeline.spans():
         proof.add(stretch)
         if progress is not None and proof.last is not None:
             progress(proof.last.n)
-    return proof.report(timeline, source)
+    return proof.report(timeline, program.source if isinstance(program, Reading) else program)
 
 
 class _Proof:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
-from core.interpreter.dialects import Interpretation, interpretation, passed_on
+from core.interpreter.dialects import Interpretation, Reading, passed_on
 from core.interpreter.series import Series, TimedSeries
 from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
@@ -51,9 +51,12 @@ class Timeline:
         self._refused: list[Diagnostic] = []
 
     @classmethod
-    def of(cls, source: Source, setup: Setup, machine: Machine, *, ideal: bool = False) -> Timeline:
-        """The timeline of a program's text."""
-        return cls(interpretation(source, setup), setup, machine, ideal=ideal)
+    def of(
+        cls, program: Source | Reading, setup: Setup, machine: Machine, *, ideal: bool = False
+    ) -> Timeline:
+        """The timeline of a program's text, or of its reading."""
+        reading = program if isinstance(program, Reading) else Reading(program, strict=setup.strict)
+        return cls(reading.begin(setup), setup, machine, ideal=ideal)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

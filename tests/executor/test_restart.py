@@ -31,7 +31,7 @@ def restart_job(rig: Rig, line: int, choices: Choices | None = None) -> Job:
     assert isinstance(found, Found)
     at = rig.shot.demand
     begin = begin_at(found, Now(at, rig.shot.modal), choices or Choices())
-    return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole.digest)
+    return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole)
 
 
 def prepare(rig: Rig, job: Job) -> None:

@@ -18,6 +18,7 @@ from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Watch, Workshop
 from app.desk.shelf import Shelf
 from core.executor.job import Job
+from core.interpreter.dialects import Reading
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
@@ -43,7 +44,7 @@ def desk_on(
 
     def make_job(source: Source, block_delete: bool) -> Job:
         setup = setup_for(lathe, tools=TOOLS, secondary=_secondary(built[0]), block_delete=block_delete)
-        return Job(source, setup, f"{source.name}{block_delete}", frozenset(TOOLS))
+        return Job(source, setup, f"{source.name}{block_delete}", Reading(source), frozenset(TOOLS))
 
     def proved(job: Job, watch: Watch) -> Proved:
         report = prove(job.source, job.setup, lathe, watch)

@@ -106,7 +106,7 @@ class SearchDesk(SearchOpening):
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=plan.begin)
         self.stage = Stage.PROVING
-        self.finder.check(make_job(whole.source, setup, whole.digest))
+        self.finder.check(make_job(whole.source, setup, whole))
 
     def escape(self) -> bool:
         """One step back; False when there is none to go."""

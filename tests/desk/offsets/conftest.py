@@ -15,7 +15,7 @@ from app.desk.offsets.grid import ToolGrid
 from app.desk.picture import Sketch
 from app.desk.session import Proved, Session, Workshop
 from app.desk.shelf import Shelf
-from core.executor.job import Job, Proof
+from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.setup import Setup
 from core.language.source import Source
@@ -72,7 +72,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
 
     workshop = Workshop(
         read,
-        lambda source, block_delete: Job(source, Setup(block_delete=block_delete), source.name),
+        lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
         lambda job, _watch: Proved(Proof(job.digest, ())),
         lambda _job, _watch: Sketch().picture(),
     )

@@ -12,7 +12,7 @@ from app.compose.machine import setup_for
 from app.desk.offsets.effect import Effect, Tables
 from app.desk.picture import Picture
 from app.desk.session import Watch
-from core.executor.job import Job
+from core.executor.job import Job, make_job
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
@@ -28,7 +28,7 @@ LATHE = load_machine()
 
 def job() -> Job:
     setup = setup_for(LATHE, tools=TOOLS, secondary={})
-    return Job(Source("part.nc", PROGRAM), setup, "digest")
+    return make_job(Source("part.nc", PROGRAM), setup)
 
 
 @pytest.fixture
@@ -76,10 +76,10 @@ def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
 
     def draw(of: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
         text = PROGRAM if not of.setup.secondary else PROGRAM.replace("Z-1.2\n", "Z-1.2\nX.7Z-1.2\n")
-        return drawer(LATHE)(Job(Source("part.nc", text), of.setup, "d"), frame, watch)
+        return drawer(LATHE)(make_job(Source("part.nc", text), of.setup), frame, watch)
 
     effect = Effect(draw)
-    effect.ask(Job(longer, job().setup, "d"), Tables(TOOLS), Tables(TOOLS, {1: SecondaryOffset(1.0)}))
+    effect.ask(make_job(longer, job().setup), Tables(TOOLS), Tables(TOOLS, {1: SecondaryOffset(1.0)}))
     pair = effect.settled(LIMIT)
     assert pair is not None
     assert math.isinf(pair.furthest)

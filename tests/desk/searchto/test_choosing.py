@@ -10,7 +10,7 @@ from app.compose.searchto import rebuilt
 from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
 from app.desk.session import Proved
-from core.executor.job import Job, Proof
+from core.executor.job import Job, Proof, make_job
 from core.interpreter.restart.found import Found, NotGood
 from core.language.source import Source
 from tests.interpreter.programs import setup
@@ -69,7 +69,7 @@ def test_editing_keys() -> None:
 
 
 def job(text: str) -> Job:
-    return Job(Source("PART", text), setup(), "digest")
+    return make_job(Source("PART", text), setup())
 
 
 @pytest.fixture
@@ -116,9 +116,10 @@ def test_a_restart_is_proved_on_the_worker(finder: Finder) -> None:
         return Proved(Proof(job.digest, ()))
 
     finder.prove = prove
-    finder.check(job("G90\nM30\n"))
+    restart = job("G90\nM30\n")
+    finder.check(restart)
     result = answer(finder)
     assert isinstance(result, tuple)
-    assert result[1].proof.digest == "digest"
+    assert result[1].proof.digest == restart.digest
     assert asked[0].startswith("loading-search")
     finder.close()

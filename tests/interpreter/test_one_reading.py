@@ -1,0 +1,77 @@
+"""A text is read once for all passes through it, and no pass knows of another."""
+
+from __future__ import annotations
+
+from itertools import zip_longest
+
+import pytest
+
+from core.interpreter import program
+from core.interpreter.columns import columns_of
+from core.interpreter.dialects import Reading
+from core.interpreter.program import LONG
+from core.interpreter.reading import statement
+from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.steps import LongSteps
+from core.language.omniturn import lex_line
+from core.language.source import Source
+
+MOVES = [f"X{0.5 + k % 3 * 0.01:.2f}Z{-0.001 * k:.3f}" for k in range(LONG + 50)]
+# Lines that no column holds: an increment (G91), a word with a comment, a corner that looks ahead.
+RARE = ["G91", "X.01", "G90", "(turned)", "X1Z-1,C.02", "Z-2"]
+TEXT = "\n".join(["G90G94F300G72", "T1", *MOVES[:-20], *RARE, *MOVES[-20:], "M30"])
+SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)})
+
+
+def told(reading: Reading) -> list[str]:
+    """Every field of every block of one whole pass."""
+    return [repr(block) for block in reading.begin(SETUP).blocks()]
+
+
+def test_two_passes_side_by_side_are_as_one_alone() -> None:
+    alone = told(Reading(Source("part", TEXT)))
+    reading = Reading(Source("part", TEXT))
+    first, second = reading.begin(SETUP).blocks(), reading.begin(SETUP).blocks()
+    pairs = list(zip_longest(first, second))
+    assert len(alone) > LONG
+    assert [repr(a) for a, _ in pairs] == alone
+    assert [repr(b) for _, b in pairs] == alone
+
+
+def test_a_pass_that_was_given_up_leaves_nothing() -> None:
+    reading = Reading(Source("part", TEXT))
+    given_up = reading.begin(SETUP).blocks()
+    for _ in range(LONG):
+        next(given_up)
+    assert told(reading) == told(Reading(Source("part", TEXT)))
+
+
+def test_the_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    read = list[str]()
+    before = program.read_program
+
+    def counted(source: Source, strict: bool = False) -> program.Program:
+        read.append(source.name)
+        return before(source, strict)
+
+    monkeypatch.setattr(program, "read_program", counted)
+    reading = Reading(Source("part", "G90\nM30\n"))
+    for _ in range(3):
+        list(reading.begin(SETUP).blocks())
+    assert read == ["part"]
+
+
+def test_what_is_wrong_with_the_text_is_told_by_every_pass() -> None:
+    reading = Reading(Source("part", "G90\nG1X\nM30\n"))
+    first, second = ([d.code for d in reading.begin(SETUP).diagnostics] for _ in range(2))
+    assert first
+    assert first == second
+
+
+def test_what_a_pass_notes_of_a_line_is_its_own() -> None:
+    steps = LongSteps(columns_of([(1.0, 0.0), (1.0, -1.0), (1.0, -2.0)]), {})
+    own = steps.copy()
+    own[1] = statement(lex_line(2, "X1Z-1"))
+    assert not isinstance(own[1], tuple)
+    assert steps[1] == (1.0, -1.0)
+    assert (own.moves_until(0), steps.moves_until(0)) == (1, 3)
