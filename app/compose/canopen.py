@@ -14,6 +14,7 @@ from drivers.canopen.config import (
     AxisConfig,
     BusConfig,
     CanopenConfig,
+    EncoderConfig,
     ModuleConfig,
     OutputConfig,
     PotConfig,
@@ -77,6 +78,7 @@ def canopen_config(machine: Machine) -> CanopenConfig:
         bus=BusConfig(bus.interface, bus.channel, bus.bitrate, bus.host_id, bus.sync, bus.heartbeat),
         axes=tuple(_axis(axis, machine, nodes) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
+        encoder=_encoder(machine, nodes),
         modules=tuple(
             ModuleConfig(node.name, node.id, _eds(node, machine), _objects(node)) for node in modules
         ),
@@ -140,6 +142,25 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
         counts_per_rev=node.counts_per_rev,
         eds=_eds(node, machine),
         objects=_objects(node),
+    )
+
+
+def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
+    """A drive's node is its own: its second input is mapped there."""
+    model = machine.hardware.encoder
+    if model is None:
+        return None
+    node = nodes[model.node]
+    own = node.profile != 402
+    return EncoderConfig(
+        name=node.name,
+        node=node.id if own else 0,
+        index=model.index,
+        sub=model.sub,
+        counts_per_rev=model.counts_per_rev,
+        rpm_max=machine.spindle.rpm_max,
+        eds=_eds(node, machine) if own else "",
+        objects=_objects(node) if own else (),
     )
 
 

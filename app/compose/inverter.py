@@ -12,7 +12,7 @@ from drivers.feeder.server import Driven
 from drivers.inverter.building import attendant
 from drivers.inverter.config import InverterConfig
 from drivers.inverter.keeper import Keeper
-from drivers.inverter.spindle import InverterSpindle
+from drivers.inverter.spindle import Encoder, InverterSpindle, well
 from drivers.simulated import StepClock
 from drivers.wire import LineSettings
 
@@ -55,6 +55,7 @@ def with_inverter(
         encoder=encoder,
         alive=lambda: keeper.alive,
         estop=lambda: ports.station.snapshot().estop,
+        lost=ports.spindle.fault if machine.backend == "canopen" else well,
     )
     said = (*attended.warnings, *(() if encoder else (BY_FREQUENCY,)))
     joined = dataclasses.replace(
@@ -150,4 +151,5 @@ def _config(machine: Machine) -> InverterConfig:
         rpm_max=machine.spindle.rpm_max,
         comm_loss=vfd.comm_loss,
         character=_line(machine).character,
+        disagree=vfd.disagree,
     )

@@ -45,6 +45,20 @@ class SpindleConfig:
 
 
 @dataclass(frozen=True, slots=True)
+class EncoderConfig:
+    """An encoder on the spindle. ``node`` 0: the second input of the drive that ``name`` says."""
+
+    name: str
+    node: int
+    index: int
+    sub: int
+    counts_per_rev: int  # negative: it counts down with M03
+    rpm_max: float
+    eds: str = ""
+    objects: Objects = ()
+
+
+@dataclass(frozen=True, slots=True)
 class ModuleConfig:
     """One CiA 401 module."""
 
@@ -102,6 +116,7 @@ class CanopenConfig:
     bus: BusConfig
     axes: tuple[AxisConfig, ...]
     spindle: SpindleConfig | None = None
+    encoder: EncoderConfig | None = None  # beside a spindle that somebody else turns
     modules: tuple[ModuleConfig, ...] = ()
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, Terminal] = field(default_factory=dict)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
-from core.ports import Clock, DriverError, MachinePorts, Stop
+from core.ports import Clock, DriverError, MachinePorts, Spindle, Stop
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
+from drivers.canopen.drive import Drive402
+from drivers.canopen.encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.spindle import CanopenSpindle, NoSpindle
 from drivers.canopen.terminals import CanopenIO
 
@@ -30,10 +32,24 @@ class CanopenMachine:
             self.axes.clearing = [self.io.clear_fault]
             if self.spindle is not None:
                 self.axes.clearing.append(self.spindle.clear_fault)
+            self.encoder = self._encoder(drives)
             self._connect()
         except DriverError:
             self.bus.close()
             raise
+
+    def _encoder(self, drives: Mapping[str, Drive402]) -> CanEncoder | None:
+        config = self.config.encoder
+        if config is None:
+            return None
+        encoder = CanEncoder(config, self.bus, None if config.node else drives[config.name])
+        self.axes.clearing.append(encoder.clear_fault)
+        return encoder
+
+    @property
+    def _turning(self) -> Spindle:
+        measured = MeasuredSpindle(self.encoder) if self.encoder is not None else None
+        return self.spindle or measured or NoSpindle()
 
     @property
     def ports(self) -> MachinePorts:
@@ -41,7 +57,7 @@ class CanopenMachine:
         return MachinePorts(
             clock=self.clock,
             axes=self.axes,
-            spindle=self.spindle or NoSpindle(),
+            spindle=self._turning,
             io=self.io,
             station=self.io,
         )
@@ -57,6 +73,8 @@ class CanopenMachine:
             self.axes.beside = self.io.tick(now)
             if self.spindle is not None:
                 self.spindle.tick()
+            if self.encoder is not None:
+                self.encoder.look()
             if now >= self._next or self.axes.follower.urgent:
                 self._next = max(self._next, now - self.config.bus.sync) + self.config.bus.sync
                 self.axes.follower.urgent = False
@@ -79,10 +97,14 @@ class CanopenMachine:
         self.axes.connect()
         if self.spindle is not None:
             self.spindle.connect()
+        if self.encoder is not None:
+            self.encoder.connect()
         self.io.connect()
         self.axes.drives.operational()
         if self.spindle is not None:
             self.spindle.drive.operational()
+        if self.encoder is not None:
+            self.encoder.operational()
         self.io.operational()
         self.bus.beat(at_once=True)
         self._exchange()
@@ -93,12 +115,16 @@ class CanopenMachine:
         if self.spindle is not None:
             drives.append(self.spindle.drive)
         silent = [drive.missing for drive in drives] + [m.missing for m in self.io.modules.values()]
+        if self.encoder is not None:
+            silent.append(self.encoder.missing)
         return not any(silent)
 
     def _exchange(self) -> None:
         self.axes.drives.command()
         if self.spindle is not None:
             self.spindle.drive.command()
+        if self.encoder is not None:
+            self.encoder.asked()
         for module in self.io.modules.values():
             module.missing += 1
         self.bus.synchronise()

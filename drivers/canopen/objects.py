@@ -26,6 +26,8 @@ IP_SUBMODE, BUFFER, FOLLOWING = 0x60C0, 0x60C4, 0x60F4
 INPUTS_402, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60FF, 0x6502
 PVT_RECORD, PVT_STATUS = 0x20C1, 0x20C4  # vendor's: one record, and state of the queue
 DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
+ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0x6002, 0x6004
+ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (HEARTBEAT, U16))
@@ -39,7 +41,14 @@ _VARIABLES_402 = (
     *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32)),
     *((SUPPORTED, U32), (PVT_RECORD, U64)),
 )
-_ARRAYS_402 = ((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (BUFFER, U32, 6), (PVT_STATUS, U16, 3))
+_VARIABLES_406 = (
+    *((ENCODER_MODE, U16), (ENCODER_STEPS, U32), (ENCODER_RANGE, U32), (ENCODER_POSITION, U32)),
+    *((ENCODER_RESOLUTION, U32), (ENCODER_TURNS, U16)),
+)
+_ARRAYS_402 = (
+    *((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (BUFFER, U32, 6), (PVT_STATUS, U16, 3)),
+    (SECOND_POSITION, I32, 2),
+)
 _ARRAYS_401 = (
     *((DIGITAL_IN, U8, 8), (DIGITAL_OUT, U8, 8), (ERROR_MODE, U8, 8), (ERROR_VALUE, U8, 8)),
     *((ANALOG_IN, I16, 4), (ANALOG_DELTA, U32, 4)),
@@ -54,6 +63,11 @@ def drive_objects() -> ObjectDictionary:
 def module_objects() -> ObjectDictionary:
     """The dictionary of an I/O module without an EDS file."""
     return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
+
+
+def encoder_objects() -> ObjectDictionary:
+    """The dictionary of an encoder without an EDS file."""
+    return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
 
 
 def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:

@@ -17,3 +17,4 @@ class InverterConfig:
     rpm_max: float
     comm_loss: float
     character: float  # s that one character takes on the line
+    disagree: float = 0.15  # fraction by which an encoder may differ from what the inverter gives

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from core.ports import Clock, DriverError
+from drivers.inverter.agreement import Agreement
 from drivers.inverter.attendant import LOST, Attendant
 from drivers.inverter.config import InverterConfig
 from drivers.inverter.obedience import PRESS
@@ -30,6 +31,11 @@ def nobody_presses() -> bool:
     return False
 
 
+def well() -> str:
+    """An encoder of which nothing bad is known."""
+    return ""
+
+
 def always() -> bool:
     """Somebody else calls the attendant's rounds."""
     return True
@@ -38,7 +44,8 @@ def always() -> bool:
 class InverterSpindle:
     """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
 
-    ``alive`` tells whether somebody still attends the line; ``estop`` whether E-stop is pressed.
+    ``alive`` tells whether somebody still attends the line; ``estop`` whether E-stop is pressed; ``lost``
+    why the encoder is not to be believed, which is a fault as long as the spindle turns or has to.
     """
 
     def __init__(
@@ -50,16 +57,19 @@ class InverterSpindle:
         encoder: Encoder | None = None,
         alive: Callable[[], bool] = always,
         estop: Callable[[], bool] = nobody_presses,
+        lost: Callable[[], str] = well,
     ) -> None:
         self._config, self._attendant, self._clock = config, attendant, clock
-        self._encoder, self._alive, self._estop = encoder, alive, estop
+        self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost
+        self._agreement = Agreement(config.disagree)
+        self._unmeasured = ""  # why it has stopped measuring; latched until ``clear_fault``
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
         if rpm:
             if self._estop():
                 raise DriverError("the spindle stays off while E-stop is pressed; release it first")
-            if why := self.fault():
+            if why := self.fault() or self._lost():
                 raise DriverError(f"the spindle stays off: {why}")
             if not self._attendant.warm:
                 raise DriverError("the spindle stays off: the inverter has not yet answered often enough")
@@ -75,17 +85,30 @@ class InverterSpindle:
         if not self._alive():
             raise DriverError("whoever attended the inverter has ended; start the control again")
         self._attendant.clear()
+        self._unmeasured = ""
 
     def speed(self) -> float:
-        """Measured rpm, signed: by the encoder, else what the inverter last said that it gives."""
-        if self._encoder is not None:
-            return self._encoder.speed()
+        """Measured rpm, signed: by the encoder, else what the inverter last said that it gives.
+
+        The inverter's word also while the encoder is lost; of two that disagree the higher.
+        """
+        if self._encoder is None or self._lost():
+            return self._given
+        if self._unmeasured:
+            return max(self._encoder.speed(), self._given, key=abs)
+        return self._encoder.speed()
+
+    @property
+    def _given(self) -> float:
+        """rpm, signed, as the inverter last said."""
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
 
     def angle(self) -> tuple[float, float] | None:
-        """By the encoder; None without one."""
-        return self._encoder.angle() if self._encoder is not None else None
+        """By the encoder; None without one, and of one that is not to be believed."""
+        if self._encoder is None or self._unmeasured or self._lost():
+            return None
+        return self._encoder.angle()
 
     def fault(self) -> str:
         """What is wrong, with the word for the operator; empty when well.
@@ -97,6 +120,9 @@ class InverterSpindle:
             attendant.want = 0.0
         if attendant.trouble:
             return attendant.trouble
+        if self._encoder is not None and self._wrong(self._encoder):
+            attendant.want = 0.0
+            return self._unmeasured
         if not self._alive():
             return f"nobody attends the inverter any more: {PRESS}"
         seen = attendant.seen
@@ -104,6 +130,14 @@ class InverterSpindle:
         if seen is not None and now - seen.t > _DEAD and now > attendant.grace:
             return f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}"
         return ""
+
+    def _wrong(self, encoder: Encoder) -> bool:
+        """Whether it turns, or has to, and nobody measures it."""
+        needed = self._attendant.want != 0.0 or self._given != 0.0
+        if needed and not self._unmeasured:
+            now = self._clock.now()
+            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self._given, now)
+        return bool(self._unmeasured)
 
     def status(self) -> str:
         """One line about it, for a check."""

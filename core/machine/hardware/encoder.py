@@ -1,4 +1,4 @@
-"""An encoder of its own on the spindle, beside an inverter: what must hold between it and the rest of a file."""
+"""An encoder of its own on the spindle, beside an inverter: what must hold between it and the rest."""
 
 from __future__ import annotations
 

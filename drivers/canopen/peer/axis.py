@@ -40,6 +40,7 @@ class AxisDrive:
         self._pending = False  # a new target, to be acknowledged
         self._going = False
         self.values: dict[tuple[int, int], int] = {}
+        self.second: Callable[[], int] | None = None  # counts of a second encoder input
 
     # --- objects ------------------------------------------------------------------------------------------
 
@@ -54,6 +55,8 @@ class AxisDrive:
             od.POSITION: lambda: round(self.servo.reading / count),
             od.FOLLOWING: lambda: round((self.p - self.servo.reading) / count) if self.power.powered else 0,
         }
+        if index == od.SECOND_POSITION and self.second is not None:
+            return (self.second() + 2**31) % 2**32 - 2**31
         return live[index]() if index in live else None
 
     def write(self, index: int, sub: int, value: int) -> None:

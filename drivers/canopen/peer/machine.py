@@ -12,6 +12,7 @@ from drivers.canopen import objects as od
 from drivers.canopen.bus import opened
 from drivers.canopen.config import CanopenConfig
 from drivers.canopen.peer.axis import AxisDrive
+from drivers.canopen.peer.encoder import EncoderDevice
 from drivers.canopen.peer.node import Device, PeerNetwork, PeerNode
 from drivers.canopen.peer.spindle import SpindleDrive
 from drivers.canopen.peer.terminals import TerminalBoard
@@ -80,6 +81,7 @@ class Peers:
             self.plant.due = Schedule(self.machine, sim.faults).due
         self.network = PeerNetwork(opened(config.bus))
         self.nodes: dict[str, PeerNode] = {}
+        self.encoder: EncoderDevice | None = None
         self.cut = False  # the cable is off
         self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
         self._early: can.Message | None = None
@@ -131,11 +133,19 @@ class Peers:
             spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"))
             plant.spindle_drive = spindle
             self._add("spindle", config.spindle.node, spindle)
+        if config.encoder is not None:
+            self.encoder = encoder = EncoderDevice(plant, config.encoder.counts_per_rev)
+            if config.encoder.node:
+                self._add(config.encoder.name, config.encoder.node, encoder)
+            else:
+                plant.drives[config.encoder.name].second = lambda: encoder.position
         for module in config.modules:
             self._add(module.name, module.node, TerminalBoard(module.name, config, plant), module=True)
 
     def _add(self, name: str, number: int, device: Device, *, module: bool = False) -> None:
         objects = od.module_objects() if module else od.drive_objects()
+        if isinstance(device, EncoderDevice):
+            objects = od.encoder_objects()
         self.nodes[name] = PeerNode(self.network, number, objects, device)
 
     def _emergency(self, name: str, code: int) -> None:

@@ -1,0 +1,184 @@
+"""The spindle's encoder on the bus: what it measures, what it is refused for, what becomes of its loss."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+
+import pytest
+
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.canopen.encoder import CanEncoder
+from tests.drivers.canopen.bench import CanBench, can_machine
+
+OWN = (
+    (
+        'driver = "cia402"',
+        'driver = "vfd"\n'
+        'vfd = { family = "delta-vfdb", port = "/dev/ttyUSB1", stop = 2, hz_per_rpm = 0.01667 }\n'
+        'encoder = { node = "turns", counts_per_rev = 4096 }',
+    ),
+    ("io = { id = 10,", "turns = { id = 20, profile = 406 }\nio = { id = 10,"),
+    ("spindle = { id = 3 }\n", ""),
+)
+AT_Z = (
+    *OWN,
+    ('node = "turns", counts_per_rev = 4096', 'node = "Z", object = "60E4:1", counts_per_rev = -2000'),
+    ("turns = { id = 20, profile = 406 }\n", ""),
+)
+
+
+class EncoderBench(CanBench):
+    """The spindle is turned by hand: nothing on this bus does."""
+
+    @property
+    def encoder(self) -> CanEncoder:
+        assert self.machine.encoder is not None
+        return self.machine.encoder
+
+    def turn(self, rpm: float) -> None:
+        self.peers.plant.spindle.order(self.clock.now(), rpm)
+
+    @property
+    def turns(self) -> float:
+        return self.peers.plant.spindle.turns
+
+
+@pytest.fixture(params=["own node", "at a drive"])
+def stand(request: pytest.FixtureRequest) -> Iterator[EncoderBench]:
+    made = EncoderBench(can_machine(*(OWN if request.param == "own node" else AT_Z)))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def own() -> Iterator[EncoderBench]:
+    made = EncoderBench(can_machine(*OWN))
+    yield made
+    made.close()
+
+
+# --- what it measures -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rpm", [3500.0, 60.0, -1800.0])
+def test_speed_and_angle_are_those_of_the_spindle(stand: EncoderBench, rpm: float) -> None:
+    stand.turn(rpm)
+    stand.run(3.0)
+    spindle = stand.machine.ports.spindle
+    assert spindle.speed() == pytest.approx(rpm, abs=2.0)
+    read = spindle.angle()
+    assert read is not None
+    t, turns = read
+    assert turns == pytest.approx(stand.turns - rpm / 60.0 * (stand.clock.now() - t), abs=0.01)
+    assert spindle.fault() == ""
+
+
+def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
+    stand.turn(500.0)
+    stand.run(1.0)
+    stand.turn(0.0)
+    stand.run(1.0)
+    assert stand.encoder.speed() == 0.0
+
+
+def test_it_counts_on_when_its_range_is_over() -> None:
+    stand = EncoderBench(can_machine(*OWN))
+    assert stand.peers.encoder is not None
+    stand.peers.encoder.turns = 16
+    stand.encoder.connect()
+    stand.encoder.operational()
+    stand.turn(3000.0)
+    stand.run(4.0)
+    read = stand.encoder.angle()
+    assert read is not None
+    assert read[1] == pytest.approx(stand.turns, abs=0.8)
+    assert stand.turns > 100.0
+    assert stand.encoder.fault() == ""
+    stand.close()
+
+
+def test_it_turns_nothing(own: EncoderBench) -> None:
+    own.machine.ports.spindle.run(0.0)
+    with pytest.raises(DriverError, match="no spindle drive"):
+        own.machine.ports.spindle.run(100.0)
+
+
+# --- what it is refused for -------------------------------------------------------------------------------
+
+
+def refused(machine: Machine, **says: int) -> str:
+    """What connecting says of an encoder that says this of itself."""
+    stand = EncoderBench(machine)
+    for name, value in says.items():
+        setattr(stand.peers.encoder, name, value)
+    try:
+        with pytest.raises(DriverError) as caught:
+            stand.encoder.connect()
+    finally:
+        stand.close()
+    return str(caught.value)
+
+
+def test_another_count_than_the_files_is_refused() -> None:
+    said = refused(can_machine(*OWN), steps=5000)
+    assert "5000 counts a turn (object 6501:0)" in said
+    assert "says 4096" in said
+
+
+def test_a_single_turn_encoder_is_refused_for_a_fast_spindle() -> None:
+    assert "begins anew after 1 turns" in refused(can_machine(*OWN), turns=1)
+
+
+def test_a_node_that_is_no_encoder_is_refused() -> None:
+    stand = EncoderBench(can_machine(*OWN))
+    module = stand.machine.io.modules["io"]
+    assert stand.machine.config.encoder is not None
+    other = dataclasses.replace(stand.machine.config.encoder, node=module.config.node)
+    wrong = CanEncoder(other, stand.machine.bus, None)
+    with pytest.raises(DriverError, match="is a device of profile 401, expected 406"):
+        wrong.connect()
+    stand.close()
+
+
+# --- its loss ---------------------------------------------------------------------------------------------
+
+
+def test_silence_is_told_of_and_moves_no_axis(own: EncoderBench) -> None:
+    own.machine.axes.enable(True)
+    own.peers.nodes["turns"].silent = True
+    own.run(0.5)
+    assert "turns: it does not answer SYNC" in own.machine.ports.spindle.fault()
+    assert own.machine.axes.sample().fault == ""
+    own.peers.nodes["turns"].silent = False
+    own.run(0.2)
+    assert own.machine.ports.spindle.fault() != ""  # only a reset clears it
+    own.machine.axes.clear_fault()
+    own.run(0.3)
+    assert own.machine.ports.spindle.fault() == ""
+
+
+def test_a_restart_is_told_of(own: EncoderBench) -> None:
+    own.run(0.1)
+    own.peers.nodes["turns"].boot()
+    own.run(0.05)
+    assert "it has restarted" in own.machine.ports.spindle.fault()
+    own.machine.axes.clear_fault()
+    own.turn(600.0)
+    own.run(1.5)
+    assert own.encoder.speed() == pytest.approx(600.0, abs=2.0)
+
+
+def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
+    assert own.peers.encoder is not None
+    own.run(0.1)
+    own.peers.encoder.stuck = 40960
+    own.run(0.05)
+    assert "leap" in own.machine.ports.spindle.fault()
+
+
+def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:
+    own.peers.nodes["turns"].emergency(0x5000)
+    own.run(0.05)
+    assert "EMCY 5000" in own.machine.ports.spindle.fault()

@@ -1,0 +1,214 @@
+"""An inverter on its line and the encoder on the bus, through the executor: at-speed, threads, and lies."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import pytest
+
+from app.compose.inverter import ClearingAxes
+from core.executor.commands import Reset
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.ports import MachinePorts
+from drivers.canopen.encoder import MeasuredSpindle
+from drivers.inverter.agreement import Agreement
+from drivers.inverter.building import attendant
+from drivers.inverter.spindle import InverterSpindle
+from tests.drivers.canopen.bench import can_machine
+from tests.drivers.canopen.test_encoder import OWN
+from tests.drivers.canopen.test_executor import BusRig
+from tests.drivers.inverter.benches import Bench, config, far_end
+from tests.drivers.inverter.peers import Inverter
+from tests.drivers.inverter.wires import BenchWire
+from tests.executor.rig import INCH
+
+TURNS = "G90G94F300\nM03S1800\nG04F30\nM05\nG04F9\nM30\n"
+CUTS = "G90G94F30\nM03S1800\nX.5Z.1\nG01X.4F5\nX.1\nX.5\nM30\n"
+PITCH, RPM = 0.05, 1000
+THREAD = f"G90G94F300\nM03S{RPM}\nX.25Z.2\nG33X.24Z-.2I.01K{PITCH}O\nM30\n"
+
+
+class MeasuredRig(BusRig):
+    """The inverter of the line turns the spindle whose encoder is on the bus."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        clock = type(self.clock)()
+        clock.advance(self.clock.now())
+        self.inverter = Inverter(self.clock, motor=self.bench.peers.plant.spindle)
+        memory, slave = far_end("delta-vfdb", self.inverter)
+        wire = BenchWire(slave, clock)
+        one = attendant(config("delta-vfdb"), wire.opened, clock)
+        ports = self.bench.machine.ports
+        assert isinstance(ports.spindle, MeasuredSpindle)
+        spindle = InverterSpindle(
+            config("delta-vfdb"),
+            one,
+            self.clock,
+            encoder=ports.spindle,
+            estop=lambda: ports.station.snapshot().estop,
+            lost=ports.spindle.fault,
+        )
+        self.line = Bench(clock, self.inverter, memory, wire, one, spindle)
+        one.connect()
+        self.bench.run(clock.now() - self.clock.now())
+        joined = MachinePorts(
+            clock=self.clock,
+            axes=ClearingAxes(ports.axes, spindle.clear_fault),
+            spindle=spindle,
+            io=ports.io,
+            station=ports.station,
+        )
+        self.executor = Executor(self.machine, joined, self.events.append, self._passes)
+        self.executor.tick()
+
+    def tick(self, dt: float = 0.01) -> None:
+        while self.line.clock.now() < self.clock.now() + dt:
+            self.line.run(0.001)
+        super().tick(dt)
+
+    @property
+    def cause(self) -> str:
+        return self.shot.alarms[-1].cause if self.shot.alarms else ""
+
+
+@pytest.fixture
+def rig() -> Iterator[MeasuredRig]:
+    made = MeasuredRig(can_machine(("two_hand_start = true", "two_hand_start = false"), *OWN))
+    yield made
+    made.bench.close()
+
+
+def turning(rig: MeasuredRig, text: str = TURNS) -> None:
+    rig.start(text)
+    rig.until_true(lambda shot: shot.rpm_actual > 1780.0, limit=8.0)
+
+
+def test_a_program_waits_for_the_measured_speed_and_runs_to_its_end(rig: MeasuredRig) -> None:
+    rig.start(CUTS)
+    rig.until(State.IDLE, State.FAULT, limit=120.0)
+    assert rig.cause == ""
+    rig.run(3.0)
+    assert rig.inverter.rpm == 0.0
+
+
+def test_a_motor_that_slips_is_not_at_speed(rig: MeasuredRig) -> None:
+    rig.bench.peers.plant.spindle.faults.bog = 0.9  # within what both may disagree, outside of the band
+    rig.start(CUTS)
+    rig.until(State.FAULT, limit=20.0)
+    assert rig.shot.alarms[0].code == "at-speed"
+    assert rig.shot.demand[0] > 0.4 * INCH  # no cut has begun
+
+
+def test_a_thread_keeps_its_pitch(rig: MeasuredRig) -> None:
+    reads: list[tuple[float, float]] = []
+
+    def note(_shot: object) -> None:
+        z, turns = rig.bench.peers.machine.true_position()[1], rig.bench.peers.plant.spindle.turns
+        reads.append((z, turns))
+
+    rig.watch.append(note)
+    rig.start(THREAD)
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    assert rig.cause == ""
+    inside = [(z, turns) for z, turns in reads if -0.15 * INCH < z < 0.05 * INCH]
+    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(inside)]
+    cut = [(dz, turns) for dz, turns in steps if dz < -0.05 and turns > 0.0]
+    assert len(cut) > 5
+    lead = sum(dz for dz, _ in cut) / sum(turns for _, turns in cut)
+    assert lead == pytest.approx(-PITCH * INCH, rel=0.01)
+
+
+def test_an_encoder_that_falls_silent_in_a_cut_is_an_alarm(rig: MeasuredRig) -> None:
+    turning(rig)
+    rig.bench.peers.nodes["turns"].silent = True
+    rig.until(State.FAULT, limit=0.5)
+    assert "spindle encoder turns" in rig.cause
+    rig.run(4.0)
+    assert rig.inverter.rpm == 0.0
+    assert rig.shot.rpm_actual == pytest.approx(
+        0.0, abs=1.0
+    )  # the inverter's word: it gives nothing any more
+
+
+def test_after_reset_nothing_turns_by_itself_and_m03_needs_the_encoder(rig: MeasuredRig) -> None:
+    turning(rig)
+    rig.bench.peers.nodes["turns"].silent = True
+    rig.until(State.FAULT, limit=0.5)
+    rig.run(4.0)
+    rig.post(Reset())
+    rig.run(1.0)
+    assert rig.state in {State.DISABLED, State.IDLE}  # the slides may be moved without it
+    assert rig.inverter.rpm == 0.0
+    rig.start(TURNS)
+    rig.until(State.FAULT, limit=2.0)
+    assert "spindle stays off: spindle encoder turns" in rig.cause
+    rig.bench.peers.nodes["turns"].silent = False
+    rig.post(Reset())
+    rig.run(1.0)
+    turning(rig)
+
+
+def test_an_encoder_that_is_lost_while_nothing_turns_is_no_alarm_until_m03(rig: MeasuredRig) -> None:
+    rig.ready()
+    rig.bench.peers.nodes["turns"].silent = True
+    rig.run(1.0)
+    assert rig.state is State.IDLE
+    rig.start(TURNS)
+    rig.until(State.FAULT, limit=2.0)
+    assert "spindle stays off: spindle encoder turns" in rig.cause
+    assert rig.inverter.rpm == 0.0
+
+
+def test_a_coupling_that_has_come_off_never_counts_as_standing(rig: MeasuredRig) -> None:
+    turning(rig)
+    assert rig.bench.peers.encoder is not None
+    rig.bench.peers.encoder.come_off()
+    rig.until(State.FAULT, limit=2.5)
+    assert "coupling" in rig.cause
+    assert "PRESS E-STOP" in rig.cause
+    rig.tick()
+    while rig.inverter.rpm > 200.0:
+        assert rig.shot.rpm_actual > 100.0  # it turns, and the collet stays shut
+        rig.tick()
+
+
+def test_a_motor_cable_on_wrongly_is_seen(rig: MeasuredRig) -> None:
+    rig.inverter.backwards = True
+    rig.start(TURNS)
+    rig.until(State.FAULT, limit=5.0)
+    assert "in the other direction" in rig.cause
+
+
+# --- agreement --------------------------------------------------------------------------------------------
+
+
+def feed(pairs: list[tuple[float, float]], fraction: float = 0.15) -> list[str]:
+    """What is said of (measured, given) every tenth of a second."""
+    agreement = Agreement(fraction)
+    return [agreement.look(measured, given, 0.1 * i) for i, (measured, given) in enumerate(pairs)]
+
+
+def test_slip_is_none_of_it() -> None:
+    assert not any(feed([(1700.0, 1800.0)] * 50))
+
+
+def test_a_ramp_is_none_of_it() -> None:
+    assert not any(feed([(50.0 * i, min(150.0 * i, 3000.0)) for i in range(21)]))
+
+
+def test_running_down_is_none_of_it() -> None:
+    assert not any(feed([(1800.0 - 10 * i, 0.0) for i in range(60)]))
+
+
+def test_a_short_disagreement_is_none_of_it() -> None:
+    assert not any(feed([(1800.0, 1800.0)] * 10 + [(1000.0, 1800.0)] * 9 + [(1800.0, 1800.0)] * 10))
+
+
+@pytest.mark.parametrize("measured", [0.0, 1400.0, 2300.0, -1800.0])
+def test_a_lasting_one_is_told_after_a_second(measured: float) -> None:
+    said = feed([(1800.0, 1800.0)] * 10 + [(measured, 1800.0)] * 20)
+    assert [bool(text) for text in said].index(True) == 20
+    assert f"{measured:.0f} rpm" in said[-1]
