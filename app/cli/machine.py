@@ -18,6 +18,8 @@ def add_parser(subparsers: SubParsers) -> None:
     check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
     peer = actions.add_parser("peer", help="play the drives and terminals of a CANopen machine file")
     peer.add_argument("file", metavar="FILE")
+    accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
+    accept.add_argument("file", metavar="FILE")
     model = actions.add_parser(
         "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
     )
@@ -34,6 +36,10 @@ def run(args: argparse.Namespace) -> int:
         from app.cli.machine_mtconnect import write_model
 
         return write_model(args.file)
+    if args.action == "accept":
+        from app.cli.machine_accept import accept
+
+        return accept(args.file)
     from app.cli.machine_check import check
 
     return check(args.file, json_wanted=args.json)

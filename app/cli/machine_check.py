@@ -7,8 +7,10 @@ import sys
 import textwrap
 from collections.abc import Iterator, Sequence
 
-from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE
+from app.cli.errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from core.machine.changes import Change
 from core.machine.load import MachineFileError, named_machine
+from core.machine.model import Machine
 
 WIDTH = 80
 Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detail
@@ -25,7 +27,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
         _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
         return EXIT_USAGE
-    answers = check_ports(machine)
+    answers, told = check_ports(machine), _changed(machine)
     _report(
         json_wanted,
         {
@@ -33,6 +35,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "machine": machine.name,
             "backend": machine.backend,
             "errors": [],
+            "changes": [change._asdict() for change in told],
             "ports": [row._asdict() for row in answers.rows],
             "warnings": answers.warnings,
             "trouble": answers.trouble,
@@ -41,9 +44,21 @@ def check(file: str | None, *, json_wanted: bool) -> int:
     if not json_wanted:
         sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
         sys.stdout.write("".join(f"{line}\n" for line in table(answers.rows)))
+        sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
     said = (*answers.warnings, *answers.trouble)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
     return EXIT_ERRORS if answers.trouble else EXIT_OK
+
+
+def _changed(machine: Machine) -> Sequence[Change]:
+    """What differs from the accepted file; nothing where no store can be read."""
+    from app.cli.machine_accept import changed
+
+    try:
+        return changed(machine)
+    except CommandError as error:
+        sys.stderr.write(f"turndesk: {error}\n")
+        return ()
 
 
 def table(rows: Rows) -> Iterator[str]:

@@ -53,9 +53,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
+    from app.cli.machine_accept import demand_accepted
     from app.compose.headless import EventLog, headless
     from app.compose.proof import proof_of
 
+    demand_accepted(around.machine)
     inputs = input_states(args.inputs, around.machine.inputs)
     path = Path(args.file)
     with (

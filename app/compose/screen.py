@@ -6,11 +6,13 @@ import gc
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
+from app.compose.accepted import file_changes, guarded
 from app.compose.backends import Connected, connect, played
 from app.compose.effect import drawer
 from app.compose.inverter import has_inverter
@@ -132,8 +134,13 @@ def desk_and_executor(
             journal.hear(event)
 
     executor = Executor(machine, connected.ports, hear)
+
+    def say(kind: str, text: str) -> None:
+        hear(Event(clock.now(), kind, text))
+
+    changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
-        post=executor.post,
+        post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=Session(
             workshop(machine, offsets, journal, zero=zero, left=lambda: executor.snapshot.modal),
@@ -146,6 +153,7 @@ def desk_and_executor(
         lathe=machine,
         effect=Effect(drawer(machine)),
         machine=f"{machine.name} · {_drives(machine)}",
+        changes=changed,
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),
         editor=_editor(workshop(machine, offsets, zero=zero), journal),
@@ -155,8 +163,10 @@ def desk_and_executor(
     give_searchto(desk, machine)
     heard.append(desk)
     desk.shut = connected.close
-    for warning in connected.ports.warnings:
-        hear(Event(clock.now(), "warning", warning))
+    for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in changed.changes)):
+        say("warning", warning)
+    if changed.barred:
+        desk.say(changed.barred)
     return desk, executor
 
 
@@ -209,14 +219,14 @@ def workshop(
         from app.compose.proof import proof_of
         from core.proving.prove import prove
 
-        report = prove(job.source, job.setup, machine, watch)
+        report = prove(job.reading, job.setup, machine, watch)
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(job: Job, watch: Watch) -> Picture:
         from app.desk.picture import sketched
         from core.proving.timeline import Timeline, timed_series
 
-        return sketched(timed_series(Timeline.of(job.source, job.setup, machine)), watch)
+        return sketched(timed_series(Timeline.of(job.reading, job.setup, machine)), watch)
 
     def renewed(job: Job) -> Job:
         tools, secondary = offsets()

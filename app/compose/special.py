@@ -21,6 +21,7 @@ from app.desk.special.counter import PartCounter
 from app.desk.special.drives import DrivesSection
 from app.desk.special.events import EventsSection
 from app.desk.special.keeping import KeepingSection
+from app.desk.special.machine_file import MachineFileSection
 from app.desk.special.parts import PartsSection
 from app.desk.special.preferences import PreferencesSection
 from app.desk.special.sheet import Section
@@ -60,6 +61,7 @@ ITEMS: tuple[MakeSection, ...] = (
     lambda desk, _machine, keep, worker: EventsSection(desk, keep, worker),
     _keeping,
     lambda desk, _machine, _keep, _worker: PreferencesSection(desk),
+    lambda desk, _machine, _keep, _worker: MachineFileSection(desk, desk.changes),
 )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from app.desk import prompts
 from app.desk.alarms import AlarmLog
 from app.desk.answers import Answers
+from app.desk.changes import FileChanges
 from app.desk.files.record import RunRecord
 from app.desk.hands import StationHands
 from app.desk.offsets.book import NONE_KEPT, OffsetBook
@@ -78,6 +79,7 @@ class DeskParts:
     effect: Effect | None = None  # draws what a change of offsets does
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
+    changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import resources
@@ -86,7 +87,7 @@ def parse_machine(text: str, source: str) -> Machine:
     ]
     if findings:
         raise MachineFileError(findings, source)
-    return _machine(reading, hardware, kinematics, source)
+    return replace(_machine(reading, hardware, kinematics, source), text=text)
 
 
 def _machine(

@@ -109,6 +109,7 @@ class Machine:
     c_own_drive: bool = False  # C is no second use of the spindle
     hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
     kinematics: KinematicsModel | None = None  # of a mill with rotary axes
+    text: str = field(default="", compare=False, repr=False)  # the file as it was read
 
     @property
     def spindle_is_c(self) -> bool:

@@ -114,7 +114,7 @@ def hands(
     window.activateWindow()
     made = Hands(qtbot, window, desk, machine)
     made.key(Key.Key_F10)
-    made.type("8")
+    made.type("9")
     made.sees(lambda: page(made).model.inside and section.ports != ())
     yield made
     machine.idle()
@@ -252,7 +252,7 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     assert not lines.job.cancelled
     lines.job.go.set()
     hands.key(Key.Key_F10)
-    hands.type("8")
+    hands.type("9")
     hands.sees(lambda: page(hands).table.sheet.question != "")
 
 

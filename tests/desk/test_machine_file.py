@@ -1,0 +1,168 @@
+"""A machine file that has changed: shown key by key, and no drive goes on before somebody accepts it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.accepted import differences, key_of, record_of
+from app.compose.journal import Journal
+from app.compose.screen import desk_and_executor
+from app.desk.desk import Desk
+from app.desk.keep import NothingKept
+from app.desk.special.machine_file import MachineFileSection
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.machine.load import load_machine
+from core.machine.model import Machine
+from drivers.simulated import StepClock
+
+SHIPPED = resources.machine_file("gt75.toml")
+
+
+@dataclass
+class Room:
+    desk: Desk
+    executor: Executor
+    clock: StepClock
+
+    def run(self, ticks: int = 20) -> None:
+        for _ in range(ticks):
+            self.clock.advance(0.01)
+            self.executor.tick()
+        self.desk.look()
+
+    @property
+    def state(self) -> State:
+        return self.desk.snapshot().state
+
+    @property
+    def section(self) -> MachineFileSection:
+        assert self.desk.special is not None
+        (found,) = [s for s in self.desk.special.sections if isinstance(s, MachineFileSection)]
+        return found
+
+    def cells(self) -> list[tuple[str, ...]]:
+        return [row.cells for row in self.section.sheet(self.desk.snapshot()).rows]
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "own.toml"
+    path.write_text(SHIPPED)
+    return path
+
+
+@contextmanager
+def room(file: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
+    """The control from its start to its end, on one store."""
+    monkeypatch.setenv("TURNDESK_HOME", str(file.parent / "home"))
+    clock, journal = StepClock(), Journal.at_home()
+    desk, executor = desk_and_executor(str(file), lambda: ({}, {}), clock, journal)
+    made = Room(desk, executor, clock)
+    made.run(2)
+    try:
+        yield made
+    finally:
+        desk.close()
+        journal.close()
+
+
+def test_a_file_that_is_new_here_is_accepted_by_being_chosen(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for _ in range(2):
+        with room(file, monkeypatch) as made:
+            assert made.desk.changes.barred == ""
+            assert made.cells() == []
+            assert made.section.keys() == {}
+            made.desk.enable()
+            made.run()
+            assert made.state is State.IDLE
+
+
+def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with room(file, monkeypatch):
+        pass
+    file.write_text(
+        SHIPPED.replace("vmax = 300", "vmax = 280", 1).replace("max_feed = 300", "max_feed = 250")
+    )
+    with room(file, monkeypatch) as made:
+        assert "HAS CHANGED (2)" in made.desk.notice
+        assert made.cells() == [("limits.max_feed", "300", "250"), ("axis.X.vmax", "300", "280")]
+        made.desk.enable()
+        made.run()
+        assert made.state is State.DISABLED
+        assert "HAS CHANGED (2)" in made.desk.notice
+        accept = made.section.keys()["F2"].action
+        accept()
+        assert "ONCE MORE" in made.desk.notice
+        assert made.desk.changes.barred
+        accept()
+        assert made.cells() == []
+        made.desk.enable()
+        made.run()
+        assert made.state is State.IDLE
+    with room(file, monkeypatch) as made:
+        assert made.desk.changes.barred == ""
+
+
+def test_what_was_not_accepted_is_asked_again_at_the_next_start(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with room(file, monkeypatch):
+        pass
+    file.write_text(SHIPPED.replace("lease_ms = 200", "lease_ms = 100"))
+    for _ in range(2):
+        with room(file, monkeypatch) as made:
+            assert made.cells() == [("machine.lease_ms", "200", "100")]
+    file.write_text(SHIPPED)
+    with room(file, monkeypatch) as made:
+        assert made.desk.changes.barred == ""
+
+
+def test_the_changes_and_their_acceptance_are_in_the_log(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with room(file, monkeypatch):
+        pass
+    file.write_text(SHIPPED.replace("seed = 1", "seed = 2"))
+    with room(file, monkeypatch) as made:
+        made.desk.changes.accept()
+    journal = Journal.at_home()
+    told = [event.text for event in journal.events("", (), 50)]
+    journal.close()
+    assert any(text == "machine file: sim.seed: 1 → 2" for text in told)
+    assert any(text.endswith("own.toml accepted: sim.seed: 1 → 2") for text in told)
+
+
+def bus_machine(tmp_path: Path) -> Machine:
+    path = tmp_path / "bus.toml"
+    path.write_text(resources.machine_file("gt75-canopen.toml"))
+    return load_machine(path)
+
+
+def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: Path) -> None:
+    machine, kept = bus_machine(tmp_path), NothingKept()
+    record = record_of(machine)
+    drives = record["drives"]
+    assert isinstance(drives, dict)
+    assert sorted(drives) == ["X", "Z", "io", "spindle"]
+    kept.keep_setting(key_of(machine), record)
+    assert differences(machine, kept) == ()
+    kept.keep_setting(key_of(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
+    (change,) = differences(machine, kept) or ()
+    assert change.path.startswith("canopen.nodes.Z")
+    assert change.old == "0123456789ab"
+
+
+@pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
+def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
+    machine, kept = bus_machine(tmp_path), NothingKept()
+    kept.keep_setting(key_of(machine), damaged)
+    assert differences(machine, kept) is None
