@@ -41,8 +41,13 @@ class ArcOp(NamedTuple):
 
 
 class ThreadOp(NamedTuple):
-    """One pass of a thread to ``x z``, tied to the spindle's index; ``lead`` is mm a turn along Z."""
+    """One pass of a thread from ``x0 z0`` to ``x z``, tied to the spindle's index.
 
+    ``lead`` is mm a turn along Z.
+    """
+
+    x0: float
+    z0: float
     x: float
     z: float
     lead: float

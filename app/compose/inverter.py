@@ -28,11 +28,11 @@ def has_inverter(machine: Machine) -> bool:
 
 
 def with_inverter(
-    machine: Machine, ports: MachinePorts, clock: Clock
+    machine: Machine, ports: MachinePorts, clock: Clock, measures: Encoder | None = None
 ) -> tuple[MachinePorts, Callable[[], None]]:
     """The ports with the inverter for their spindle, and how to let it go.
 
-    Raises DriverError for one that does not answer.
+    ``measures`` is an encoder beside the backend's spindle. Raises DriverError for one that does not answer.
     """
     if isinstance(clock, StepClock):
         raise DriverError(
@@ -47,7 +47,8 @@ def with_inverter(
         attended.close()
         raise DriverError(f"inverter {config.family} on {line.port}: {error}") from error
     keeper.start()
-    encoder = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
+    own = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
+    encoder = measures or own
     spindle = InverterSpindle(
         config,
         attended,

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from core.block_port import BlockOp, BlockState, ThreadOp
 from core.ports import DriverError
 from drivers.grblhal import codes, scripts
-from drivers.grblhal.asking import speed_of
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import line_number, line_of
 from drivers.grblhal.jog import Jogs
@@ -43,6 +43,11 @@ class GrblBlocks:
         controller.on_report, controller.on_void = self._reported, self._voided
 
     @property
+    def listens(self) -> bool:
+        """Whether lines are read and carried out: in a jog they are refused, in a hold they wait."""
+        return self._c.ready and not self._jogs.active and self._c.state not in {"Jog", "Hold"}
+
+    @property
     def caps(self) -> frozenset[str]:
         """Threads need the controller's own encoder, which a third speed in its reports tells of."""
         report = self._c.report
@@ -52,8 +57,7 @@ class GrblBlocks:
     @property
     def fastest(self) -> float:
         """By the machine file, or by the controller's settings where these are less."""
-        wired = [axis for axis in self._c.config.axes if axis.wired]
-        return min(min(axis.vmax, speed_of(self._c, axis.name) or axis.vmax) for axis in wired)
+        return min(min(axis.vmax, self._c.speed_of(axis.name) or axis.vmax) for axis in self._c.wired)
 
     @property
     def quiet(self) -> bool:
@@ -61,12 +65,18 @@ class GrblBlocks:
         return self._settled and not self._c.busy
 
     def submit(self, op: BlockOp) -> int | None:
-        """Hand one block over; None while the controller's buffer is full. Raises DriverError."""
+        """Hand one block over; None while the controller's buffer is full. Raises DriverError.
+
+        A thread also waits until the overrides are at 100 % and told so: under one of feed it would lag
+        behind its lead.
+        """
         c = self._c
         self._demand_ready()
+        self.overrides.level = isinstance(op, ThreadOp)
+        if self.overrides.level and not self.overrides.true_to(c.overrides):
+            return None
         ticket = self._last + 1
-        rapid = min(axis.vmax for axis in c.config.axes if axis.wired)
-        line = line_of(op, ticket, rapid, self.overrides.wanted[0] / 100.0)
+        line = line_of(op, ticket, self._rapid(), self.overrides.wanted[0] / 100.0, c.origin)
         if not c.stream.fits(line):
             return None
         c.send(line, ticket)
@@ -80,24 +90,17 @@ class GrblBlocks:
     def state(self) -> BlockState:
         """From the last report and what has been sent since."""
         c = self._c
-        held = c.report is not None and c.report.state in {"Hold", "Door"} and not c.report.sub
+        held = c.report is not None and c.report.state == "Hold" and not c.report.sub
         held = held and c.reports >= self._released
         resting = self.quiet or c.lost or (c.fault != "" and self._dead())
         return BlockState(self._done, self._active, resting, held and not c.busy, self.hindrance())
 
     def hindrance(self) -> str:
         """Why nothing may be begun now."""
-        c = self._c
-        if c.fault:
-            return c.fault
-        if c.alarm == codes.HOMING_REQUIRED and not c.busy:
-            return "the controller has to be homed first"
-        if c.busy or not c.ready:
-            return "the controller's modes are being verified"
-        return ""
+        return self._c.hindrance
 
     def hold(self) -> None:
-        """0x82; the controller delays it to the end of a thread pass."""
+        """0x82, at once: nobody may ask it in a thread pass, which the controller would leave half cut."""
         self._hold = self._ours = True
         self._released = 0
         self._c.realtime(codes.HOLD)
@@ -158,7 +161,7 @@ class GrblBlocks:
         steady = self._threads or c.busy or not c.ready
         c.see_overrides(not self.overrides.true_to(c.overrides) and not steady)
         if not steady:
-            self.overrides.correct(c.overrides, c.clock.now())
+            self.overrides.correct(c.overrides, c.overrides_told, c.clock.now())
 
     def demand_power(self) -> None:
         """Raises DriverError while there is no leave to move."""
@@ -166,6 +169,13 @@ class GrblBlocks:
             raise DriverError("the drives are off; switch them on first")
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    def _rapid(self) -> float:
+        """What G0 does, by the machine file; endless where the controller is set to more than that."""
+        slides = self._c.wired
+        if any(self._c.speed_of(axis.name) > 1.01 * axis.vmax for axis in slides):
+            return math.inf
+        return min(axis.vmax for axis in slides)
 
     def _demand_ready(self) -> None:
         why = self.hindrance()

@@ -8,11 +8,18 @@ RESET, STOP = 0x18, 0x19
 FEED_100, FEED_UP_10, FEED_DOWN_10, FEED_UP_1, FEED_DOWN_1 = range(0x90, 0x95)
 RAPID_100, RAPID_50, RAPID_25 = 0x95, 0x96, 0x97
 SPINDLE_100, SPINDLE_UP_10, SPINDLE_DOWN_10, SPINDLE_UP_1, SPINDLE_DOWN_1 = range(0x99, 0x9E)
+SPINDLE_PAUSE = 0x9E  # in a feed hold only: stops the spindle, and starts it when it comes again
 
-MODES = ("G8", "G18", "G21", "G90", "G94", "G54")  # radius for ever; no reset may change what X means
+# Radius for ever: no reset may change what X means. G97, or S would be a surface speed.
+MODES = ("G8", "G18", "G21", "G90", "G94", "G97", "G54")
+SILENT = frozenset(("G97",))  # modes that a controller without a variable spindle does not tell
+# What another host may have left behind, by how ``$G`` tells it, and the line that ends it.
+CURES = {"G96": "G97", "G51": "G50", "G43": "G49", "G92": "G92.1", "M50": "M48", "M51": "M48", "M53": "M53P1"}
 
 ESTOP, HOMING_REQUIRED = 10, 11
+LOCKED = 255  # ours: it is locked and tells no number
 LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
+CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before
 _ALARMS = {
     1: "hard limit: a slide has hit its switch",
     2: "soft limit: a block leaves the controller's travel",
@@ -25,26 +32,42 @@ _ALARMS = {
     9: "homing failed: no switch found",
     10: "E-stop",
     11: "homing required",
+    12: "a limit switch is pressed: move the slide off it",
+    13: "probe protection",
     14: "spindle: it does not turn, or its index is missing",
-    16: "power supply",
+    15: "homing failed: the second switch of an axis",
+    16: "its self-test has failed: firmware and board do not fit",
     17: "motor fault",
+    18: "homing failed",
     19: "Modbus: the spindle's inverter does not answer",
     20: "I/O expander",
+    LOCKED: "it is locked and says not why",
 }
 _ERRORS = {
     2: "bad number",
-    5: "this setting is disabled: homing is off in the controller ($22)",
+    3: "it does not know this line",
+    5: "this kind of homing is disabled in the controller ($22)",
     8: "only possible in Idle",
     9: "locked by an alarm or a jog",
+    10: "soft limits need homing",
     11: "line too long",
+    13: "its door is open",
     15: "jog target beyond the travel",
     16: "bad jog command",
+    18: "its reset input is active",
     20: "unsupported command",
     22: "no feed",
     33: "the arc's target is not on its circle",
-    39: "the controller has no such output",
+    39: "a value is out of range: no such output or input, or a thread without a lead",
     41: "the spindle does not turn",
-    79: "E-stop is active",
+    43: "lead times spindle speed is more than 0.9 of the Z axis' $112",
+    45: "a limit switch is pressed",
+    46: "it has to be homed first",
+    50: "E-stop is active",
+    51: "motor fault",
+    52: "the value is out of this setting's range",
+    53: "it has no such setting",
+    79: "a critical alarm stands: Reset first",
 }
 
 

@@ -8,13 +8,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class GrblAxis:
-    """One axis of the machine file; mm and seconds. ``wired``: the controller has it."""
+    """One axis of the machine file; mm and seconds. ``wired``: the controller has it.
+
+    ``here``: homing takes where the axis stands for this many mm from home, and nothing moves; None: the
+    controller looks for its switch.
+    """
 
     name: str
     vmax: float
     amax: float
     absolute: bool
     wired: bool
+    here: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +40,10 @@ class GrblInput:
 
 @dataclass(frozen=True, slots=True)
 class GrblConfig:
-    """The controller and what hangs on it. ``settings`` are written at each connection and read back."""
+    """The controller and what hangs on it. ``settings`` are written at each connection and read back.
+
+    ``own_spindle``: the controller turns it; else an inverter does, and the controller at most measures it.
+    """
 
     port: str
     baud: int
@@ -44,3 +52,4 @@ class GrblConfig:
     rpm_max: float
     outputs: Mapping[str, GrblOutput]
     inputs: Mapping[str, GrblInput]
+    own_spindle: bool = True

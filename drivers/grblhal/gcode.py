@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
 from core.block_port import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
 
 _LAST_NUMBER = 9_000_000
+_DOT = 0.002  # mm; see ``_arc``
 
 
 def number(value: float) -> str:
@@ -18,14 +22,17 @@ def line_number(ticket: int) -> int:
     return (ticket - 1) % _LAST_NUMBER + 1
 
 
-def line_of(op: BlockOp, ticket: int, rapid: float, feed_override: float) -> str:
+def line_of(
+    op: BlockOp, ticket: int, rapid: float, feed_override: float, origin: Mapping[str, float] | None = None
+) -> str:
     """The line of one block. ``rapid`` is the speed of G0 (mm/s), ``feed_override`` a fraction.
 
     A rapid slower than G0 goes out as a feed: the controller's rapid override knows three steps only. A feed
-    override above 1 speeds up no rapid.
+    override above 1 speeds up no rapid. ``origin`` is where home lies in the controller's own frame.
     """
     head = f"N{line_number(ticket)}"
-    to = f"X{number(op.x)}Z{number(op.z)}"
+    home = origin or {}
+    to = f"X{number(op.x + home.get('X', 0.0))}Z{number(op.z + home.get('Z', 0.0))}"
     match op:
         case RapidOp(rate=rate) if rate >= rapid * (1.0 - 1e-6):
             return f"{head}G0{to}"
@@ -33,17 +40,47 @@ def line_of(op: BlockOp, ticket: int, rapid: float, feed_override: float) -> str
             return f"{head}G1{to}{_feed(rate / max(feed_override, 1.0))}"
         case LineOp(feed=feed):
             return f"{head}G1{to}{_feed(feed)}"
-        case ThreadOp(lead=lead):
-            return f"{head}G33{to}K{number(lead)}"
+        case ThreadOp():
+            return f"{head}G33{to}K{number(_pitch(op))}"
         case ArcOp():
-            # Counted from Z+ to X+, which in the plane G18 is counter-clockwise.
-            way = "G3" if op.clockwise else "G2"
-            return f"{head}{way}{to}I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}{_feed(op.feed)}"
+            return f"{head}{_arc(op)}{to}{_centre(op)}{_feed(op.feed)}"
 
 
 def jog_line(letter: str, target: float, speed: float) -> str:
     """An absolute jog in machine coordinates."""
     return f"$J=G53G21G90{letter}{number(target)}{_feed(speed)}"
+
+
+def _arc(op: ArcOp) -> str:
+    """G2, G3, or G1 for a dot of an arc.
+
+    The angle counts from the plane's first axis Z to its second, X; the word is that of the way in which it
+    grows: G3 from Z+ to X+. An arc whose angle rounds to nothing, or to less, is a whole circle over there.
+    """
+    if _dot(op):
+        return "G1"
+    return "G3" if op.clockwise else "G2"
+
+
+def _dot(op: ArcOp) -> bool:
+    """Whether both ends are as good as one, and the arc is less than half a turn."""
+    if math.hypot(op.x - op.x0, op.z - op.z0) >= _DOT:
+        return False
+    turned = (op.z0 - op.cz) * (op.x - op.cx) - (op.x0 - op.cx) * (op.z - op.cz)  # sign as from Z+ to X+
+    return turned > 0.0 if op.clockwise else turned < 0.0
+
+
+def _centre(op: ArcOp) -> str:
+    """From the start, and a radius in G7 too."""
+    return "" if _dot(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
+
+
+def _pitch(op: ThreadOp) -> float:
+    """Along the way, as its K counts (``stepper.c`` compares angle times programmed rate with millimetres of
+    the block): a tapered thread goes further than its lead.
+    """
+    along = abs(op.z - op.z0)
+    return op.lead * math.hypot(op.x - op.x0, along) / along if along else op.lead
 
 
 def _feed(speed: float) -> str:

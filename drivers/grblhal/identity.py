@@ -21,6 +21,7 @@ class Identity(NamedTuple):
     options: frozenset[str]
     inputs: int  # auxiliary digital inputs
     outputs: int
+    letters: str = ""  # of its build: V variable spindle, M mist
 
     @property
     def lathe(self) -> bool:
@@ -35,7 +36,7 @@ def read_identity(lines: Iterable[str]) -> Identity:
         found = re.fullmatch(r"\[([A-Z ]+):(.*)\]", line)
         if found:
             told.setdefault(found[1], found[2])
-    sizes = told.get("OPT", "").split(",")[1:]
+    letters, *sizes = told.get("OPT", "").split(",")
     if "VER" not in told or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
         raise DriverError("what answers is no grblHAL: $I says neither [VER:…] nor [OPT:…,blocks,bytes,…]")
     blocks, buffer = int(sizes[0]), int(sizes[1])
@@ -47,4 +48,4 @@ def read_identity(lines: Iterable[str]) -> Identity:
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
     ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
     inputs, outputs = (*ports, 0, 0)[:2]
-    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs)
+    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters)

@@ -56,7 +56,7 @@ class GrblInputs:
         c, now = self._c, self._c.clock.now()
         if self._asked is not None:
             self._take(*self._asked)
-        elif self._order and self._blocks.quiet and c.ready and now >= self._next and c.stream.quiet:
+        elif self._order and now >= self._next and self._blocks.quiet and self._blocks.listens:
             name = self._order.pop(0)
             self._order.append(name)
             port = self._port(name)

@@ -58,7 +58,8 @@ class Jogs:
         if added < max(_LEAST, _ROOM * abs(self._velocity)) and self._ask is not None:
             return
         self._sent = self._wanted
-        self._ask = self._c.send(jog_line(self._axis, self._wanted, abs(self._velocity)))
+        target = self._wanted + self._c.origin.get(self._axis, 0.0)
+        self._ask = self._c.send(jog_line(self._axis, target, abs(self._velocity)))
 
     def rested(self) -> None:
         """The controller says that nothing is left."""

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 from core.ports import Clock, DriverError, MachinePorts, Stop
 from drivers.grblhal import scripts
-from drivers.grblhal.asking import speed_of
 from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.config import GrblConfig
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.inputs import GrblInputs, GrblStation, panel_of
-from drivers.grblhal.outputs import GrblIO, GrblSpindle
+from drivers.grblhal.outputs import GrblIO
 from drivers.grblhal.ports import GrblAxes
+from drivers.grblhal.spindle import GrblEncoder, GrblSpindle
 from drivers.grblhal.wire import Wire, open_wire
 
 _ROUND = 0.005  # s between two looks while it connects
@@ -38,8 +38,9 @@ class GrblMachine:
         self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
         self.blocks = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.blocks)
+        self.encoder = GrblEncoder(self.controller)
         self.inputs = GrblInputs(self.controller, self.blocks)
-        self.io = GrblIO(self.controller, self.inputs)
+        self.io = GrblIO(self.controller, self.blocks, self.inputs)
         self.axes = GrblAxes(self.controller, self.blocks, self.pump)
         self.blocks.terminals = self.io.able
         voided = self.controller.on_void
@@ -91,24 +92,41 @@ class GrblMachine:
             self.pump()
             self._clock.sleep_until(self._clock.now() + _ROUND)
 
-    def _slower(self) -> list[str]:
-        """Where the controller's own settings allow less than the machine file promises."""
+    def _unlike(self) -> list[str]:
+        """Where the controller's own settings are not what the machine file promises."""
         c = self.controller
-        told = [
-            f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
-            for axis in c.config.axes
-            if axis.wired and 0.0 < (speed := speed_of(c, axis.name)) < 0.99 * axis.vmax
-        ]
-        highest = float(c.settings.get(30, "0"))
-        if 0.0 < highest < c.config.rpm_max:
-            told.append(f"spindle: $30 allows {highest:g} rpm, the machine file {c.config.rpm_max:g}")
+        told = []
+        for axis in c.wired:
+            speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
+            if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
+                told.append(
+                    f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
+                )
+            if 0.0 < accel < 0.99 * axis.amax:
+                told.append(f"{axis.name}: the controller brakes with {accel:.0f} mm/s², not {axis.amax:.0f}")
+        if c.config.own_spindle and 0.0 < self.spindle.highest < c.config.rpm_max:
+            told.append(
+                f"spindle: $30 allows {self.spindle.highest:g} rpm, the machine file {c.config.rpm_max:g}"
+            )
         return told
+
+    def _homes(self) -> list[str]:
+        """Axes that must look for home on a controller whose homing is off."""
+        if self.controller.homing:
+            return []
+        names = [axis.name for axis in self.controller.wired if not axis.absolute and axis.here is None]
+        if not names:
+            return []
+        return [
+            f"{' and '.join(names)}: homing is off in the controller ($22=0); set $22 to 3 where there are"
+            " switches, else give the axis home = { method = 37 }: Home then takes the place where it stands"
+        ]
 
     def _warnings(self) -> list[str]:
         lacking = {name: self.io.lacking(name) for name in self.controller.config.outputs}
         told = [f"output {name}: {why}" for name, why in lacking.items() if why]
         told += [f"input {name}: {why}" for name, why in self.inputs.lacking().items()]
-        told += self._slower()
+        told += self._unlike() + self._homes()
         if "thread" not in self.blocks.caps:
             told.append("the controller reports no spindle encoder: threads are refused")
         return told

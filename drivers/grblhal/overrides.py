@@ -1,4 +1,4 @@
-"""Overrides: the controller only knows steps, so each is sent as reset and steps, and read back."""
+"""Overrides: the controller knows steps only. They go out from what it has told, and are read back."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Callable
 from drivers.grblhal import codes
 
 _APART = 0.1  # s between two corrections
-_TRIES = 8  # without effect: a fault
+_AGAIN = 2.5  # s without a word of the overrides, which every twentieth plain report carries at least
+_PATIENCE = 7.0  # s: then it does not take them
 Steps = tuple[int, int, int, int, int]
 _FEED: Steps = (codes.FEED_100, codes.FEED_UP_10, codes.FEED_DOWN_10, codes.FEED_UP_1, codes.FEED_DOWN_1)
 _SPINDLE: Steps = (
@@ -17,21 +18,32 @@ _SPINDLE: Steps = (
     codes.SPINDLE_UP_1,
     codes.SPINDLE_DOWN_1,
 )
+_RAPIDS = {100: codes.RAPID_100, 50: codes.RAPID_50, 25: codes.RAPID_25}
 LEAST, MOST = 10, 200  # per cent that the controller knows
 
 
-def steps_to(percent: int, steps: Steps = _FEED) -> bytes:
-    """Reset to 100 % and step to ``percent``; 15 bytes at most, which the controller takes together."""
-    reset, up_10, down_10, up_1, down_1 = steps
-    tens, ones = divmod(abs(percent - 100), 10)
+def steps_to(percent: int, told: int, steps: Steps = _FEED) -> bytes:
+    """From the ``told`` per cent to ``percent``.
+
+    By way of 100 % only where that lies in between: the reset acts at once, and slides that creep would leap.
+    So there are never more of them than its queue holds.
+    """
+    reset, *moves = steps
+    straight, over = _from(told, percent, moves), bytes([reset]) + _from(100, percent, moves)
+    crosses = (percent - 100) * (told - 100) <= 0
+    return over if crosses and len(over) < len(straight) else straight
+
+
+def _from(told: int, percent: int, moves: list[int]) -> bytes:
+    """Coarse steps, then fine ones; the other way round where a coarse one would be cut short at a limit."""
+    up_10, down_10, up_1, down_1 = moves
+    tens, ones = divmod(abs(percent - told), 10)
     tens, ones = (tens + 1, ones - 10) if ones > 5 else (tens, ones)
-    coarse, fine, back = (up_10, up_1, down_1) if percent > 100 else (down_10, down_1, up_1)
-    return bytes([reset, *[coarse] * tens, *[fine if ones > 0 else back] * abs(ones)])
-
-
-def spindle_steps_to(percent: int) -> bytes:
-    """The same for the spindle."""
-    return steps_to(percent, _SPINDLE)
+    sign = 1 if percent > told else -1
+    coarse, fine, back = (up_10, up_1, down_1) if sign > 0 else (down_10, down_1, up_1)
+    steps = [coarse] * tens, [fine if ones > 0 else back] * abs(ones)
+    fits = LEAST <= told + sign * 10 * tens <= MOST
+    return bytes([*steps[0], *steps[1]] if fits else [*steps[1], *steps[0]])
 
 
 def rapid_step(fraction: float) -> int:
@@ -50,42 +62,50 @@ class Overrides:
     def __init__(self, write: Callable[[bytes], None], fail: Callable[[str], None]) -> None:
         self._write = write
         self._fail = fail
-        self._last = -1.0
-        self._tries = 0
-        self.wanted = [100, 100, 100]  # per cent: feed, rapid, spindle
+        self._asked = [100, 100, 100]
+        self._sent_at, self._seen = -1.0, 0
+        self._since: float | None = None  # it has not been true
+        self.level = False  # a thread: at 100 % whatever is asked, for it would run beside its lead
+
+    @property
+    def wanted(self) -> list[int]:
+        """Per cent: feed, rapid, spindle."""
+        return [100, self._asked[1], 100] if self.level else self._asked
 
     def want(self, feed: float, rapid: float) -> None:
         """Fractions above 0."""
-        asked = [in_reach(feed), rapid_step(rapid)]
-        if asked != self.wanted[:2]:
-            self.wanted[:2], self._tries = asked, 0
+        self._asked[:2] = in_reach(feed), rapid_step(rapid)
 
     def want_spindle(self, percent: int) -> None:
         """Of the speed in its last S word."""
-        if percent != self.wanted[2]:
-            self.wanted[2], self._tries = percent, 0
+        self._asked[2] = percent
 
     def true_to(self, reported: tuple[int, ...] | None) -> bool:
         """Whether the controller does what is wanted."""
         return reported is not None and list(reported[:3]) == self.wanted
 
-    def correct(self, reported: tuple[int, ...] | None, now: float) -> None:
-        """Send what differs; not more often than the controller can report it."""
+    def correct(self, reported: tuple[int, ...] | None, told: int, now: float) -> None:
+        """Send what differs, from a word of the controller that is younger than what was sent.
+
+        ``told`` counts these words. One that does not come is asked for, by sending again.
+        """
         if reported is None or self.true_to(reported):
-            self._tries = 0 if reported is not None else self._tries
+            self._since = None
             return
-        if now - self._last < _APART * (1 + self._tries):
+        fresh = told > self._seen and now - self._sent_at >= _APART
+        if not fresh and now - self._sent_at < _AGAIN:
             return
-        self._last, self._tries = now, self._tries + 1
-        if self._tries > _TRIES:
+        self._since = now if self._since is None else self._since
+        if now - self._since > _PATIENCE:
             self._fail(
                 f"the controller does not take an override: {self.wanted} asked, {list(reported)} told"
             )
             return
+        self._sent_at, self._seen = now, told
+        self._write(self._steps(reported))
+
+    def _steps(self, reported: tuple[int, ...]) -> bytes:
         feed, rapid, spindle = self.wanted
-        data = steps_to(feed) if reported[0] != feed else b""
-        if reported[1] != rapid:
-            data += bytes([{100: codes.RAPID_100, 50: codes.RAPID_50, 25: codes.RAPID_25}[rapid]])
-        if len(reported) > 2 and reported[2] != spindle:
-            data += spindle_steps_to(spindle)
-        self._write(data)
+        data = steps_to(feed, reported[0])
+        data += bytes([_RAPIDS[rapid]]) if reported[1] != rapid else b""
+        return data + (steps_to(spindle, reported[2], _SPINDLE) if len(reported) > 2 else b"")

@@ -23,6 +23,7 @@ class GrblAxes:
         self._pump = pump
         self.axes = tuple(axis.name for axis in controller.config.axes)
         self._known = {axis.name: axis.absolute or not axis.wired for axis in controller.config.axes}
+        self._wired = {axis.name for axis in controller.wired}
         self._homing = ""
 
     def now(self) -> float:
@@ -47,7 +48,7 @@ class GrblAxes:
         c = self._c
         if c.fault or not c.trusted:
             self._homing = ""
-        if self._homing and not c.busy and c.ready:
+        if self._homing and not c.busy and (c.ready or c.is_homed(self._homing)):
             self._known[self._homing], self._homing = True, ""
         places = self._places()
         return AxisSample(
@@ -97,7 +98,10 @@ class GrblAxes:
             self._c.run(scripts.recover(self._c))
 
     def _is_known(self, name: str) -> bool:
-        return self._known[name] and self._c.trusted and self._homing != name
+        """The controller's own word counts where it homes; where it does not, the machine file's."""
+        told = self._c.is_homed(name)
+        known = self._known[name] if told is None or name not in self._wired else told
+        return known and self._c.trusted and self._homing != name
 
     def _places(self) -> tuple[float, ...]:
         places = [self._c.position.get(name, 0.0) for name in self.axes]

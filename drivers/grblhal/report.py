@@ -33,7 +33,10 @@ class Report(NamedTuple):
     @property
     def moves(self) -> bool:
         """Whether slides may be moving."""
-        return self.state in {"Run", "Jog", "Home"} or (self.state in {"Hold", "Door"} and self.sub != 0)
+        resting = {"Hold": (0,), "Door": (0, 1)}.get(
+            self.state
+        )  # a door that stands open, or is closed again
+        return self.state in {"Run", "Jog", "Home"} if resting is None else self.sub not in resting
 
     @property
     def measured(self) -> float | None:

@@ -7,34 +7,23 @@ from __future__ import annotations
 
 from core.ports import DriverError
 from drivers.grblhal import codes
-from drivers.grblhal.asking import (
-    ANSWER,
-    MISSED,
-    asked,
-    demand_axes,
-    demand_modes,
-    figure,
-    fresh,
-    full_report,
-    letters,
-    settings,
-    speed_of,
-)
+from drivers.grblhal.asking import ANSWER, asked, demand_axes, fresh, full_report, modes
+from drivers.grblhal.braking import reset, stop
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.identity import read_identity
 from drivers.grblhal.scripting import Script, ScriptError
+from drivers.grblhal.settings import settings
 
-_LATE = 0.4  # s, beyond its ramp, for a stop to be seen
-_BANNER = 3.0  # s that a reset takes
 _BOOT = 6.0  # s; some boards start when their port is opened
 _HOMING = 120.0
+_ALONE = 2  # of $22: one axis may be homed without the others
 
 
 def connect(c: Controller) -> Script:
     """From an open wire to verified modes; a controller in alarm stays there for the operator."""
     yield from full_report(c, _BOOT)
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
-        yield from _stop(c)
+        yield from stop(c)
     yield from fresh(c)
     try:
         c.identity = read_identity((yield from asked(c, "$I")))
@@ -42,10 +31,12 @@ def connect(c: Controller) -> Script:
         raise ScriptError(str(error)) from error
     demand_axes(c)
     c.stream.use(c.identity.buffer)
-    yield from settings(c)
+    number = _alarm_of(c)
+    if number not in codes.CRITICAL:
+        yield from settings(c)
     yield from full_report(c)
-    if c.report is not None and c.report.state == "Alarm":
-        number = c.report.sub or c.alarm
+    number = _alarm_of(c)
+    if number:
         c.alarm = number
         if number != codes.HOMING_REQUIRED:
             c.fail(codes.alarm_text(number))
@@ -56,11 +47,10 @@ def connect(c: Controller) -> Script:
 def verify(c: Controller) -> Script:
     """Send the modes, read them back, and see that positions are radii in a frame without offsets."""
     yield from fresh(c)
-    yield from asked(c, "".join(codes.MODES))
-    yield from demand_modes(c)
+    yield from modes(c)
     yield from full_report(c)
     if any(abs(offset) > 1e-9 for offset in c.offset):
-        yield from asked(c, "G10L2P1" + "".join(f"{letter}0" for letter in letters(c)))
+        yield from asked(c, "G10L2P1" + "".join(f"{letter}0" for letter in c.letters))
         yield from asked(c, "G92.1")
         yield from asked(c, "G49")
         yield from full_report(c)
@@ -75,11 +65,12 @@ def verify(c: Controller) -> Script:
 
 def abort(c: Controller) -> Script:
     """To rest, the queue void, the modes verified; the position is kept where the controller allows that."""
+    waits = c.index_wait
     c.void()
-    if c.report is not None and c.report.state == "Alarm":
+    if _alarm_of(c):
         return
-    yield from _stop(c)
-    if c.report is not None and c.report.state != "Alarm":
+    yield from stop(c, waits=waits)
+    if not _alarm_of(c):
         yield from verify(c)
 
 
@@ -90,25 +81,40 @@ def recover(c: Controller) -> Script:
     if c.report is not None and "E" in c.report.pins:
         raise ScriptError("E-stop is pressed at the controller: release it, then Reset")
     if c.report is not None and c.report.moves:
-        yield from _stop(c)
-    yield from _reset(c)
+        yield from stop(c)
+    yield from reset(c)
     yield from full_report(c)
-    if c.report is not None and c.report.state == "Alarm":
-        number = c.report.sub or c.alarm
-        if number == codes.HOMING_REQUIRED:
-            return
-        yield from fresh(c)
+    number = _alarm_of(c)
+    if number == codes.HOMING_REQUIRED:
+        return
+    yield from fresh(c)
+    if number:
         yield from asked(c, "$X")
+    yield from settings(c)
     yield from verify(c)
 
 
 def home(c: Controller, letter: str) -> Script:
-    """Look for the switch of one axis."""
+    """Look for the switch of one axis, or take where it stands for its home."""
+    axis = next(axis for axis in c.config.axes if axis.name == letter)
     yield from fresh(c)
-    yield from asked(c, f"$H{letter}", _HOMING)
+    if axis.here is not None:
+        yield from full_report(c)
+        c.origin[letter] = c.position[letter] + c.origin.get(letter, 0.0) - axis.here
+    elif not (axis.absolute and not c.homing):  # else the operator's word for where it is told to stand
+        yield from _look_for_switch(c, letter)
     yield from full_report(c)
-    if c.report is not None and c.report.state != "Alarm":
+    c.alarm = _alarm_of(c)  # with "homing on startup required" it stays locked until the last axis is homed
+    if not c.alarm:
         yield from verify(c)
+
+
+def _look_for_switch(c: Controller, letter: str) -> Script:
+    c.origin.pop(letter, None)
+    if not c.homing or c.homing & _ALONE:
+        yield from asked(c, f"$H{letter}", _HOMING)
+    elif not c.is_homed(letter):
+        yield from asked(c, "$H", _HOMING)  # all of them together, and the next finds itself homed
 
 
 def jog_end(c: Controller) -> Script:
@@ -122,46 +128,8 @@ def jog_end(c: Controller) -> Script:
     yield from verify(c)
 
 
-def _stop(c: Controller) -> Script:
-    """0x19 decelerates and keeps the position; where that does not end: hold, then reset."""
-    after = c.reports + 1  # one report may still be on its way from before
-    by = c.clock.now() + _stopping(c)
-    c.realtime(codes.STOP)
-
-    def rests() -> bool:
-        return c.reports > after and c.report is not None and c.report.state in {"Idle", "Alarm"}
-
-    yield lambda: rests() or c.clock.now() >= by, _stopping(c) + 1.0, MISSED
-    if rests():
-        return
-    c.realtime(codes.HOLD)
-    by = c.clock.now() + _stopping(c)
-    yield lambda: _held(c) or c.clock.now() >= by, _stopping(c) + 1.0, MISSED
-    yield from _reset(c)
-
-
-def _stopping(c: Controller) -> float:
-    """Seconds that the slowest slide takes to brake, by the controller's own figures where it tells them."""
-    wired = [axis for axis in c.config.axes if axis.wired]
-    ramps = [axis.vmax / axis.amax for axis in wired]
-    for axis in wired:
-        speed, accel = speed_of(c, axis.name), figure(c, 120, axis.name)
-        if speed and accel:
-            ramps.append(speed / accel)
-    return _LATE + max(ramps)
-
-
-def _held(c: Controller) -> bool:
-    return c.report is not None and c.report.state == "Hold" and not c.report.sub
-
-
-def _reset(c: Controller) -> Script:
-    """Soft reset, and its banner."""
-    before = c.banners
-    c.expect_reset()
-    c.realtime(codes.RESET)
-    yield (
-        lambda: c.banners > before,
-        _BANNER,
-        "the controller does not come back from its reset; is E-stop pressed?",
-    )
+def _alarm_of(c: Controller) -> int:
+    """The alarm that the last report tells, 0 without one."""
+    if c.report is None or c.report.state != "Alarm":
+        return 0
+    return c.report.sub or c.alarm or codes.LOCKED

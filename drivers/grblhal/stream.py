@@ -6,7 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-_RESERVE = 100  # bytes of its buffer that are never used
+# Bytes of its buffer that are never used. With 100 free ones the firmware's simulator takes nothing more from
+# its socket: a cycle start or a reset neither.
+_RESERVE = 128
 _LONGEST = 256  # bytes of a line
 
 
@@ -32,7 +34,7 @@ class Stream:
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
-        self.room = _RESERVE  # bytes that may be unanswered; the controller tells its buffer first
+        self.room = 100  # bytes that may be unanswered; the controller tells its buffer first
         self.waiting: deque[Ask] = deque()
         self.unanswered: deque[Ask] = deque()
         self.stale = False  # answers to lines that no longer count may still come

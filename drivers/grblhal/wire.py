@@ -1,8 +1,10 @@
-"""The wire to the controller: a serial device, a pseudo terminal or TCP. Nothing here waits but opening."""
+"""The wire to the controller: a serial device, a pseudo terminal or TCP. Only opening and closing wait."""
 
 from __future__ import annotations
 
+import re
 import socket
+from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
 from core.ports import DriverError
@@ -10,8 +12,8 @@ from core.ports import DriverError
 if TYPE_CHECKING:
     import serial
 
-_TCP = "tcp://"
-_OPENING = 3.0  # s
+_TCP = re.compile(r"(?:tcp|socket)://(?P<host>.*):(?P<number>\d+)/?")
+_OPENING, _CLOSING = 3.0, 0.5  # s
 
 
 class WireLostError(Exception):
@@ -28,14 +30,20 @@ class Wire(Protocol):
     def close(self) -> None: ...
 
 
-def open_wire(port: str, baud: int) -> Wire:
-    """A serial device by its path, or ``tcp://host:port``. Raises DriverError."""
-    if not port.startswith(_TCP):
-        return SerialWire(port, baud)
-    host, _, number = port.removeprefix(_TCP).rpartition(":")
-    if not host or not number.isdecimal():
+def tcp_address(port: str) -> tuple[str, int] | None:
+    """Host and number of ``tcp://…:…`` or ``socket://…:…``, None for a device. Raises DriverError."""
+    if "://" not in port:
+        return None
+    found = _TCP.fullmatch(port)
+    if found is None or not found["host"]:
         raise DriverError(f"{port}: expected tcp://host:port")
-    return TcpWire(host, int(number))
+    return found["host"].strip("[]"), int(found["number"])
+
+
+def open_wire(port: str, baud: int) -> Wire:
+    """A serial device by its path, or a TCP port. Raises DriverError."""
+    address = tcp_address(port)
+    return SerialWire(port, baud) if address is None else TcpWire(*address)
 
 
 class SerialWire:
@@ -108,5 +116,10 @@ class TcpWire:
             raise WireLostError(str(error)) from error
 
     def close(self) -> None:
-        """Hang up."""
+        """Hang up when the other end has said what it had to: its simulator ends when it writes to nobody."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_WR)
+            self._socket.settimeout(_CLOSING)
+            while self._socket.recv(4096):
+                continue
         self._socket.close()

@@ -76,6 +76,11 @@ class InverterSpindle:
         limit = self._config.rpm_max
         self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
+    @property
+    def asked(self) -> float:
+        """Rpm that the inverter has been told, signed."""
+        return self._attendant.want / self._config.hz_per_rpm
+
     def coast(self) -> None:
         """Over its line an inverter knows one stop, that of its ramp; to run free is what its STO is for."""
         self._attendant.want = 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import pytest
@@ -62,7 +63,18 @@ def test_a_slow_controller_makes_the_pieces_shorter() -> None:
 
 def test_a_thread_is_one_piece() -> None:
     (piece,) = pieces_of(block(Kind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
-    assert piece.op == ThreadOp(1.0, -98.0, 1.5)
+    assert piece.op == ThreadOp(1.0, 2.0, 1.0, -98.0, 1.5)
+
+
+def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
+    """Three quarters of a turn about Z 0.1, 5 ms long: from behind the centre to X+ of it, by X-."""
+    quick = block(Kind.ARC, x=0.1, z=0.1, cx=0.0, cz=0.1, clockwise=True, feed=100.0)
+    ops = [piece.op for piece in pieces_of(quick, FULL)]
+    assert len(ops) == 2
+    for op in ops:
+        assert isinstance(op, ArcOp)
+        start, end = complex(op.z0 - op.cz, op.x0 - op.cx), complex(op.z - op.cz, op.x - op.cx)
+        assert cmath.phase(end / start) == pytest.approx(3 * math.pi / 4)
 
 
 def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> None:

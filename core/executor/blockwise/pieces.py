@@ -19,6 +19,7 @@ from core.interpreter.blocks import Block, Kind
 
 LONGEST = 0.2  # s of a piece at its programmed speed
 _SHORTEST = 0.05  # mm; a slow feed is not cut up finer
+_WIDEST = 3.0  # radians
 
 
 class Piece(NamedTuple):
@@ -45,7 +46,8 @@ def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iter
         raise TroubleError("program", "this controller moves X and Z only", block.line)
     seconds = max(nominal(block), _way(block) / fastest)
     if block.kind is Kind.THREAD:
-        yield Piece(ThreadOp(block.mx, block.mz, block.feed), block, seconds)
+        start = block.x0 + block.offset_x, block.z0 + block.offset_z
+        yield Piece(ThreadOp(*start, block.mx, block.mz, block.feed), block, seconds)
         return
     n = _cuts(block, seconds)
     for i in range(n):
@@ -53,7 +55,11 @@ def pieces_of(block: Block, turning: Turning, fastest: float = math.inf) -> Iter
 
 
 def _cuts(block: Block, seconds: float) -> int:
-    return max(1, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(_way(block) / _SHORTEST)))
+    """An arc in parts of less than half a turn: the controller has ends and centre only, which do not tell a
+    whole turn from none.
+    """
+    least = math.ceil(abs(_sweep(block)[1]) / _WIDEST) if block.kind is Kind.ARC else 1
+    return max(least, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(_way(block) / _SHORTEST)))
 
 
 def _way(block: Block) -> float:

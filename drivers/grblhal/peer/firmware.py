@@ -1,76 +1,69 @@
-"""The look-alike's wire side: buffers, real-time bytes, reports, alarms, resets that lose modes."""
+"""The look-alike's wire side and states: buffers, real-time bytes, alarms, resets that lose modes."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 
 from core.ports import Clock
+from drivers.grblhal.peer.acts import act
 from drivers.grblhal.peer.program import Modes, Program
+from drivers.grblhal.peer.quirks import Quirks
+from drivers.grblhal.peer.registers import Registers
+from drivers.grblhal.peer.reports import Reports
 from drivers.grblhal.peer.slides import PeerBlock, Slides
+from drivers.grblhal.peer.steps import step
 from drivers.simulated.config import SimSpindle
 from drivers.simulated.drive_spindle import SpindleMotor
 
 _STEP = 0.001  # s
 _BANNER = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
-_INDEX = 5.0  # s that a thread waits for the index, answering nothing
-
-
-@dataclass(slots=True)
-class Quirks:
-    """What the real one does, or is made to do by a bad cable; each can be switched."""
-
-    encoder: bool = True
-    diameter: bool = False  # comes up in G7, as $N0=G7 would make it
-    index_missing: bool = False
-    outputs: int = 16
-    inputs: int = 8
-    lathe: bool = True
-    homing: bool = False
-    deaf: bool = False  # answers nothing
-    garble: list[bytes] = field(default_factory=list)  # instead of the next ``ok``s
-    stop_broken: bool = False  # 0x19 does nothing
+_BUFFER = 1023  # bytes for lines; one of the 1024 stays free
+_GATE = 100  # free bytes of it, with no more than which the simulator takes nothing from its socket
+_CRITICAL = frozenset((1, 2, 10, 17))
 
 
 class Firmware:
     """Bytes in by ``feed``, bytes out by ``take``; ``advance`` brings it up to the clock."""
 
-    def __init__(self, clock: Clock, quirks: Quirks | None = None, accel: float = 3000.0) -> None:
+    def __init__(self, clock: Clock, quirks: Quirks | None = None) -> None:
         self.clock = clock
         self.quirks = quirks or Quirks()
-        self.slides = Slides(accel, 100)
+        self.registers = Registers(self.quirks)
+        self.reports = Reports()
+        self.slides = Slides(self.registers, 100)
         self.spindle = SpindleMotor(SimSpindle())
         self.program = Program(self)
         self.outputs: dict[str, bool] = {}
         self.pins = ""
         self.inputs: dict[int, bool] = {}
         self.read: int | None = None  # what the last M66 has found
-        self.alarm = 11 if self.quirks.homing else 0
-        self.homed = not self.quirks.homing
+        self.homed = 0  # bit by axis
+        self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
+        self.blocking = False  # behind a critical alarm: nothing but a reset
+        self.door = False
         self.overflowed = 0  # bytes that did not fit
+        self.torn = 0  # how often moving slides have been stopped dead
         self.feed_percent, self.rapid_percent, self.spindle_percent = 100, 100, 100
         self.rpm = 0.0
-        self._rx = bytearray()
-        self._out = bytearray()
-        self._k = clock.now()
-        self._hold = False
-        self._stop = False
         self.jogs = False
-        self._index_since: float | None = None
-        self._homing_until: float | None = None
+        self.hold = False
+        self.paused = False  # spindle stopped in a hold
+        self._wire = bytearray()  # not yet taken from the socket
+        self.rx = bytearray()
+        self._out = bytearray()
+        self.k = clock.now()
+        self.cancels = False  # a jog
+        self.index_since: float | None = None
+        self.index_at = 0
+        self.homing: tuple[float, int] | None = None  # until, axes
 
     # --- the wire -----------------------------------------------------------------------------------------
 
     def feed(self, data: bytes) -> None:
         """Bytes from the host: real-time ones act at once, others wait their turn."""
         self.advance()
-        for byte in data:
-            if byte >= 0x80 or byte in {0x18, 0x19}:
-                self._realtime(byte)
-            elif len(self._rx) < 1024:
-                self._rx.append(byte)
-            else:
-                self.overflowed += 1
+        self._wire += data
+        self._take_in()
         self.program.pump()
 
     def take(self) -> bytes:
@@ -82,184 +75,142 @@ class Firmware:
     def advance(self) -> None:
         """Up to the clock."""
         now = self.clock.now()
-        while self._k + _STEP <= now + 1e-9:
-            self._k += _STEP
-            self.spindle.advance(self._k)
-            self._turn()
+        while self.k + _STEP <= now + 1e-9:
+            self.k += _STEP
+            self.spindle.advance(self.k)
+            step(self)
+            self._take_in()
             self.program.pump()
 
     @property
+    def rx_free(self) -> int:
+        """Bytes that still fit."""
+        return _BUFFER - len(self.rx)
+
+    @property
     def state(self) -> str:
-        """As the report says it."""
+        """What it is in."""
         if self.alarm:
             return f"Alarm:{self.alarm}"
-        if self._homing_until is not None:
+        if self.homing is not None:
             return "Home"
-        if self._hold:
+        if self.door:
+            return "Door:2" if self.slides.moving else "Door:1"
+        if self.hold:
             return f"Hold:{int(self.slides.moving)}"
         if self.slides.queue:
             return "Jog" if self.jogs else "Run"
         return "Idle"
 
-    def reset(self, *, by_host: bool = True) -> None:
-        """0x18, or its power: modes are lost, a moving slide's position too."""
-        moved = self.slides.moving or self._homing_until is not None
-        self._halt()
-        self.program.modes = Modes()
-        self._rx.clear()
-        if not by_host:
-            moved = False
-        self.alarm = 3 if moved else 11 if self.alarm == 11 else 0
-        self.say(_BANNER)
-        if moved:
-            self.say("ALARM:3\r\n")
+    def told_state(self, full: bool) -> str:
+        """As a report tells it: the number of an alarm is a matter of $10."""
+        numbered = full or int(self.registers[10]) & 0x400
+        return self.state if numbered else self.state.replace(f"Alarm:{self.alarm}", "Alarm")
+
+    @property
+    def waits(self) -> bool:
+        """Whether a thread waits for its index."""
+        return self.index_since is not None
+
+    @property
+    def reads(self) -> bool:
+        """Whether lines are read now."""
+        held = (self.hold or self.door) and not self.alarm
+        return not (self.waits or self.homing is not None or held)
+
+    @property
+    def commanded(self) -> float:
+        """Signed rpm that the spindle is told, within its settings."""
+        if not self.rpm or self.paused:
+            return 0.0
+        rpm = abs(self.rpm) * self.spindle_percent / 100.0
+        return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.rpm)
+
+    def reset(self) -> None:
+        """0x18: modes are lost, a moving slide's position too."""
+        if "E" in self.pins:
+            return
+        moved = self.slides.moving or self.homing is not None or self.index_since is not None
+        self.restart(moved)
 
     def raise_alarm(self, number: int) -> None:
         """Stops at once; the block stays in the planner."""
         self.alarm = number
+        self.torn += self.slides.moving
         self.slides.v = 0.0
+        self.index_since = None
+        self.blocking = number in _CRITICAL
+        if self.blocking:
+            self.rx.clear()
         self.say(f"ALARM:{number}\r\n")
 
     # --- for the program ----------------------------------------------------------------------------------
 
-    @property
-    def homing(self) -> bool:
-        """Whether it looks for its switches: no line is carried out."""
-        return self._homing_until is not None
-
-    def begin_homing(self) -> None:
+    def begin_homing(self, axes: int) -> None:
         """It takes half a second here."""
-        self._homing_until = self._k + 0.5
+        self.homing = self.k + 0.5, axes
 
     def next_line(self) -> str | None:
         """The next whole line of the buffer."""
-        if b"\n" not in self._rx:
+        if b"\n" not in self.rx:
             return None
-        line, _, rest = bytes(self._rx).partition(b"\n")
-        self._rx = bytearray(rest)
+        line, _, rest = bytes(self.rx).partition(b"\n")
+        self.rx = bytearray(rest)
         return line.decode("ascii", "replace").strip()
 
     def queue(self, block: PeerBlock) -> None:
-        """Into the planner."""
+        """Into the planner; nothing for a block without length."""
         if block.length > 0.0:
             self.slides.queue.append(block)
             self.jogs = block.jog
 
-    # --- inside -------------------------------------------------------------------------------------------
-
     def say(self, text: str) -> None:
+        """Out."""
         self._out += text.encode("ascii")
 
     def answer(self, error: int = 0) -> None:
+        """The answer for a line."""
         if not error and self.quirks.garble:
             self._out += self.quirks.garble.pop(0) + b"\r\n"
         else:
             self.say(f"error:{error}\r\n" if error else "ok\r\n")
 
-    def _halt(self) -> None:
+    def turn(self, rpm: float) -> None:
+        """Command the spindle."""
+        self.rpm = rpm
+        self.spindle.order(self.k, self.commanded)
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _take_in(self) -> None:
+        while self._wire and self.rx_free > _GATE and not (self.waits and self.quirks.mute):
+            byte = self._wire.pop(0)
+            if byte >= 0x80 or byte in {0x18, 0x19}:
+                act(self, byte)
+            else:
+                self.rx.append(byte)
+
+    def restart(self, moved: bool) -> None:
+        """Begin anew; ``moved``: the position is lost."""
+        self.torn += self.slides.moving
+        self.halt()
+        self.blocking = False
+        self.program.modes = Modes()
+        self.rx.clear()
+        self.feed_percent = self.rapid_percent = self.spindle_percent = 100
+        self.reports = Reports()
+        if moved:
+            self.alarm, self.homed = 3, 0
+            self.say("ALARM:3\r\n")
+        self.say(_BANNER)
+        if self.alarm:
+            self.say("[MSG:'$H'|'$X' to unlock]\r\n")
+
+    def halt(self) -> None:
+        """Everything ends at once."""
         self.slides.drop()
         self.program.drop()
-        self._hold = self._stop = self.jogs = self.slides.held = False
-        self._index_since = self._homing_until = None
+        self.hold = self.cancels = self.jogs = self.slides.held = self.paused = False
+        self.index_since = self.homing = None
         self.turn(0.0)
         self.outputs.update(flood=False, mist=False)
-        self.feed_percent = self.rapid_percent = self.spindle_percent = 100
-
-    def turn(self, rpm: float) -> None:
-        self.rpm = rpm
-        self.spindle.order(self._k, rpm * self.spindle_percent / 100.0)
-
-    def _turn(self) -> None:
-        """One step of the machine."""
-        slides = self.slides
-        if self._homing_until is not None:
-            if self._k >= self._homing_until:
-                self._homing_until, self.alarm, self.homed = None, 0, True
-                self.answer()
-            return
-        if self.alarm:
-            return
-        slides.feed, slides.rapid = self.feed_percent / 100.0, self.rapid_percent / 100.0
-        first = slides.queue[0] if slides.queue else None
-        if first is not None and self._wants_index(first):
-            return
-        if first is not None and first.per_rev and not first.thread and abs(self.spindle.speed) < 1.0:
-            self.raise_alarm(14)
-            return
-        slides.held = (self._hold or self._stop) and not (first is not None and first.thread)
-        slides.step(_STEP, abs(self.spindle.speed) / 60.0)
-        if self._stop and not slides.moving:
-            self._halt()
-            self.program.modes = Modes(radius=self.program.modes.radius)
-            self.say("[MSG:Stop]\r\n")
-        if not slides.queue:
-            self.jogs = False
-
-    def _wants_index(self, block: PeerBlock) -> bool:
-        """A thread begins at the second index from now; without one an alarm comes, and no answer before."""
-        if not block.thread or self.slides.v > 0.0:
-            return False
-        if self._index_since is None:
-            self._index_since, self._index_at = self._k, math.floor(abs(self.spindle.turns)) + 2
-        seen = not self.quirks.index_missing and abs(self.spindle.turns) >= self._index_at
-        if seen:
-            self._index_since = None
-            return False
-        if self._k - self._index_since > _INDEX:
-            self._index_since = None
-            self.raise_alarm(14)
-        return True
-
-    def _realtime(self, byte: int) -> None:
-        if byte in {0x80, 0x87}:
-            if self._index_since is None:
-                self._report(full=byte == 0x87)
-        elif byte == 0x18:
-            self.reset()
-        elif byte == 0x19 and not self.quirks.stop_broken:
-            self._rx.clear()
-            self.program.drop()
-            self._stop = not self.alarm
-        elif byte == 0x82:
-            self._hold = not self.alarm
-        elif byte == 0x81:
-            self._hold = self._hold and self.slides.moving
-        elif byte == 0x85:
-            self._rx.clear()
-            self._stop = self.jogs
-        elif 0x90 <= byte <= 0x9E:
-            self._override(byte)
-
-    def _override(self, byte: int) -> None:
-        tens = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
-        if byte == 0x90:
-            self.feed_percent = 100
-        elif byte in tens:
-            self.feed_percent = min(max(self.feed_percent + tens[byte], 10), 200)
-        elif byte in {0x95, 0x96, 0x97}:
-            self.rapid_percent = {0x95: 100, 0x96: 50, 0x97: 25}[byte]
-        elif byte == 0x99:
-            self.spindle_percent = 100
-        elif byte - 9 in tens:
-            self.spindle_percent = min(max(self.spindle_percent + tens[byte - 9], 10), 200)
-        self.turn(self.rpm)
-
-    def _report(self, *, full: bool) -> None:
-        scale = 2.0 if self.program.modes.radius == "G7" else 1.0
-        x, z = self.slides.place
-        text = (
-            f"<{self.state}|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{self.slides.free},{1024 - len(self._rx)}"
-        )
-        if self.slides.queue and self.slides.queue[0].number:
-            text += f"|Ln:{self.slides.queue[0].number}"
-        text += f"|FS:{60.0 * self.slides.v:.0f},{abs(self.rpm) * self.spindle_percent / 100.0:.0f}"
-        if self.quirks.encoder:
-            text += f",{abs(self.spindle.speed):.0f}"
-        text += f"|Pn:{self.pins}" if self.pins else ""
-        if full:
-            text += (
-                f"|WCO:0.000,0.000,0.000|Ov:{self.feed_percent},{self.rapid_percent},{self.spindle_percent}"
-            )
-            text += "" if self.read is None else f"|In:{self.read}"
-            text += f"|D:{int(self.program.modes.radius == 'G7')}|H:{int(self.homed)}|T:0|FW:grblHAL"
-        self.say(text + ">\r\n")

@@ -7,7 +7,11 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from drivers.grblhal.peer.registers import Registers
+
 Place = tuple[float, float]  # X as a radius, Z; mm
+Shape = tuple[float, Callable[[float], Place]]  # length, and distance to place
+_NOTHING = 5e-7  # radians
 
 
 @dataclass(slots=True)
@@ -24,7 +28,7 @@ class PeerBlock:
     jog: bool = False
 
 
-def straight(start: Place, end: Place) -> tuple[float, Callable[[float], Place]]:
+def straight(start: Place, end: Place) -> Shape:
     """Length and way of a line."""
     length = math.dist(start, end)
 
@@ -35,16 +39,26 @@ def straight(start: Place, end: Place) -> tuple[float, Callable[[float], Place]]
     return length, way
 
 
-def circle(
-    start: Place, end: Place, centre: Place, *, counter: bool
-) -> tuple[float, Callable[[float], Place]] | None:
-    """Length and way of an arc in the plane of Z and X; None when the end is not on it."""
+def circle(start: Place, end: Place, centre: Place, *, counter: bool) -> Shape | None:
+    """Length and way of an arc in the plane of Z and X; None when the end is not on it.
+
+    The angle from the start to the end counts from Z to X; one that is nothing, or goes the other way, is
+    made a turn more or less: so the arc that rounds to nothing becomes a whole circle.
+    """
     radius = math.dist(start, centre)
-    if abs(math.dist(end, centre) - radius) > 0.005:
+    off = abs(math.dist(end, centre) - radius)
+    if off > 0.005 and (off > 0.5 or off > 0.001 * radius):
         return None
-    first = math.atan2(start[0] - centre[0], start[1] - centre[1])
-    turned = (math.atan2(end[0] - centre[0], end[1] - centre[1]) - first) % math.tau
-    sweep = (turned or math.tau) if counter else (turned - math.tau)
+    (x0, z0), (x1, z1) = (
+        (start[0] - centre[0], start[1] - centre[1]),
+        (end[0] - centre[0], end[1] - centre[1]),
+    )
+    sweep = math.atan2(z0 * x1 - x0 * z1, z0 * z1 + x0 * x1)
+    if counter and sweep <= _NOTHING:
+        sweep += math.tau
+    elif not counter and sweep >= -_NOTHING:
+        sweep -= math.tau
+    first = math.atan2(x0, z0)
 
     def way(s: float) -> Place:
         angle = first + math.copysign(s / radius, sweep)
@@ -56,7 +70,7 @@ def circle(
 class Slides:
     """Advanced in small steps by the firmware; ``turns_per_s`` is the spindle's."""
 
-    def __init__(self, accel: float, capacity: int) -> None:
+    def __init__(self, registers: Registers, capacity: int) -> None:
         self.queue: deque[PeerBlock] = deque()
         self.capacity = capacity
         self.place: Place = (0.0, 0.0)
@@ -64,8 +78,13 @@ class Slides:
         self.feed = self.rapid = 1.0  # overrides
         self.held = False  # asked to stop
         self.travelled = 0.0  # mm since power-up
-        self._accel = accel
+        self._registers = registers
         self._s = 0.0
+
+    @property
+    def begun(self) -> bool:
+        """Whether the first block is under way, or held in the middle of it."""
+        return self._s > 0.0 or self.v > 0.0
 
     @property
     def free(self) -> int:
@@ -89,18 +108,21 @@ class Slides:
             return
         left = sum(block.length for block in self.queue) - self._s
         goal = 0.0 if self.held else self._speed(self.queue[0], turns_per_s)
-        change = self._accel * dt
+        accel = min(self._registers[120], self._registers[122])
+        change = accel * dt
         self.v = min(self.v + change, goal) if self.v < goal else max(self.v - change, goal)
-        self.v = min(self.v, math.sqrt(2.0 * self._accel * max(left, 0.0)) + 1e-3)
+        self.v = min(self.v, math.sqrt(2.0 * accel * max(left, 0.0)) + 1e-3)
         if self.held and self.v < 1.5 * change:
             self.v = 0.0
         self._go(self.v * dt)
 
     def _speed(self, block: PeerBlock, turns_per_s: float) -> float:
-        speed = block.speed * turns_per_s if block.per_rev else block.speed
-        if block.thread or block.jog:
-            return speed
-        return speed * (self.rapid if block.rapid else self.feed)
+        """A thread too is slowed by the feed override, beside its lead; a jog knows none."""
+        most = min(self._registers[110], self._registers[112]) / 60.0
+        speed = min(block.speed * turns_per_s if block.per_rev else block.speed, most)
+        if block.rapid:
+            return speed * self.rapid
+        return speed if block.jog else min(speed * self.feed, most)
 
     def _go(self, way: float) -> None:
         self._s, self.travelled = self._s + way, self.travelled + way

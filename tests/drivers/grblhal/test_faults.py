@@ -10,6 +10,13 @@ from core.ports import DriverError
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_run import LONG
 
+UNHOMED = (
+    (
+        "absolute = true                 # false",
+        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
+    ),
+    ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]"),
+)
 THREAD = "G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-.5I.025K.05\nG00Z1\nM30\n"
 
 
@@ -51,8 +58,6 @@ def test_a_reset_of_the_controller_ends_the_cycle_and_keeps_what_x_means() -> No
 
 def test_a_sticky_error_is_told_once_and_nothing_behind_it_runs() -> None:
     bench = cutting(GrblBench())
-    bench.peer.program.settings[32] = 0.0
-    bench.peer.quirks.lathe = False
     done = len(bench.peer.program.executed)
     bench.peer.program.error = 33  # as a line that it refuses leaves it
     bench.until(State.FAULT, limit=1.0)
@@ -196,21 +201,16 @@ def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None
 
 def test_a_controller_that_is_no_lathe_is_refused() -> None:
     with pytest.raises(DriverError, match=r"G8.*error:20"):
-        GrblBench(quirks=quirky(lathe=False))
+        GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0 }")), quirky(lathe=False))
 
 
 def test_settings_are_written_once_and_read_back() -> None:
     bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
-    assert bench.peer.program.settings[110] == 7620.0
+    assert bench.peer.registers[110] == 7620.0
 
 
 def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
-    x = (
-        "absolute = true                 # false",
-        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
-    )
-    z = ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]")
-    bench = GrblBench(grbl_machine(x, z), quirky(homing=True))
+    bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=True))
     bench.ready()
     bench.run(0.5)
     bench.load("G90G94F300\nX.3\nM30\n")
@@ -229,7 +229,7 @@ def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
 
 
 def test_homing_that_the_controller_does_not_know_is_told() -> None:
-    bench = GrblBench()
+    bench = GrblBench(grbl_machine(*UNHOMED))
     bench.ready()
     bench.run(0.5)
     bench.machine.axes.home("X")
@@ -239,10 +239,11 @@ def test_homing_that_the_controller_does_not_know_is_told() -> None:
 
 
 def test_an_override_that_is_not_taken_is_an_alarm() -> None:
-    bench = cutting(GrblBench())
-    bench.peer.__class__ = type("Stubborn", (type(bench.peer),), {"_override": lambda *_: None})
+    bench = GrblBench(quirks=quirky(stubborn=True))
+    bench.start("G90G94F300\nX.5Z.2\nG01Z-2F10\nM30\n")
+    bench.until_true(lambda shot: shot.line == 3)
     bench.post(FeedOverride(0.5))
-    bench.until(State.FAULT, limit=8.0)
+    bench.until(State.FAULT, limit=13.0)
     assert "override" in bench.alarms()
 
 

@@ -132,8 +132,8 @@ def test_reset_in_motion_brakes_and_starts_nothing() -> None:
     assert not bench.peer.slides.queue
 
 
-def test_a_stop_that_the_controller_does_not_know_falls_back_to_hold_and_reset() -> None:
-    bench = GrblBench(quirks=quirky(stop_broken=True))
+def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
+    bench = GrblBench(quirks=quirky(hold_broken=True))
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
@@ -141,11 +141,11 @@ def test_a_stop_that_the_controller_does_not_know_falls_back_to_hold_and_reset()
     bench.run(0.5)
     bench.wire.sent.clear()
     bench.post(Reset())
-    bench.until(State.IDLE, limit=8.0)
+    bench.until(State.FAULT, limit=8.0)
     sent = bytes(bench.wire.sent)
-    assert sent.index(0x19) < sent.index(0x82) < sent.index(0x18)
-    assert bench.peer.alarm == 0  # it was at rest when it was reset: the position is kept
-    assert bench.peer.program.modes.plane == "G18"
+    assert sent.index(0x82) < sent.index(0x18)
+    assert "ALARM:3" in bench.alarms()
+    assert not all(bench.shot.homed)
 
 
 def test_single_block_stops_behind_each_block() -> None:
