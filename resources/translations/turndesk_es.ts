@@ -69,6 +69,11 @@
       <translation>CARROS SIMULADOS · HUSILLO REAL</translation>
     </message>
     <message>
+      <location filename="app/compose/screen.py" />
+      <source>machine file: %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/desk/answers.py" />
       <source>NO START: %1</source>
       <translation>NO ARRANCA: %1</translation>
@@ -142,6 +147,11 @@
       <location filename="app/desk/arithmetic.py" />
       <source>the entry is longer than %1 characters; type the result</source>
       <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
+    </message>
+    <message>
+      <location filename="app/desk/changes.py" />
+      <source>THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -2544,6 +2554,56 @@
       <translation>compensaciones, versiones, ajustes</translation>
     </message>
     <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>ACCEPT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>ACCEPTED: THE DRIVES CAN BE SWITCHED ON</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>F2 accepts; the drives stay off until then.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>It is as it was accepted.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>MACHINE FILE</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>MACHINE FILE  ·  %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>PRESS F2 ONCE MORE TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/special/machine_file.py" />
+      <source>what has changed in it, to be accepted</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/desk/special/parts.py" />
       <source>%1 is no number of parts; type a whole number from 0 to %2</source>
       <translation>%1 no es un número de piezas; escriba un entero de 0 a %2</translation>
@@ -3857,6 +3917,11 @@
       <location filename="app/screen/offsets/seccmp.py" />
       <source>Secondary offset number:</source>
       <translation>Número de compensación secundaria:</translation>
+    </message>
+    <message>
+      <location filename="app/screen/offsets/table.py" />
+      <source>ALL 32 OFFSETS</source>
+      <translation>LAS 32 COMPENSACIONES</translation>
     </message>
     <message>
       <location filename="app/screen/offsets/table.py" />
@@ -5775,18 +5840,13 @@
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
-      <source>A Klartext program begins with its first block.</source>
-      <translation>Un programa Klartext empieza con su primer bloque.</translation>
+      <source>A %1 program begins with its first block.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none.</source>
       <translation>Un programa Klartext necesita una fresadora con X, Y y Z, y su [kinematics]; esta máquina no lo es.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/dialects.py" />
-      <source>A SINUMERIK program begins with its first block.</source>
-      <translation>Un programa SINUMERIK empieza con su primer bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />

@@ -13,8 +13,10 @@ from PySide6.QtTest import QTest
 from app.desk import pages
 from app.desk.offsets.book import OffsetBook
 from app.desk.session import Phase
+from app.screen.layout import FINGER
 from app.screen.offsets.seccmp import SeccmpPage
 from app.screen.offsets.tools import ToolsPage
+from app.screen.panel import Panel
 from core.executor.commands import FeedHold, LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
@@ -240,16 +242,59 @@ def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
 def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    hands.sees(lambda: bool(page.pad._places) and len(page.table._places) == 32)
-    row, _choose = page.table._places[16]  # the seventeenth: first of the right column
-    QTest.mouseClick(page.table, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, row.center().toTuple())))
+    hands.sees(lambda: bool(page.pad._places) and len(page.table._places) == 4)
+    touch(hands, page.table, 2)  # the upper half of the right column
+    assert page.model.dialogue.number == 0
+    assert page.table.near == 17
+    touch(hands, page.table, 0)
     assert page.model.dialogue.number == 17
+    assert page.table.near == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
         spot, _press = page.pad._places[key]
         QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
     hands.sees(lambda: 17 in page.table.offsets)
     assert store.secondary()[17].x == pytest.approx(0.1 * 25.4)
+
+
+def touch(hands: Hands, panel: Panel, place: int) -> None:
+    """A finger in the middle of a place, which is large enough for one; then what is shown now."""
+    hands.window.grab()
+    assert all(min(box.width(), box.height()) >= FINGER for box, _press in panel._places)
+    box, _press = panel._places[place]
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
+    hands.window.grab()
+
+
+@pytest.mark.parametrize(("zone", "first"), [(0, 1), (1, 9), (2, 17), (3, 25)])
+@pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
+def test_every_offset_is_reached_by_a_finger(
+    hands: Hands, store: Store, zone: int, first: int, size: tuple[int, int]
+) -> None:
+    hands.window.resize(*size)
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    for place in range(8):
+        touch(hands, page.table, zone)
+        touch(hands, page.table, place)
+        assert page.model.dialogue.number == first + place
+        hands.key(Key.Key_Escape)
+
+
+def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: Hands, store: Store) -> None:
+    hands.key(Key.Key_F9)
+    page = page_of(hands)
+    touch(hands, page.table, 1)
+    touch(hands, page.table, 8)  # ALL 32
+    assert (page.table.near, page.model.dialogue.number) == (0, 0)
+    touch(hands, page.table, 1)
+    hands.key(Key.Key_Escape)
+    assert page.table.near == 0
+    assert hands.frame.page is page
+    touch(hands, page.table, 3)
+    answer(hands, "7")  # typed all the same
+    hands.sees(lambda: page.table.near == 0)
+    assert page.model.dialogue.number == 7
 
 
 def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store: Store) -> None:
@@ -295,16 +340,7 @@ def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store
 def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     table = tools_of(hands).table
-    hands.sees(lambda: bool(table._places))
-
-    def touch(place: int) -> None:
-        box, _press = table._places[place]
-        QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
-        hands.window.grab()
-
-    touch(1)  # a page down
-    hands.sees(lambda: (tools_of(hands).model.number, table.top) == (9, 2))
-    hands.window.grab()
-    touch(2 + 8 * 7 + 4)  # the last row that is shown, wear X
-    hands.sees(lambda: tools_of(hands).asked.asked.question == "T9  WEAR X Ø?")
-    assert all(min(box.width(), box.height()) >= 27 for box, _press in table._places)
+    touch(hands, table, 1)  # a page down
+    hands.sees(lambda: (tools_of(hands).model.number, table.top) == (6, 2))
+    touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X
+    hands.sees(lambda: tools_of(hands).asked.asked.question == "T6  WEAR X Ø?")

@@ -17,7 +17,7 @@ from core.executor.snapshot import Snapshot
 from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
 COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-PAGE = 8  # rows that are shown, and that Page up and Page down go
+PAGE = 5  # rows that are shown, each of a finger's height, and that Page up and Page down go
 _MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
 

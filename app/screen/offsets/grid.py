@@ -1,4 +1,4 @@
-"""F8's table: eight of the 32 tools, each field a cell that a finger or the cursor chooses."""
+"""F8's table: some of the 32 tools, each field a cell that a finger or the cursor chooses."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ from app.screen.panel import Panel
 from core.store.rows import OFFSETS
 
 NUMBER, SCROLL = 5.4, 7.4  # units: width of the column of numbers, of the arrows that leaf
+HEAD = 3.2  # units: height of the names of the columns
 # Widths of the columns in parts of what is left.
 SHARES = {
     "x": 15.0,
     "z": 14.0,
     "nose_radius": 11.5,
-    "quadrant": 6.6,
+    "quadrant": 8.6,
     "wear_x": 14.0,
     "wear_z": 13.0,
     "master": 9.6,
-    "remark": 19.0,
+    "remark": 17.0,
 }
 
 
@@ -63,7 +64,7 @@ class GridTable(Panel):
         self._model.typed("Up" if event.angleDelta().y() > 0 else "Down")
 
     def draw(self, painter: QPainter) -> None:
-        look, u, model = self.look, self.look.u, self._model
+        u, model = self.look.u, self._model
         mode = model.ledger.mode
         x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
         title = f"{tr('TOOL OFFSETS')}  ·  {tr('MM') if mode.metric else tr('INCH')}  ·  {x}"
@@ -71,24 +72,24 @@ class GridTable(Panel):
             title += "  ·  " + tr("X AND Z FROM THE MASTER T{number}").format(number=model.book.master)
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
-        high = room.height() / (PAGE + 1)
-        self._leaf(
-            painter,
-            QRectF(
-                room.right() - (SCROLL - 0.6) * u, room.y() + high, (SCROLL - 0.6) * u, room.height() - high
-            ),
-        )
-        room.setRight(room.right() - SCROLL * u)
-        columns = self._columns(room)
+        head = QRectF(room.x(), room.y(), room.width() - SCROLL * u, HEAD * u)
+        strip = room.adjusted(room.width() - (SCROLL - 0.6) * u, HEAD * u, 0, 0)
+        self._leaf(painter, strip)
+        columns = self._columns(head)
+        self._head(painter, head, columns)
+        high = strip.height() / PAGE
+        for place in range(PAGE):
+            row = QRectF(head.x(), head.bottom() + place * high, head.width(), high)
+            self._row(painter, row, self.top + place, columns)
+
+    def _head(self, painter: QPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
+        look, u, mode = self.look, self.look.u, self._model.ledger.mode
         painter.setPen(look.colour("soft"))
         for name, (left, wide) in columns.items():
             mark = marked(name, mode)
             text = f"{word(name)} {mark}" if mark else word(name)
             painter.setFont(look.fit(text, 1.5, wide - 0.6 * u, bold=True))
-            put(painter, QRectF(left, room.y(), wide - 0.4 * u, high), CENTRE, text)
-        for place in range(PAGE):
-            row = QRectF(room.x(), room.y() + (place + 1) * high, room.width(), high)
-            self._row(painter, row, self.top + place, columns)
+            put(painter, QRectF(left, head.y(), wide - 0.4 * u, head.height()), CENTRE, text)
 
     def _leaf(self, painter: QPainter, strip: QRectF) -> None:
         """Two large arrows: a page up and a page down."""

@@ -33,6 +33,18 @@ class SeccmpPage(OffsetPage):
         """Figures, signs, and C."""
         return key in CHARACTERS or key == "C"
 
+    def escape(self) -> bool:
+        """Eight offsets that were brought near go back first."""
+        if self.table.near:
+            self.table.bring_near(0)
+            return True
+        return super().escape()
+
+    def leave(self) -> bool:
+        """The whole table stands here the next time."""
+        self.table.bring_near(0)
+        return super().leave()
+
     def show_offsets(self) -> None:
         """The table and the question as they are now."""
         model, dialogue = self.model, self.model.dialogue

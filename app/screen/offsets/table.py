@@ -1,4 +1,4 @@
-"""Thirty-two secondary offsets in two columns of sixteen."""
+"""Thirty-two secondary offsets in two columns of sixteen; a finger has eight of them brought near first."""
 
 from __future__ import annotations
 
@@ -12,17 +12,23 @@ from PySide6.QtWidgets import QWidget
 from app.desk.formats import length
 from app.desk.offsets.figures import Mode, signed
 from app.desk.words import tr
-from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Panel
 from core.store.rows import SecondaryRow
 
 ROWS = 16
+NEAR = 8  # offsets that are shown large: half a column
+BAR = 6.8  # units: a finger's height
 # Shares of a column: where the number, and each letter with its figure, end.
 _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
 class OffsetTable(Panel):
-    """Each row is a target for a finger. The row being changed is filled, the last changed has a bar."""
+    """The row being changed is filled, the last changed has a bar.
+
+    Sixteen rows leave a row a third of a finger's width, so that a finger on the table brings the eight
+    offsets around it near, and the next one chooses.
+    """
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -31,11 +37,14 @@ class OffsetTable(Panel):
         self._number = 0
         self._marked: frozenset[int] = frozenset()
         self._mode = Mode()
+        self.near = 0  # the first number of those that are shown large; 0: all are shown
 
     def show_offsets(
         self, offsets: Mapping[int, SecondaryRow], number: int, marked: Collection[int], mode: Mode
     ) -> None:
         """The table, the row that is being changed (0: none), those changed last, and the unit."""
+        if number:
+            self.bring_near(0)
         shown = (offsets, number, frozenset(marked), mode)
         if shown != (self.offsets, self._number, self._marked, self._mode):
             self.offsets, self._number, self._marked, self._mode = shown
@@ -45,15 +54,44 @@ class OffsetTable(Panel):
         unit = tr("MM") if self._mode.metric else tr("INCH")
         self.frame(painter, f"{tr('SECONDARY OFFSETS  ·  X STORED AS A RADIUS')}  ·  {unit}")
         room = self.inside().adjusted(-0.6 * self.look.u, 0, 0.6 * self.look.u, 0.4 * self.look.u)
-        high, gap = room.height() / ROWS, 2.0 * self.look.u
-        wide = (room.width() - gap) / 2
-        for number in range(1, 2 * ROWS + 1):
-            column, row = divmod(number - 1, ROWS)
-            box = QRectF(room.x() + column * (wide + gap), room.y() + row * high, wide, high)
-            self._row(painter, box, number)
-            self.place(box, partial(self._choose, number))
+        if self.near:
+            self._draw_near(painter, room)
+        else:
+            self._draw_all(painter, room)
 
-    def _row(self, painter: QPainter, box: QRectF, number: int) -> None:
+    def bring_near(self, first: int) -> None:
+        """Show eight offsets from this one on large, 0: all of them."""
+        if first != self.near:
+            self.near = first
+            self.update()
+
+    def _draw_all(self, painter: QPainter, room: QRectF) -> None:
+        for number, box in enumerate(_boxes(room, ROWS, 2.0 * self.look.u), start=1):
+            self._row(painter, box, number, 1.0)
+        for at, box in enumerate(_boxes(room, ROWS // NEAR, 2.0 * self.look.u)):
+            self.place(box, partial(self.bring_near, at * NEAR + 1))
+
+    def _draw_near(self, painter: QPainter, room: QRectF) -> None:
+        look, u = self.look, self.look.u
+        bar = QRectF(room.x(), room.bottom() - BAR * u, room.width(), BAR * u)
+        rows = room.adjusted(0, 0, 0, -(BAR + 0.6) * u)
+        for number, box in enumerate(_boxes(rows, NEAR // 2, 0.8 * u), start=self.near):
+            spot = box.adjusted(0, 0, 0, -0.6 * u)
+            painter.fillRect(spot, look.colour("key"))
+            self._row(painter, spot, number, 1.25)
+            self.place(spot, partial(self._choose_near, number))
+        painter.fillRect(bar, look.colour("key"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.2, bold=True))
+        put(painter, bar, CENTRE, tr("ALL 32 OFFSETS"))
+        self.place(bar, partial(self.bring_near, 0))
+
+    def _choose_near(self, number: int) -> None:
+        self.bring_near(0)
+        self._choose(number)
+
+    def _row(self, painter: QPainter, box: QRectF, number: int, size: float) -> None:
+        """``size``: of the letters, 1 where all are shown."""
         look, u = self.look, self.look.u
         here = number == self._number
         if here:
@@ -62,12 +100,12 @@ class OffsetTable(Panel):
             painter.fillRect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), look.colour("lit"))
         offset = self.offsets.get(number)
         painter.setPen(look.colour("accent"))
-        painter.setFont(look.font(1.9, bold=True))
+        painter.setFont(look.font(1.9 * size, bold=True))
         wide = box.width()
         put(painter, QRectF(box.x(), box.y(), _NUMBER * wide - u, box.height()), RIGHT, str(number))
-        self._figures(painter, box, offset or SecondaryRow(), bold=here or offset is not None)
+        self._figures(painter, box, offset or SecondaryRow(), size, bold=here or offset is not None)
 
-    def _figures(self, painter: QPainter, box: QRectF, offset: SecondaryRow, bold: bool) -> None:
+    def _figures(self, painter: QPainter, box: QRectF, offset: SecondaryRow, size: float, bold: bool) -> None:
         x, z, r = offset
         metric, wide = self._mode.metric, box.width()
         cells = (
@@ -78,14 +116,24 @@ class OffsetTable(Panel):
         u = self.look.u
         for letter, figure, left, right in cells:
             at = QRectF(box.x() + left * wide, box.y(), (right - left) * wide - 1.2 * u, box.height())
-            self._cell(painter, at, letter, figure, bold)
+            self._cell(painter, at, letter, figure, size, bold)
 
-    def _cell(self, painter: QPainter, at: QRectF, letter: str, figure: str, bold: bool) -> None:
+    def _cell(self, painter: QPainter, at: QRectF, letter: str, figure: str, size: float, bold: bool) -> None:
         look, u = self.look, self.look.u
         painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.8, bold=True))
-        put(painter, QRectF(at.x(), at.y(), 2.4 * u, at.height()), LEFT, letter)
+        painter.setFont(look.font(1.8 * size, bold=True))
+        put(painter, QRectF(at.x(), at.y(), 2.4 * size * u, at.height()), LEFT, letter)
         painter.setPen(look.colour("text" if bold else "soft"))
-        room = at.adjusted(2.4 * u, 0, 0, 0)
-        painter.setFont(look.fit(figure, 2.0, room.width(), bold=bold))
+        room = at.adjusted(2.4 * size * u, 0, 0, 0)
+        painter.setFont(look.fit(figure, 2.0 * size, room.width(), bold=bold))
         put(painter, room, RIGHT, figure)
+
+
+def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
+    """Two columns of so many rows, downwards first."""
+    high, wide = room.height() / rows, (room.width() - gap) / 2
+    return [
+        QRectF(room.x() + column * (wide + gap), room.y() + row * high, wide, high)
+        for column in range(2)
+        for row in range(rows)
+    ]

@@ -158,7 +158,7 @@ def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
     assert gridwords.old_to_new(grid) == "−0.50000  →  +1.00000"
     assert grid.escape()
     grid.typed("Page down")
-    assert grid.number == 9
+    assert grid.number == 6
     assert not grid.escape()
 
 
