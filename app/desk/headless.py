@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, LoadJob, SetSwitch
+from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, LoadJob, SetSwitch
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
 
 TICK = 0.01  # s between two looks at the machine
 PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
+HOMING = 120.0  # s of machine time for all axes; ten inches at a slow 6 in/min are 100
 _PRESSES = 10  # of Cycle Start at one stop, .2 s apart
 UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
@@ -67,12 +68,23 @@ class HeadlessRun:
     def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
         """The whole run of one cycle."""
         self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
+        self._home()
         self._executor.post(SetSwitch("optional_stop", optional_stop))
         self._executor.post(LoadJob(job, proof))
         self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused))
         if self._executor.snapshot.state in UNDER_WAY:
             return self._watch()
         return self._ended()
+
+    def _home(self) -> None:
+        """Axes that do not know where they are look for it first, as an operator would have them do."""
+        snapshot = self._executor.snapshot
+        lost = [name for name, homed in zip(snapshot.axes, snapshot.homed, strict=True) if not homed]
+        if not lost or snapshot.state is not State.IDLE:
+            return
+        self._say(f"homing {', '.join(lost)}")
+        self._until(lambda s: s.state is State.HOME, Home(), tries=20)
+        self._wait(lambda s: s.state is not State.HOME, tries=round(HOMING / TICK))
 
     def _start(self, reached: Callable[[Snapshot], bool]) -> None:
         if self._palms is None:
