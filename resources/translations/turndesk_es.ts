@@ -1081,7 +1081,7 @@
     <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
-      <translation type="unfinished" />
+      <translation>HAY UNA ENTRADA ABIERTA: EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1106,12 +1106,12 @@
     <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>THE HANDWHEEL IS OFF</source>
-      <translation type="unfinished" />
+      <translation>EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE</source>
-      <translation type="unfinished" />
+      <translation>EL VOLANTE ESTÁ DESCONECTADO: EL TECLADO SE FUE A OTRA PARTE</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -1241,7 +1241,7 @@
     <message>
       <location filename="app/desk/jogging/notices.py" />
       <source>THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS</source>
-      <translation type="unfinished" />
+      <translation>EL VOLANTE MUEVE {axis}: UN CLIC ES UN PASO; V PARA EL EJE SIGUIENTE</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/notices.py" />
@@ -1326,22 +1326,22 @@
     <message>
       <location filename="app/desk/jogging/wheel.py" />
       <source>THE HANDWHEEL IS OFF: {why}</source>
-      <translation type="unfinished" />
+      <translation>EL VOLANTE ESTÁ DESCONECTADO: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/wheel.py" />
       <source>THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF</source>
-      <translation type="unfinished" />
+      <translation>LA PANTALLA ESTUVO AUSENTE: EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/wheel.py" />
       <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
-      <translation type="unfinished" />
+      <translation>EL CONMUTADOR DEL PUESTO ELIGE EL EJE DEL VOLANTE</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/wheel.py" />
       <source>THIS MACHINE HAS NO HANDWHEEL</source>
-      <translation type="unfinished" />
+      <translation>ESTA MÁQUINA NO TIENE VOLANTE</translation>
     </message>
     <message>
       <location filename="app/desk/keep.py" />
@@ -3766,12 +3766,12 @@
     <message>
       <location filename="app/screen/jog/pad.py" />
       <source>WHEEL</source>
-      <translation type="unfinished" />
+      <translation>VOLANTE</translation>
     </message>
     <message>
       <location filename="app/screen/jog/pad.py" />
       <source>WHEEL {axis}</source>
-      <translation type="unfinished" />
+      <translation>VOLANTE {axis}</translation>
     </message>
     <message>
       <location filename="app/screen/jog/pad.py" />
@@ -4656,67 +4656,67 @@
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>a click is longer than 0 and no longer than %1, not %2</source>
-      <translation type="unfinished" />
+      <translation>un clic es mayor que 0 y no mayor que %1, no %2</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>a key or finger came while it was turned</source>
-      <translation type="unfinished" />
+      <translation>se pulsó una tecla o la pantalla mientras giraba</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>handwheel: %1</source>
-      <translation type="unfinished" />
+      <translation>volante: %1</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>it moves nothing in state %1</source>
-      <translation type="unfinished" />
+      <translation>no mueve nada en el estado %1</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>it needs a lease above 0</source>
-      <translation type="unfinished" />
+      <translation>necesita un plazo mayor que 0</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>it was turned while a key or finger was held</source>
-      <translation type="unfinished" />
+      <translation>se giró mientras se mantenía una tecla o un dedo</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>its counts leap: check its cable</source>
-      <translation type="unfinished" />
+      <translation>su cuenta salta: revise el cable</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>its enabling switch is not held</source>
-      <translation type="unfinished" />
+      <translation>no se mantiene su pulsador de habilitación</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>key and handwheel at once move nothing</source>
-      <translation type="unfinished" />
+      <translation>tecla y volante a la vez no mueven nada</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>the page that asked for it was silent</source>
-      <translation type="unfinished" />
+      <translation>la página que lo pedía calló</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>the station's switch does not select %1</source>
-      <translation type="unfinished" />
+      <translation>el conmutador del puesto no elige %1</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>this machine has none</source>
-      <translation type="unfinished" />
+      <translation>esta máquina no tiene ninguno</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>turned faster than %1 goes; clicks are dropped</source>
-      <translation type="unfinished" />
+      <translation>gira más deprisa de lo que va %1; se pierden clics</translation>
     </message>
     <message>
       <location filename="core/executor/homing.py" />
