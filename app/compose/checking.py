@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from app.compose.backends import connect, played, real_time
 from app.compose.inverter import has_inverter
+from app.compose.shop_floor import try_shop_floor
 from core.machine.model import Axis, Machine
 from core.machine.units import Unit, shown
 from core.ports import Clock, DriverError, MachinePorts, StationState
@@ -51,7 +52,23 @@ def check_ports(machine: Machine) -> Answers:
     except DriverError as error:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
+    _ask_shop_floor(machine, answers)
     return answers
+
+
+def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
+    """Whether agents would find the adapter, and take its model."""
+    model = machine.hardware.mtconnect
+    if model is None or not model.enabled:
+        return
+    at = f"{model.bind}:{model.port}"
+    try:
+        try_shop_floor(machine, model)
+    except DriverError as error:
+        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
+        answers.trouble.append(str(error))
+    else:
+        answers.rows.append(Row("mtconnect", at, "ok", f"device {model.device}"))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:

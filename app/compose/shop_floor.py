@@ -17,6 +17,7 @@ from drivers.mtconnect.adapter import Adapter, Settings, utc_now
 from drivers.mtconnect.items import Category, Component, Layout, machine_items
 from drivers.mtconnect.keeper import Keeper
 from drivers.mtconnect.lines import Active, Report, stamp
+from drivers.mtconnect.listening import listening
 from drivers.mtconnect.probe import devices_xml
 from drivers.simulated import RealClock
 
@@ -38,6 +39,12 @@ def open_shop_floor(
         tell(str(error))
         return _nothing
     return keeper.close
+
+
+def try_shop_floor(machine: Machine, model: MtconnectModel) -> None:
+    """Open the port and close it again, make the model and throw it away. Raises DriverError."""
+    listening(model.bind, model.port).close()
+    device_model(machine, utc_now())
 
 
 def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path) -> Callable[[], None]:

@@ -85,11 +85,11 @@ class Adapter:
     def turn(self, patience: float = 0.0) -> None:
         """Whatever is to be done now; waits at most ``patience`` s, or until the next look, for it."""
         left = max(self._next_look - self._clock.now(), 0.0)
-        for key, events in self._selector.select(min(patience, left)):
+        for key, _ in self._selector.select(min(patience, left)):
             if key.data is None:
                 self._welcome()
             else:
-                self._serve(key.data, events)
+                self._serve(key.data)
         if self._clock.now() >= self._next_look:
             self.look()
 
@@ -117,8 +117,6 @@ class Adapter:
             link.flush()
         except LostError as lost:
             self._lose(link, lost)
-        else:
-            self._watch(link)
 
     def _welcome(self) -> None:
         assert self._door is not None
@@ -136,20 +134,12 @@ class Adapter:
         self._selector.register(wire, selectors.EVENT_READ, link)
         self._tell(link, self._told.whole(stamp(self._utc())).encode("utf-8"))
 
-    def _serve(self, link: AgentLink, events: int) -> None:
+    def _serve(self, link: AgentLink) -> None:
         try:
-            if events & selectors.EVENT_READ:
-                link.read(self._clock.now())
+            link.read(self._clock.now())
             link.flush()
         except LostError as lost:
             self._lose(link, lost)
-        else:
-            self._watch(link)
-
-    def _watch(self, link: AgentLink) -> None:
-        """Be told when the wire takes more, as long as something waits."""
-        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if link.pending else 0)
-        self._selector.modify(link.wire, wanted, link)
 
     def _lose(self, link: AgentLink, why: LostError) -> None:
         self.counts.lost += 1

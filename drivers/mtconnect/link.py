@@ -28,11 +28,6 @@ class AgentLink:
         self._in = b""
         self._out = bytearray()
 
-    @property
-    def pending(self) -> bool:
-        """Whether something waits to be sent."""
-        return bool(self._out)
-
     def put(self, data: bytes) -> None:
         """Queue it. Raises LostError for an agent that has not taken what was sent before."""
         if len(self._out) + len(data) > BEHIND:
@@ -40,7 +35,7 @@ class AgentLink:
         self._out += data
 
     def flush(self) -> None:
-        """Send what the wire takes now. Raises LostError."""
+        """Send what the wire takes now; the rest waits for the next look. Raises LostError."""
         try:
             sent = self.wire.send(self._out)
         except BlockingIOError:

@@ -323,3 +323,31 @@ def test_a_model_of_an_adapter_that_is_off_says_so(turndesk: Turndesk, tmp_path:
     told = turndesk("machine", "mtconnect", machine_file(tmp_path, 7878, enabled="false"))
     assert told.status == 0
     assert "enabled = false" in told.err
+
+
+# --- machine check ---------------------------------------------------------------------------------------
+
+
+def test_machine_check_tries_the_port(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("machine", "check", machine_file(tmp_path, port := free_port()))
+    assert told.status == 0
+    assert re.search(rf"mtconnect +127.0.0.1:{port} +ok +device GT75", told.out)
+    socket.create_server(("127.0.0.1", port)).close()  # and has let it go
+
+
+def test_machine_check_names_a_port_that_is_taken(turndesk: Turndesk, tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        told = turndesk("machine", "check", machine_file(tmp_path, other.getsockname()[1]))
+    assert told.status == 1
+    assert "cannot be opened" in told.err
+
+
+def test_machine_check_names_a_device_that_no_agent_takes(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("machine", "check", machine_file(tmp_path, free_port(), device='"GT 75"'))
+    assert told.status == 1
+    assert "device = 'GT 75'" in told.err
+
+
+def test_machine_check_does_not_speak_of_what_is_off(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("machine", "check", machine_file(tmp_path, free_port(), enabled="false"))
+    assert (told.status, "mtconnect" in told.out) == (0, False)

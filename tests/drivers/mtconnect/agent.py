@@ -63,7 +63,7 @@ class FakeAgent:
             self._heard = self.clock.now()
             *lines, self._rest = (self._rest + come).split(b"\n")
             for line in lines:
-                self._line(line.decode("utf-8").rstrip())
+                self.hear(line.decode("utf-8").rstrip())
         self._beat()
 
     def hang_up(self) -> None:
@@ -95,7 +95,8 @@ class FakeAgent:
             self._pinged = now
             self.send(b"* PING\n")
 
-    def _line(self, line: str) -> None:
+    def hear(self, line: str) -> None:
+        """One line."""
         self.lines.append(line)
         if self._swallowing:
             self._swallowing = "" if line == self._swallowing else self._swallowing

@@ -142,6 +142,8 @@ def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(bench: Bench)
     looks = 0
     while bench.adapter.agents == 2:
         bench.values["block"] = f"N{looks} " + "X" * 240
+        if looks % 50 == 0:
+            slow.send(b"* PING\n")  # it is there, and it is not its silence that ends it
         bench.look()
         looks += 1
         assert looks < 40 * BEHIND // 240
