@@ -16,6 +16,8 @@ from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segme
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
 _NOTES = 50
+_STANDS = 5.0  # rpm
+_RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
 
 
 class Driven(Protocol):
@@ -38,7 +40,8 @@ class Feeder:
     """``handle`` one message, ``tick`` between them. All by one thread.
 
     A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
-    outputs go to their safe states. ``orphaned``: it will never speak again; at rest the drives go off too.
+    outputs go to their safe states. ``orphaned``: it will never speak again; at rest the drives go off too,
+    and once the spindle stands the feeder is done.
     """
 
     def __init__(
@@ -51,6 +54,7 @@ class Feeder:
         self._refresh = dict(refresh or {})
         self._heard = self._ports.clock.now()
         self._parted = False
+        self._parted_at = 0.0
         self._latest = 0.0  # s, the worst lateness so far
         self._notes: list[str] = []
         self.orphaned = False
@@ -116,9 +120,12 @@ class Feeder:
             self._parted = True
             self._note("the control is silent: spindle stopped, outputs safe")
             self._carefully(lambda: self._ports.spindle.run(0.0), self._ports.io.safe)
+            self._parted_at = axes.now()
         if self.orphaned and not self.done:
             self._carefully(lambda: axes.stop(Stop.RAMP_OFF))
-            self.done = True
+            # Closing takes the spindle's power: while it turns it would run on unbraked.
+            waited = axes.now() - self._parted_at
+            self.done = abs(self._ports.spindle.speed()) < _STANDS or waited > _RUNS_DOWN
 
     def _carefully(self, *steps: Callable[[], None]) -> None:
         for step in steps:

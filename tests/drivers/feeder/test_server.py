@@ -97,6 +97,34 @@ def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
     assert not bench.sim.ports.axes.sample().enabled
 
 
+def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
+    bench.ports.spindle.run(3000.0)
+    bench.alone(0.19)
+    for _ in range(20):
+        bench.ports.axes.sample()
+        bench.alone(0.19)
+    assert bench.sim.machine.spindle_rpm() == pytest.approx(3000.0, abs=30.0)
+    bench.line.close()
+    bench.alone(1.0)  # 3000 rpm at 2500 rpm/s take 1.2 s
+    assert not bench.feeder.done
+    assert bench.sim.machine.spindle_rpm() > 5.0
+    bench.alone(0.5)
+    assert bench.feeder.done
+    assert abs(bench.sim.machine.spindle_rpm()) < 5.0
+
+
+def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
+    bench.ports.spindle.run(600.0)
+    bench.alone(0.1)
+    bench.sim.machine.spindle_ignores_stop()
+    bench.ports.axes.sample()
+    bench.line.close()
+    bench.alone(7.9)
+    assert not bench.feeder.done
+    bench.alone(0.3)
+    assert bench.feeder.done
+
+
 def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
     assert bench.ports.warnings == ("without real-time priority",)
 
