@@ -54,11 +54,12 @@ class Controller(Hearing):
         self._sees_overrides = on
 
     def question(self, *, full: bool = False) -> None:
-        """Ask for a status report."""
+        """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
         self.realtime(codes.FULL if full else codes.STATUS)
         now = self.clock.now()
         self.asked_at = now if self.asked_at is None else self.asked_at
-        self._next_question = now + self._interval()
+        if not (full and self._sees_overrides):
+            self._next_question = now + self._interval()
 
     def pump(self) -> None:
         """Read, go on, watch. Never waits, never raises."""
