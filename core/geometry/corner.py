@@ -74,6 +74,11 @@ def _shortened(before: Line, after: Line, set_back: float) -> tuple[Line, Line]:
     return Line(before.start, first), Line(last, after.end)
 
 
+def _left(element: Element) -> float:
+    """What must be left of an element, mm: an arc whose ends are one point would be a full circle."""
+    return SAME_POINT if isinstance(element, Arc) else -SAME_POINT
+
+
 def rounding(before: Element, after: Element, radius: float) -> tuple[Element, Arc, Element]:
     """As ``fillet``, between lines and arcs: the centre is where both, moved aside by ``radius``, meet.
 
@@ -94,8 +99,8 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
     fitting = [
         (before.length - end + start, end, start, centre)
         for end, start, centre in touched
-        if -SAME_POINT <= end <= before.length + SAME_POINT
-        and -SAME_POINT <= start <= after.length + SAME_POINT
+        if _left(before) <= end <= before.length + SAME_POINT
+        and -SAME_POINT <= start <= after.length - _left(after)
     ]
     if not fitting:
         raise CornerError("no arc of that radius touches both between their ends")

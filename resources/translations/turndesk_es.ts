@@ -4785,6 +4785,11 @@
     </message>
     <message>
       <location filename="core/executor/jog.py" />
+      <source>the spindle's drive becomes C: let go, and begin again in two seconds</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/executor/jog.py" />
       <source>this machine has no axis %1 to jog</source>
       <translation>esta máquina no tiene eje %1 que mover a mano</translation>
     </message>
@@ -5094,6 +5099,26 @@
       <translation>el husillo gira a %1 rpm</translation>
     </message>
     <message>
+      <location filename="core/geometry/bevel.py" />
+      <source>the chamfer would cross one of them</source>
+      <translation>el chaflán cruzaría uno de ellos</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/bevel.py" />
+      <source>the next one runs straight back</source>
+      <translation>el siguiente vuelve directamente atrás</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/bevel.py" />
+      <source>they are too short for a chamfer of that length</source>
+      <translation>son demasiado cortos para un chaflán de esa longitud</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/bevel.py" />
+      <source>they go on in one direction</source>
+      <translation>siguen en una misma dirección</translation>
+    </message>
+    <message>
       <location filename="core/geometry/corner.py" />
       <source>line itself</source>
       <translation>línea misma</translation>
@@ -5127,11 +5152,6 @@
       <location filename="core/geometry/corner.py" />
       <source>the next line runs straight back</source>
       <translation>la línea siguiente regresa sobre sí misma</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/corner.py" />
-      <source>they go on in one direction</source>
-      <translation>siguen en una misma dirección</translation>
     </message>
     <message>
       <location filename="core/geometry/frames.py" />
@@ -7240,13 +7260,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>Give another end point.</source>
-      <translation>Dé otro punto final.</translation>
+      <source>CHF, CHR and RND take G1, G2 and G3.</source>
+      <translation>CHF, CHR y RND admiten G1, G2 y G3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>RND takes G1, G2 and G3; CHF and CHR take G1.</source>
-      <translation>RND lleva G1, G2 y G3; CHF y CHR llevan G1.</translation>
+      <source>Give another end point.</source>
+      <translation>Dé otro punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
@@ -7260,28 +7280,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>line or arc</source>
-      <translation>recta o arco</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
       <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
       <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>straight line</source>
-      <translation>recta</translation>
+      <source>the block is no line or arc</source>
+      <translation>el bloque no es recta ni arco</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>the block is no %1</source>
-      <translation>el bloque no es %1</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
-      <source>the next move, on line %1, is no %2 of X and Z</source>
-      <translation>el movimiento siguiente, en la línea %1, no es %2 de X y Z</translation>
+      <source>the next move, on line %1, is no line or arc of X and Z</source>
+      <translation>el próximo movimiento, en la línea %1, no es recta ni arco de X y Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/corners.py" />

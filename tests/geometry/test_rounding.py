@@ -104,3 +104,11 @@ def test_one_that_is_too_large_for_the_inside_of_an_arc(radius: float) -> None:
     check(spoke, bowl, 2.4)
     with pytest.raises(CornerError):
         rounding(spoke, bowl, radius)
+
+
+def test_a_rounding_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
+    """The rounding of 2 touches the ball where it is asked to end: nothing of it would be left."""
+    line = Line((0.0, 30.0), (0.0, 10.0))
+    touch = 10.0 / 12.0 * 2.0, 10.0 / 12.0 * math.sqrt(140.0)
+    with pytest.raises(CornerError, match="no arc of that radius"):
+        rounding(line, arc_between((0.0, 10.0), touch, (0.0, 0.0), clockwise=True), 2.0)

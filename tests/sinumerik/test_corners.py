@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import dist, pi, sqrt
+from math import asin, cos, dist, pi, sin, sqrt
 
 import pytest
 
@@ -86,10 +86,10 @@ def test_lines_in_one_direction_have_no_corner() -> None:
         ("G1 Z-20 F100 CHF=4", "corner-next"),
         ("G1 Z-20 F100 CHF=4\nM30", "corner-next"),
         ("G1 Z-20 F100 CHF=4\nC=IC(5)", "corner-next"),
-        ("G1 Z-20 F100 CHF=4\nG3 X40 Z-30 CR=10", "corner-next"),
         ("G1 Z-20 F100 RND=60\nG3 X40 Z-30 CR=10", "corner-next"),
         ("G0 Z-20 CHF=4\nX60", "corner-next"),
-        ("F100 G3 X40 Z-10 CR=10 CHR=1\nG1 Z-30", "corner-next"),
+        ("F100 G3 X40 Z-10 CR=10 CHR=15\nG1 X60", "corner-too-large"),
+        ("F100 G3 X40 Z-10 CR=10 CHF=30\nG1 X60", "corner-next"),
         ("G1 Z-20 F100 RND=25\nX60", "corner-too-large"),
         ("G1 Z-20 F100 RND=4\nX22", "corner-too-large"),
         ("G1 Z-20 F100 RND=4 CHF=1\nX22", "corner-both"),
@@ -120,3 +120,40 @@ def test_a_rounding_behind_an_arc_over_a_change_of_offsets() -> None:
     assert quarter.kind is arc.kind is Kind.ARC
     assert (arc.mx, arc.mz) == pytest.approx((last.x0 + 2, last.z0 - 3))
     assert (last.mx, last.mz) == pytest.approx((27, -5))
+
+
+def test_a_chamfer_from_a_cylinder_into_a_ball_worked_out() -> None:
+    """Along Z to the pole side of a quarter of 10: the leg is 3 along the line and a chord of 3 on the arc.
+
+    The quarter runs from (10, -20) to (20, -30) about (10, -30), and the chord spans 2 asin(.15) of it.
+    """
+    first, cut, quarter, _ = good("G1 Z-20 C90 F100 CHR=3\nG3 X40 Z-30 CR=10 C=IC(30)\nG1 Z-40", AT)
+    angle = 2 * asin(0.15)
+    assert (first.x, first.z) == pytest.approx((10, -17))
+    assert (quarter.x0, quarter.z0) == pytest.approx((10 + 10 * sin(angle), -30 + 10 * cos(angle)))
+    assert (cut.x, cut.z) == pytest.approx((quarter.x0, quarter.z0))
+    assert cut.kind is Kind.FEED
+    assert quarter.kind is Kind.ARC
+    assert (quarter.cx, quarter.cz) == pytest.approx((10, -30))
+    assert [b.c - b.c0 for b in (first, cut, quarter)] == pytest.approx([90, 0, 30])
+
+
+@pytest.mark.parametrize("length", [0.5, 2.0, 5.0])
+def test_a_chamfer_beside_an_arc_is_as_long_as_chf_says_and_its_legs_are_equal(length: float) -> None:
+    first, cut, quarter, _ = good(f"G1 Z-20 F100 CHF={length}\nG3 X40 Z-30 CR=10\nG1 Z-40", AT)
+    assert way(cut) == pytest.approx(length, abs=1e-9)
+    assert dist((quarter.x0, quarter.z0), (10, -20)) == pytest.approx(-20 * -1 + first.z, abs=1e-9)
+
+
+def test_a_chamfer_between_two_arcs_over_a_change_of_offsets() -> None:
+    text = "F100 G3 X40 Z-10 CR=10 CHR=2\nTRANS Z-3 X2\nG3 X56 Z-17 CR=10"
+    one, cut, other = good(text, AT)
+    assert one.kind is other.kind is Kind.ARC
+    assert cut.kind is Kind.FEED
+    assert dist((one.mx, one.mz), (20, -10)) == pytest.approx(2)
+    assert dist((other.mx - other.x + other.x0, other.mz - other.z + other.z0), (20, -10)) == pytest.approx(2)
+
+
+def test_a_tangent_arc_has_no_corner() -> None:
+    passed = run("G1 Z-20 F100 CHF=1\nG2 X40 Z-30 CR=10", AT)
+    assert [each.code for each in passed.found] == ["corner-straight"]

@@ -1,13 +1,13 @@
-"""CHF, CHR and RND: a chamfer between two lines, a rounding between lines and arcs. C ends with the first."""
+"""CHF, CHR and RND: chamfers and roundings between lines and arcs. C ends with the first."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from math import cos
 
-from core.geometry.contour import Element, Line, turn
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, rounding
+from core.geometry.bevel import bevel, leg_of
+from core.geometry.contour import Element, Line
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, rounding
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.log import Log
@@ -18,27 +18,18 @@ from core.interpreter.sinumerik.travel import Way
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.words import Word
 
-_STRAIGHT = frozenset({Kind.FEED, Kind.RAPID})
-_ROUNDED = _STRAIGHT | {Kind.ARC}
+_CUT = frozenset({Kind.FEED, Kind.RAPID, Kind.ARC})  # what may meet in a corner
 
 
 @dataclass(slots=True)
 class Corner:
-    """What a block asks for at its end; ``size`` in mm: CHF the chamfer, CHR its leg, RND the radius."""
+    """What a block asks for at its end; ``size`` in mm: CHF the chamfer, CHR its leg (beside an arc a chord),
+    RND the radius.
+    """
 
     made: Statement
     word: Word
     size: float
-
-    @property
-    def kinds(self) -> frozenset[Kind]:
-        """What may meet in it."""
-        return _ROUNDED if self.word.name == "RND" else _STRAIGHT
-
-    @property
-    def between(self) -> str:
-        """The same in words."""
-        return "line or arc" if self.word.name == "RND" else "straight line"
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
@@ -51,9 +42,9 @@ def corner_of(state: State, made: Statement, block: Block) -> Corner | None:
     if word is None:
         return None
     corner = Corner(made, word, positive(made, word, state.length(made, word), "the size of a corner"))
-    if block.kind not in corner.kinds - {Kind.RAPID} or not _moves(block):
-        hint = "RND takes G1, G2 and G3; CHF and CHR take G1."
-        raise corner.refuse("corner-next", f"the block is no {corner.between}", hint)
+    if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
+        hint = "CHF, CHR and RND take G1, G2 and G3."
+        raise corner.refuse("corner-next", "the block is no line or arc", hint)
     if state.plane != 18:
         raise corner.refuse("corner-plane", "corners of X and Z need G18", "Write G18 before it.")
     return corner
@@ -98,8 +89,8 @@ class Corners:
             raise held.corner.refuse("corner-next", "no move follows", "A corner needs two moves in a row.")
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
-        if after.kind not in held.corner.kinds or not _moves(after):
-            why = f"the next move, on line {after.line}, is no {held.corner.between} of X and Z"
+        if after.kind not in _CUT or not _moves(after):
+            why = f"the next move, on line {after.line}, is no line or arc of X and Z"
             raise held.corner.refuse("corner-next", why, "A corner needs two moves in a row.")
         block, (dx, dz) = held.block, _shift(held.block, after)
         first, last = element_of(block), element_of(_moved(after, dx, dz))
@@ -126,13 +117,10 @@ class Corners:
         yield from self.take(there, corner)
 
     def _elements(self, corner: Corner, first: Element, last: Element) -> tuple[Element, Element, Element]:
-        if not isinstance(first, Line) or not isinstance(last, Line) or corner.word.name == "RND":
+        if corner.word.name == "RND":
             return rounding(first, last, corner.size)
-        leg = corner.size
-        if corner.word.name == "CHF" and first.length and last.length:
-            # The chamfer and its two legs are a triangle of two equal sides: chf = 2 leg cos(turn / 2).
-            leg /= 2.0 * max(abs(cos(turn(first.end_direction, last.start_direction) / 2)), 1e-9)
-        return chamfer(first, last, leg)
+        leg = leg_of(first, last, corner.size) if corner.word.name == "CHF" else corner.size
+        return bevel(first, last, leg)
 
     def _along(self, block: Block, element: Element) -> Block:
         """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
@@ -158,7 +146,7 @@ class Corners:
 
     def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
         of = held.block if problem.first else after
-        left = Line((of.x0, of.z0), (of.x, of.z)).length
+        left = element_of(of).length
         why = f"it takes {problem.needed:.4f} mm of the move on line {of.line}, which has {left:.4f} mm"
         return held.corner.refuse("corner-too-large", why, "Make it smaller.")
 

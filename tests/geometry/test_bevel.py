@@ -1,0 +1,124 @@
+"""Chamfers beside arcs: on both ways, of equal straight legs, cutting the corner and nothing else."""
+
+from __future__ import annotations
+
+import random
+from math import asin, cos, dist, pi, sin
+
+import pytest
+
+from core.geometry.bevel import bevel, leg_of
+from core.geometry.contour import Arc, Element, Line, arc_between, turn
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer
+
+LONG = Line((0.0, 90.0), (0.0, 10.0))
+LINE = Line((0.0, 30.0), (0.0, 10.0))
+BALL = arc_between((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+
+
+def test_two_lines_are_cut_as_ever() -> None:
+    one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
+    assert bevel(one, other, 3.0) == chamfer(one, other, 3.0)
+    assert leg_of(one, other, 3.0) == pytest.approx(3.0 / 2**0.5)
+
+
+def test_a_line_onto_a_ball_worked_out() -> None:
+    """On the circle of 10 a chord of 4 spans 2 asin(.2)."""
+    first, cut, last = bevel(LINE, BALL, 4.0)
+    angle = 2 * asin(0.2)
+    assert first == Line((0.0, 30.0), (0.0, 14.0))
+    assert last.start == pytest.approx((10 * sin(angle), 10 * cos(angle)))
+    assert cut == Line(first.end, last.start)
+    assert last.end == BALL.end
+
+
+def test_random_pairs() -> None:
+    dice, made = random.Random(7), 0
+    for _ in range(3000):
+        before, after = _way(dice).reversed(), _way(dice)
+        leg = dice.uniform(0.01, 3.0)
+        try:
+            first, cut, last = bevel(before, after, leg)
+        except CornerError:
+            continue
+        made += 1
+        assert dist(first.end, (0.0, 0.0)) == pytest.approx(leg, abs=1e-9)
+        assert dist(last.start, (0.0, 0.0)) == pytest.approx(leg, abs=1e-9)
+        for part, whole in ((first, before), (last, after)):
+            if isinstance(part, Arc) and isinstance(whole, Arc):
+                assert part.radius == pytest.approx(whole.radius, abs=1e-9)
+                assert abs(part.sweep) < abs(whole.sweep)
+        corner = turn(before.end_direction, after.start_direction)
+        if first.length > 1e-3 and last.length > 1e-3:
+            assert turn(first.end_direction, cut.start_direction) * corner > 0
+            assert turn(cut.end_direction, last.start_direction) * corner > 0
+    assert made > 1000
+
+
+def test_the_leg_of_a_length_makes_it() -> None:
+    dice, made = random.Random(11), 0
+    for _ in range(1000):
+        before, after = _way(dice).reversed(), _way(dice)
+        length = dice.uniform(0.01, 2.0)
+        try:
+            _, cut, _ = bevel(before, after, leg_of(before, after, length))
+        except CornerError:
+            continue
+        made += 1
+        assert cut.length == pytest.approx(length, abs=1e-7)
+    assert made > 300
+
+
+def _way(dice: random.Random) -> Element:
+    """From the origin."""
+    if dice.random() < 0.4:
+        angle = dice.uniform(-pi, pi)
+        return Line((0.0, 0.0), (5 * sin(angle), 5 * cos(angle)))
+    radius, at, sweep = dice.uniform(1, 9), dice.uniform(-pi, pi), dice.uniform(0.2, 5.0)
+    clockwise = dice.random() < 0.5
+    centre = radius * sin(at), radius * cos(at)
+    turned = at + pi + (sweep if clockwise else -sweep)
+    end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
+    return Arc((0.0, 0.0), end, centre, clockwise)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "leg", "first"),
+    [
+        (LINE, BALL, 15.0, False),  # a quarter of 10 has a chord of 14.14
+        (LONG, BALL, 21.0, False),  # longer than the circle is wide
+        (Line((0.0, 12.0), (0.0, 10.0)), BALL, 3.0, True),
+        (LONG, Arc(BALL.start, BALL.start, BALL.centre, clockwise=True), 20.5, False),
+    ],
+)
+def test_what_is_too_short_is_named(before: Element, after: Element, leg: float, first: bool) -> None:
+    with pytest.raises(CornerTooLargeError) as caught:
+        bevel(before, after, leg)
+    assert caught.value.first is first
+
+
+def test_a_chamfer_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
+    with pytest.raises(CornerTooLargeError):
+        bevel(LINE, BALL, dist(BALL.start, BALL.end))
+
+
+def test_a_tangent_has_no_corner() -> None:
+    with pytest.raises(NoCornerError):
+        bevel(Line((-5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
+
+
+def test_straight_back_is_no_corner_either() -> None:
+    with pytest.raises(CornerError, match="straight back"):
+        bevel(Line((5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
+
+
+def test_a_chamfer_that_would_cross_the_arc_is_refused() -> None:
+    """A blunt corner onto an arc that bends back under the chamfer."""
+    before = Line((-4.0, 10.5), (0.0, 10.0))
+    with pytest.raises(CornerError, match="would cross"):
+        bevel(before, BALL, 3.0)
+
+
+def test_a_length_that_fits_nowhere() -> None:
+    with pytest.raises(CornerError, match="too short"):
+        leg_of(LINE, BALL, 60.0)
