@@ -94,4 +94,6 @@ class StatusKeeper:
             while not self._closing.wait(_LOOK):
                 self._file.show(self._look())
         finally:
+            if not self._closing.is_set():
+                _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)
             self._file.show(self._gone)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 
 from drivers.mtconnect.adapter import LOOK, Adapter
 
 _BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
+
+_log = logging.getLogger(__name__)
 
 
 class Keeper:
@@ -39,4 +42,6 @@ class Keeper:
                 self._adapter.turn(LOOK)
             self._adapter.look()  # how it ended is worth knowing too
         finally:
+            if not self._closing.is_set():
+                _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
             self._adapter.close()

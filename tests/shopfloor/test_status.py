@@ -140,11 +140,14 @@ def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_mistake_in_it_leaves_a_file_that_says_so(tmp_path: Path) -> None:
+def test_a_mistake_in_it_leaves_a_file_that_says_so(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     def look() -> Status:
         raise RuntimeError("a mistake of our own")
 
     keeper = StatusKeeper(StatusFile(tmp_path / "status.json", Hours()), look, {"available": False})
     keeper.start()
-    keeper.close()
+    for thread in threading.enumerate():
+        if thread.name == "status":
+            thread.join()
     assert read(tmp_path / "status.json")["available"] is False
+    assert "RuntimeError: a mistake of our own" in caplog.text

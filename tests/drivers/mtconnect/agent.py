@@ -41,6 +41,7 @@ class FakeAgent:
         self.wire = socket.socket()
         if self.receive:
             self.wire.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.receive)
+        self.wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as the C++ agent does
         self.wire.settimeout(5.0)
         self.wire.connect(address)
         self.send(b"* PING\n")

@@ -79,7 +79,7 @@ def test_a_port_that_is_taken_leaves_no_thread() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_should_it_fail_agents_are_hung_up_on() -> None:
+def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) -> None:
     """Then they say UNAVAILABLE by themselves instead of showing what was true once."""
     machine = Machine()
     one = adapter(machine)
@@ -91,3 +91,4 @@ def test_should_it_fail_agents_are_hung_up_on() -> None:
         all_of(wire)
     keeper.close()
     assert not keeper.alive
+    assert "RuntimeError: a mistake of our own" in caplog.text
