@@ -8,6 +8,7 @@ from core.ports import Clock, DriverError, MachinePorts, Spindle, Stop
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
+from drivers.canopen.coupling import SpindleC
 from drivers.canopen.drive import Drive402
 from drivers.canopen.encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.spindle import CanopenSpindle, NoSpindle
@@ -33,6 +34,7 @@ class CanopenMachine:
             if self.spindle is not None:
                 self.axes.clearing.append(self.spindle.clear_fault)
             self.encoder = self._encoder(drives)
+            self.c = self._spindle_c()
             self._connect()
         except DriverError:
             self.bus.close()
@@ -45,6 +47,13 @@ class CanopenMachine:
         encoder = CanEncoder(config, self.bus, None if config.node else drives[config.name])
         self.axes.clearing.append(encoder.clear_fault)
         return encoder
+
+    def _spindle_c(self) -> SpindleC | None:
+        if self.spindle is None or self.config.spindle is None or not self.config.spindle.is_c:
+            return None
+        found = SpindleC(self.axes, self.spindle, "C")
+        self.axes.clearing.append(found.clear_fault)
+        return found
 
     @property
     def _turning(self) -> Spindle:
@@ -60,6 +69,7 @@ class CanopenMachine:
             spindle=self._turning,
             io=self.io,
             station=self.io,
+            lock=self.c,
         )
 
     def tick(self) -> None:
@@ -70,9 +80,11 @@ class CanopenMachine:
         if self.bus.trouble:
             return
         try:
-            self.axes.beside = self.io.tick(now)
+            self.axes.beside = self.io.tick(now) or (self.c.trouble if self.c is not None else "")
             if self.spindle is not None:
                 self.spindle.tick()
+            if self.c is not None:
+                self.c.tick(now)
             if self.encoder is not None:
                 self.encoder.look()
             if now >= self._next or self.axes.follower.urgent:
@@ -121,10 +133,10 @@ class CanopenMachine:
 
     def _exchange(self) -> None:
         self.axes.drives.command()
-        if self.spindle is not None:
+        if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:
             self.spindle.drive.command()
         if self.encoder is not None:
             self.encoder.asked()
         for module in self.io.modules.values():
-            module.missing += 1
+            module.asked()
         self.bus.synchronise()

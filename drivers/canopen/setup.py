@@ -19,6 +19,7 @@ _Answer = TypeVar("_Answer")
 _PROFILE = 0xFFFF
 _ON_SYNC, _AT_ONCE = 1, 255
 _INVALID = 1 << 31  # a PDO that is being mapped
+_NO_SUCH_OBJECT = 0x06020000  # abort code of SDO
 _MAPS = 0x200  # from the communication record of a PDO to its mapping
 _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}
 
@@ -74,6 +75,16 @@ class Setup:
         if lacking:
             raise DriverError(f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode")
 
+    def entries(self, index: int) -> int:
+        """How many entries an array of the node has; 0 where the node has no such object."""
+        try:
+            return self.read(index, 0)
+        except DriverError as error:
+            refusal = error.__cause__
+            if isinstance(refusal, SdoAbortedError) and refusal.code == _NO_SUCH_OBJECT:
+                return 0
+            raise
+
     def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
         """Map what the node receives in PDO ``number``: (object, bits)."""
         self._map(self._pdo(self._node.rpdo, number), entries, _AT_ONCE if at_once else _ON_SYNC)
@@ -92,7 +103,10 @@ class Setup:
         return found
 
     def _map(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
-        """The library's own ``save`` writes no entries where the dictionary has them as an array."""
+        """The library's own ``save`` writes no entries where the dictionary has them as an array.
+
+        A mapping that is already there is left alone: many modules have none that can be changed.
+        """
         base = pdo.com_record.od.index
         pdo.clear()
         for index, bits in entries:
@@ -102,12 +116,18 @@ class Setup:
         assert cob is not None
         self._put(base, 1, cob | _INVALID, 4)
         self._put(base, 2, kind, 1)
-        self._put(base + _MAPS, 0, 0, 1)
-        for sub, (index, bits) in enumerate(entries, 1):
-            self._put(base + _MAPS, sub, (index & 0xFFFF) << 16 | (index >> 16) << 8 | bits, 4)
-        self._put(base + _MAPS, 0, len(entries), 1)
+        wanted = [(index & 0xFFFF) << 16 | (index >> 16) << 8 | bits for index, bits in entries]
+        if self._mapped(base + _MAPS) != wanted:
+            self._put(base + _MAPS, 0, 0, 1)
+            for sub, entry in enumerate(wanted, 1):
+                self._put(base + _MAPS, sub, entry, 4)
+            self._put(base + _MAPS, 0, len(wanted), 1)
         self._put(base, 1, cob, 4)
         pdo.subscribe()
+
+    def _mapped(self, index: int) -> list[int]:
+        """What a PDO carries so far."""
+        return [self.read(index, sub) for sub in range(1, self.read(index, 0) + 1)]
 
     def _put(self, index: int, sub: int, value: int, size: int) -> None:
         data = value.to_bytes(size, "little")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from core.ports import DriverError, StationState
 from drivers.canopen.bus import Bus
@@ -30,6 +30,7 @@ class CanopenIO:
     def connect(self) -> None:
         """Configure every module with the safe states of its outputs. Raises DriverError."""
         for name, module in self.modules.items():
+            module.measure(where for where in self._needed() if where.node == name)
             safe, keep = bytearray(BYTES), bytearray(BYTES)
             for output in self._config.outputs.values():
                 where = output.terminal
@@ -39,6 +40,13 @@ class CanopenIO:
             module.connect(bytes(safe), bytes(keep))
         for name, output in self._config.outputs.items():
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
+
+    def _needed(self) -> Iterator[Terminal]:
+        """All terminals of the machine file, those of drives too."""
+        config = self._config
+        yield from config.inputs.values()
+        yield from (output.terminal for output in config.outputs.values())
+        yield from (pot.terminal for pot in config.pots.values())
 
     def operational(self) -> None:
         """NMT start of the modules."""

@@ -1,0 +1,170 @@
+"""Our terminals on an I/O module that is not ours, of the sizes that are sold: a byte of each, no pots."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from core.ports import DriverError
+from drivers.canopen.bus import Bus
+from drivers.canopen.config import BusConfig, CanopenConfig, ModuleConfig, OutputConfig, PotConfig, Terminal
+from drivers.canopen.terminals import CanopenIO
+from drivers.simulated import StepClock
+from tests.drivers.canopen.foreign import NODE, ForeignModule
+
+TICK = 0.01
+_channels = itertools.count()
+COOLANT, COLLET = Terminal("io", 0x6200, 1, 0), Terminal("io", 0x6200, 1, 1)
+GUARD, ESTOP = Terminal("io", 0x6000, 1, 3), Terminal("io", 0x6000, 1, 0, active_low=True)
+
+
+class Bench:
+    """Both ends of the bus; the machine has a guard, E-stop, coolant, collet, and a pot where asked for."""
+
+    def __init__(self, inputs: int, outputs: int, words: int, *, pot: int = 0) -> None:
+        bus = BusConfig("virtual", f"foreign-{next(_channels)}")
+        self.module = ForeignModule(bus.channel, inputs, outputs, words)
+        self.clock = StepClock()
+        self.bus = Bus(bus, self.clock, self.module.pump)
+        self.io = CanopenIO(
+            CanopenConfig(
+                bus=bus,
+                axes=(),
+                modules=(ModuleConfig("io", NODE),),
+                inputs={"guard": GUARD, "estop": ESTOP} if inputs else {},
+                outputs={"coolant": OutputConfig(COOLANT), "collet": OutputConfig(COLLET, None)}
+                if outputs
+                else {},
+                pots={"feed_pot": PotConfig(Terminal("io", 0x6401, pot), 0.0, 1.5)} if pot else {},
+            ),
+            self.bus,
+            {},
+        )
+
+    def start(self) -> None:
+        self.io.connect()
+        self.io.operational()
+        self.run(0.05)
+
+    def run(self, seconds: float) -> str:
+        """Time on both ends; what is wrong at last."""
+        trouble = ""
+        for _ in range(round(seconds / TICK)):
+            self.clock.advance(TICK)
+            for module in self.io.modules.values():
+                module.asked()
+            self.bus.synchronise()
+            self.module.pump(TICK)
+            self.bus.pump()
+            trouble = self.io.tick(self.clock.now())
+            self.module.pump()
+        return trouble
+
+    def close(self) -> None:
+        self.bus.close()
+        self.module.close()
+
+
+MakeBench = Callable[..., Bench]
+
+
+@pytest.fixture
+def make() -> Iterator[MakeBench]:
+    made: list[Bench] = []
+
+    def bench(inputs: int = 1, outputs: int = 1, words: int = 0, *, pot: int = 0) -> Bench:
+        made.append(Bench(inputs, outputs, words, pot=pot))
+        return made[-1]
+
+    yield bench
+    for each in made:
+        each.close()
+
+
+def test_outputs_go_out_and_come_back_off(make: MakeBench) -> None:
+    bench = make()
+    bench.start()
+    bench.io.write("coolant", on=True)
+    assert bench.run(0.05) == ""
+    assert bench.module.objects.read(0x6200, 1) == 0b01
+    bench.io.write("collet", on=True)
+    bench.io.safe()
+    bench.run(0.05)
+    assert bench.module.objects.read(0x6200, 1) == 0b10  # coolant is off, the collet keeps its state
+
+
+def test_inputs_come_with_the_next_sync(make: MakeBench) -> None:
+    bench = make()
+    bench.start()
+    assert bench.io.inputs() == {"guard": False, "estop": True}  # no voltage on the wire: pressed
+    bench.module.objects.write(0x6000, 1, 0b1001)
+    bench.run(0.05)
+    assert bench.io.inputs() == {"guard": True, "estop": False}
+
+
+def test_safe_states_and_the_watch_over_us_are_in_the_module(make: MakeBench) -> None:
+    bench = make()
+    bench.start()
+    read = bench.module.objects.read
+    assert read(0x6206, 1) == 0b11111101  # the collet's bit keeps its state
+    assert read(0x6207, 1) == 0
+    assert read(0x1016, 1) == 127 << 16 | 300
+    assert read(0x1017, 0) == 100
+
+
+def test_a_pot_is_read(make: MakeBench) -> None:
+    bench = make(words=2, pot=2)
+    bench.module.objects.write(0x6401, 2, 32767)
+    bench.start()
+    assert bench.module.objects.read(0x6423, 0) == 1
+    assert bench.io.snapshot().feed_pot == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(("inputs", "outputs", "words"), [(1, 0, 0), (0, 1, 0), (0, 1, 1), (8, 8, 4)])
+def test_modules_of_every_kind_stay_well(make: MakeBench, inputs: int, outputs: int, words: int) -> None:
+    bench = make(inputs, outputs, words)
+    bench.start()
+    assert bench.run(1.0) == ""
+    assert bench.io.snapshot().age < 0.2
+
+
+def test_a_terminal_that_the_module_has_not(make: MakeBench) -> None:
+    bench = make(words=1, pot=2)
+    with pytest.raises(DriverError, match=r"io: the module has 1 bytes of inputs, .*no 6401\.2; check"):
+        bench.start()
+
+
+def test_a_module_that_restarts_is_told(make: MakeBench) -> None:
+    bench = make()
+    bench.start()
+    bench.module.node.nmt.reset()
+    assert "io: the I/O module has restarted" in bench.run(0.05)
+
+
+@pytest.mark.parametrize(("inputs", "why"), [(1, "SYNC"), (0, "heartbeat")])
+def test_a_module_that_falls_silent_is_told(make: MakeBench, inputs: int, why: str) -> None:
+    bench = make(inputs)
+    bench.start()
+    bench.module.objects.write(0x1017, 0, 0)  # no heartbeat
+    bench.module.node.tpdo[0].enable = False
+    assert why in bench.run(0.5)
+    with pytest.raises(DriverError, match="output coolant stays off"):
+        bench.io.write("coolant", on=True)
+
+
+def test_a_mapping_that_cannot_be_changed_will_do_when_it_is_the_right_one(make: MakeBench) -> None:
+    bench = make()
+    bench.module.fix_mapping()
+    bench.start()
+    bench.module.objects.write(0x6000, 1, 0b1000)
+    bench.run(0.05)
+    assert bench.io.inputs()["guard"]
+
+
+def test_another_mapping_that_cannot_be_changed_is_refused(make: MakeBench) -> None:
+    bench = make(inputs=2)
+    bench.module.fix_mapping()
+    with pytest.raises(DriverError, match=r"io: node 10, object 1A00:0: refused by the node"):
+        bench.start()
