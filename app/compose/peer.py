@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from app.compose.canopen import canopen_peers
 from core.machine.model import Machine
+from drivers.feeder.loop import keep_memory, real_time
 from drivers.simulated import StepClock
 
 _ROUND = 0.001  # s
@@ -20,6 +21,8 @@ def play_peers(machine: Machine, going: Callable[[], bool], ready: Callable[[], 
     """
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = canopen_peers(machine, clock)
+    keep_memory()
+    real_time()  # drives are punctual; where this is refused the feeder has said so already
     peers.arrival = lambda stamp: stamp - epoch
     ready()
     try:
