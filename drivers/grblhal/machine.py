@@ -119,7 +119,8 @@ class GrblMachine:
             return []
         return [
             f"{' and '.join(names)}: homing is off in the controller ($22=0); set $22 to 3 where there are"
-            " switches, else give the axis home = { method = 37 }: Home then takes the place where it stands"
+            " switches, else add method = 37 to home = { … } of the axis: Home then takes the place where it"
+            " stands"
         ]
 
     def _warnings(self) -> list[str]:

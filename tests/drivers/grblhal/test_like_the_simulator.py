@@ -1,0 +1,96 @@
+"""A controller as the firmware's simulator comes: no encoder, no auxiliary ports, its own defaults."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from core.executor.commands import Reset
+from core.executor.snapshot import State
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.grblhal.peer.serve import TcpEnd, serve
+from drivers.simulated import RealClock
+from tests.drivers.grblhal.bench import SHIPPED, GrblBench, quirky
+from tests.drivers.grblhal.test_faults import THREAD
+
+Captured = pytest.CaptureFixture[str]
+
+# Its defaults: rpm, mm/min and mm/s².
+DEFAULTS = {30: 1000.0, **{110 + i: 500.0 for i in range(3)}, **{120 + i: 10.0 for i in range(3)}}
+AS_IT_COMES = {"encoder": False, "outputs": 0, "inputs": 0, "settings": DEFAULTS}
+
+
+@pytest.fixture
+def machine_file(tmp_path: Path) -> Iterator[Path]:
+    """On a socket, named as pyserial names one."""
+    end = TcpEnd("127.0.0.1", 0)
+    over = threading.Event()
+    firmware = Firmware(RealClock(), quirky(**AS_IT_COMES))
+    peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
+    peer.start()
+    file = tmp_path / "simulator.toml"
+    file.write_text(SHIPPED.replace("/dev/ttyACM0", end.name.replace("tcp", "socket")), encoding="utf-8")
+    yield file
+    over.set()
+    peer.join(5.0)
+    assert not peer.is_alive()
+
+
+def test_what_it_lacks_is_told() -> None:
+    told = "\n".join(GrblBench(quirks=quirky(**AS_IT_COMES)).machine.ports.warnings)
+    assert "X: the controller allows 500 mm/min of 7620" in told
+    assert "Z: the controller brakes with 10 mm/s², not 3048" in told
+    assert "$30 allows 1000 rpm, the machine file 3500" in told
+    assert "no spindle encoder: threads are refused" in told
+    assert "out.0 is not among the controller's 0 auxiliary outputs" in told
+
+
+def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None:
+    bench = GrblBench(quirks=quirky(**AS_IT_COMES))
+    bench.start("G90G94F300\nX.1Z.1\nG01X.05F60\nM08\nM09\nM30\n")
+    bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((1.27, 2.54))
+    assert bench.shot.parts == 1
+    assert not bench.said("alarm")
+
+
+def test_more_speed_than_it_allows_is_an_alarm_and_no_slow_cut() -> None:
+    bench = GrblBench(quirks=quirky(**AS_IT_COMES))
+    bench.start("G90G94F300\nM03S1500\nX.1Z.1\nM30\n")
+    bench.until(State.FAULT, limit=5.0)
+    assert "allows 1000 rpm ($30), not 1500" in bench.alarms()
+
+
+def test_a_thread_is_refused_before_the_start() -> None:
+    bench = GrblBench(quirks=quirky(**AS_IT_COMES))
+    bench.start(THREAD.replace("S600", "S900"))
+    assert bench.state is State.IDLE
+    assert "threads" in bench.shot.start_refused
+    assert bench.wire.lines() == []
+
+
+def test_reset_at_its_slow_ramp_waits_for_it_and_loses_nothing() -> None:
+    """500 mm/min is 8.3 mm/s: 0.83 s to brake with 10 mm/s²."""
+    bench = GrblBench(quirks=quirky(**AS_IT_COMES))
+    bench.start("G90G94F300\nX1\nM30\n")
+    bench.until_true(lambda _: bench.peer.slides.v > 8.0, 5.0)
+    bench.post(Reset())
+    bench.until(State.IDLE, limit=5.0)
+    assert bench.peer.torn == 0
+    assert not bench.shot.alarms
+
+
+def test_check_and_run(
+    machine_file: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    assert main(["machine", "check", str(machine_file)]) == 0
+    assert "threads are refused" in capsys.readouterr().err
+    program = tmp_path / "part.nc"
+    program.write_text("G90G94F300\nX.02Z.02\nG01X.01F60\nM08\nM09\nM30\n", encoding="utf-8")
+    assert main(["run", str(program), "--headless", "--machine", str(machine_file)]) == 0
+    assert "complete" in capsys.readouterr().out

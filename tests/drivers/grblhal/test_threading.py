@@ -1,0 +1,82 @@
+"""Threads on the controller: at their lead whatever the overrides are, and along their own way."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.block_port import ArcOp
+from core.executor.commands import FeedHold, FeedOverride, Reset
+from core.executor.snapshot import State
+from drivers.grblhal.gcode import line_of
+from tests.drivers.grblhal.bench import GrblBench
+from tests.drivers.grblhal.test_faults import THREAD
+
+TAPERED = THREAD.replace("K.05", "K.05A.07")
+
+
+def test_a_pass_is_cut_at_full_override_and_what_was_asked_comes_back_behind_it() -> None:
+    """The firmware's override slows a synchronised pass, which then lags behind its lead."""
+    bench = GrblBench()
+    bench.start(THREAD)
+    bench.post(FeedOverride(0.5))
+    bench.until_true(lambda _: any("G33" in line for line in bench.wire.lines()))
+    assert bench.peer.feed_percent == 100
+    while bench.peer.slides.queue and bench.peer.slides.queue[0].thread:
+        bench.tick()
+        assert bench.peer.feed_percent == 100
+    bench.until_true(lambda shot: shot.state is State.IDLE or bench.peer.feed_percent == 50)
+    bench.until(State.IDLE)
+    bench.run(3.0)
+    assert bench.peer.feed_percent == 50
+    assert bench.peer.slides.place[1] == pytest.approx(25.4)
+    assert not bench.said("alarm")
+
+
+def test_a_tapered_pass_goes_further_than_its_lead_and_tells_so() -> None:
+    """The controller counts K along the way: .07 in X on .7 in Z make it longer by the root of 1.01."""
+    bench = GrblBench()
+    bench.start(TAPERED)
+    bench.until(State.IDLE)
+    threads = [line for line in bench.wire.lines() if "G33" in line]
+    assert len(threads) >= 2
+    for line in threads:
+        assert float(line.partition("K")[2]) == pytest.approx(1.27 * math.sqrt(1.01), abs=1e-5)
+
+
+def test_a_hold_waits_for_the_end_of_the_pass() -> None:
+    """The firmware would hold in the middle of it, and the thread be gone."""
+    bench = GrblBench()
+    bench.start(THREAD)
+    bench.until_true(lambda _: bench.peer.slides.moving and bench.peer.slides.queue[0].thread)
+    bench.post(FeedHold())
+    while bench.peer.slides.queue and bench.peer.slides.queue[0].thread:
+        assert 0x82 not in bench.wire.sent
+        bench.tick()
+    bench.until(State.HOLD, limit=5.0)
+    bench.press()
+    bench.until(State.IDLE)
+    assert bench.peer.torn == 0
+
+
+def test_reset_in_a_pass_brakes_and_keeps_the_position() -> None:
+    bench = GrblBench()
+    bench.start(THREAD)
+    bench.until_true(lambda _: bench.peer.slides.moving and bench.peer.slides.queue[0].thread)
+    bench.post(Reset())
+    bench.until(State.IDLE, limit=5.0)
+    assert bench.peer.torn == 0
+    assert all(bench.shot.homed[:2])
+    assert not bench.shot.alarms
+
+
+def test_a_dot_of_an_arc_is_a_line() -> None:
+    """Its angle would round to nothing over there, which is a whole circle."""
+    x = 10.0 * math.sin(1e-4)
+    z = 10.0 * math.cos(1e-4)
+    assert line_of(ArcOp(0.0, 10.0, x, z, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0) == "N1G1X0.001Z10F60"
+    whole = line_of(ArcOp(0.0, 10.0, 0.0, 10.0, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0)
+    assert whole == "N1G3X0Z10I0K-10F60"
+    nearly = line_of(ArcOp(0.0, 10.0, -x, z, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0)
+    assert nearly.startswith("N1G3")
