@@ -9,12 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from core.ports import Clock
+from core.ports import Clock, DriverError
 from drivers.mtconnect.changes import Told
 from drivers.mtconnect.items import DataItem
 from drivers.mtconnect.lines import Report, stamp
-from drivers.mtconnect.link import AgentLink, LostError
-from drivers.mtconnect.listening import listening, tuned
+from drivers.mtconnect.link import AgentLink, GoneError, LostError
+from drivers.mtconnect.listening import accepted, listening
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
@@ -78,7 +78,11 @@ class Adapter:
 
     def open(self) -> None:
         """Begin to listen. Raises DriverError where it cannot."""
-        self._door = listening(self._settings.bind, self._settings.port)
+        try:
+            self._door = listening(self._settings.bind, self._settings.port)
+        except DriverError:
+            self._selector.close()
+            raise
         self._selector.register(self._door, selectors.EVENT_READ)
         self.look()
 
@@ -121,7 +125,7 @@ class Adapter:
     def _welcome(self) -> None:
         assert self._door is not None
         try:
-            wire, _ = self._door.accept()
+            wire = accepted(self._door)
         except OSError:  # gone before it was let in, or no more files: the next turn tries again
             return
         if len(self._links) >= MOST:
@@ -129,7 +133,7 @@ class Adapter:
             wire.close()
             return
         self.counts.accepted += 1
-        link = AgentLink(tuned(wire), self._settings.heartbeat)
+        link = AgentLink(wire, self._settings.heartbeat)
         self._links.append(link)
         self._selector.register(wire, selectors.EVENT_READ, link)
         self._tell(link, self._told.whole(stamp(self._utc())).encode("utf-8"))
@@ -143,7 +147,8 @@ class Adapter:
 
     def _lose(self, link: AgentLink, why: LostError) -> None:
         self.counts.lost += 1
-        _log.warning("an MTConnect agent is no longer served: %s; %d lines ignored", why, link.ignored)
+        level = logging.INFO if isinstance(why, GoneError) else logging.WARNING
+        _log.log(level, "an MTConnect agent is no longer served: %s; %d lines ignored", why, link.ignored)
         self._forget(link)
 
     def _forget(self, link: AgentLink) -> None:

@@ -16,11 +16,14 @@ class LostError(Exception):
     """The agent is gone, or is given up; the sentence says why."""
 
 
+class GoneError(LostError):
+    """It went by itself, as agents do."""
+
+
 class AgentLink:
-    """Nothing in here waits. ``heartbeat`` (s) is what it is told to ping at."""
+    """On a wire that does not wait. ``heartbeat`` (s) is what the agent is told to ping at."""
 
     def __init__(self, wire: socket.socket, heartbeat: float) -> None:
-        wire.setblocking(False)
         self.wire = wire
         self.ignored = 0  # lines that were no PING
         self._heartbeat = heartbeat
@@ -41,7 +44,7 @@ class AgentLink:
         except BlockingIOError:
             return
         except OSError as error:
-            raise LostError(f"it cannot be reached: {error.strerror or error}") from error
+            raise GoneError(f"it cannot be reached: {error.strerror or error}") from error
         del self._out[:sent]
 
     def read(self, now: float) -> None:
@@ -51,9 +54,9 @@ class AgentLink:
         except BlockingIOError:
             return
         except OSError as error:
-            raise LostError(f"the connection broke: {error.strerror or error}") from error
+            raise GoneError(f"the connection broke: {error.strerror or error}") from error
         if not come:
-            raise LostError("it has hung up")
+            raise GoneError("it has hung up")
         *lines, self._in = (self._in + come).split(b"\n")
         for line in lines:
             self._obey(line.strip(), now)

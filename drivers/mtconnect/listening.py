@@ -36,8 +36,20 @@ def listening(bind: str, port: int) -> socket.socket:
     return wire
 
 
-def tuned(wire: socket.socket) -> socket.socket:
-    """A connection whose other end may vanish without a word, and whose lines go out at once."""
+def accepted(door: socket.socket) -> socket.socket:
+    """Who is at the door, not waiting for it. Raises OSError where nobody is there any more."""
+    wire, _ = door.accept()
+    try:
+        _tune(wire)
+    except OSError:
+        wire.close()
+        raise
+    return wire
+
+
+def _tune(wire: socket.socket) -> None:
+    """The other end may vanish without a word, and lines go out at once."""
+    wire.setblocking(False)
     wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _SEND)
@@ -46,4 +58,3 @@ def tuned(wire: socket.socket) -> socket.socket:
     if hasattr(socket, "TCP_KEEPIDLE"):
         for option, value in ((socket.TCP_KEEPIDLE, 10), (socket.TCP_KEEPINTVL, 5), (socket.TCP_KEEPCNT, 4)):
             wire.setsockopt(socket.IPPROTO_TCP, option, value)
-    return wire
