@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from core.machine.errors import Finding
@@ -29,6 +30,8 @@ def _of_a_drive(reading: HardwareReading, axis: str) -> Iterator[Finding]:
     if not values.has(path, f"axis.{axis}.count"):
         return
     count, ends = values.number(f"axis.{axis}.count"), values.pair(path)
+    if math.inf in map(abs, ends):
+        return  # a rotary axis without an end
     if max(map(abs, ends)) / count > _MOST:
         expected = f"is more than a drive can count: {_MOST} counts of {count:g}"
         yield Finding(path, "", expected)
