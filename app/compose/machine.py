@@ -57,7 +57,7 @@ def setup_for(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Circumstances of one pass, from the machine's home; inputs that nobody names are open."""
+    """Circumstances of one pass after power-up, from the machine's home; inputs that nobody names are open."""
     from app.compose.kinematics import kinematics_of
 
     states = dict(inputs or {})
@@ -70,6 +70,7 @@ def setup_for(
         limits=control_limits(machine),
         block_delete=block_delete,
         strict=strict,
+        metric=not machine.inch,
         last_rapid=machine.manual_rapid,
         inputs=lambda terminal: states.get(terminal, False),
     )

@@ -138,12 +138,15 @@ def desk_and_executor(
     def say(kind: str, text: str) -> None:
         hear(Event(clock.now(), kind, text))
 
+    def left() -> Modal:
+        return executor.snapshot.modal
+
     changed = file_changes(machine, keep, partial(say, "machine"))
     desk = Desk(
         post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=Session(
-            workshop(machine, offsets, journal, zero=zero, left=lambda: executor.snapshot.modal),
+            workshop(machine, offsets, journal, zero=zero, left=left),
             executor.post,
         ),
         shelf=Shelf((home() / "programs", samples())),
@@ -156,9 +159,9 @@ def desk_and_executor(
         changes=changed,
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),
-        editor=_editor(workshop(machine, offsets, zero=zero), journal),
+        editor=_editor(workshop(machine, offsets, zero=zero, left=left), journal),
     )
-    furnish(desk, machine, keep, workshop(machine, offsets, zero=zero))
+    furnish(desk, machine, keep, workshop(machine, offsets, zero=zero, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)
     heard.append(desk)

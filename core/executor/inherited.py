@@ -11,10 +11,9 @@ from core.interpreter.setup import SecondaryOffset, ToolOffset
 
 
 def at_power_up(bench: Bench) -> Modal:
-    """The state that the control is switched on with; a mill counts in what its builder counts in."""
+    """The state that the control is switched on with: it counts in what the machine's builder counts in."""
     machine = bench.machine
-    metric = machine.kind == "mill" and not machine.inch
-    return as_it_is(Modal(metric=metric, rapid_rate=machine.manual_rapid), bench)
+    return as_it_is(Modal(metric=not machine.inch, rapid_rate=machine.manual_rapid), bench)
 
 
 def given_up(modal: Modal) -> Modal:

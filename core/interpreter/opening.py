@@ -23,7 +23,7 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
     if large is not None:
         log.add(large)
     if state.setup.metric and not program.names_units and first:
-        text = "The program names neither G70 nor G71; it runs in millimetres, as the job before it."
+        text = "The program names neither G70 nor G71; it runs in millimetres, in which the control counts."
         log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
 

@@ -66,7 +66,7 @@ class Setup:
     """One set of circumstances for one pass through a program.
 
     ``start`` is the machine position of all axes (on a lathe x, z, c) before the first block; ``metric`` and
-    ``last_rapid`` what the job before has left; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a
+    ``last_rapid`` what the job before has left, or power-up; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a
     PLC input ``"10"``. ``begin`` is there where a pass does not begin with the first line of a program.
     """
 

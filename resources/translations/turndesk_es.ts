@@ -6650,8 +6650,8 @@
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />
-      <source>The program names neither G70 nor G71; it runs in millimetres, as the job before it.</source>
-      <translation>El programa no dice G70 ni G71; corre en milímetros, como el trabajo anterior.</translation>
+      <source>The program names neither G70 nor G71; it runs in millimetres, in which the control counts.</source>
+      <translation>El programa no dice G70 ni G71; corre en milímetros, que es en lo que cuenta el control.</translation>
     </message>
     <message>
       <location filename="core/interpreter/opening.py" />

@@ -12,6 +12,7 @@ from core.executor.snapshot import State
 from core.interpreter.carried import RAPID, UNITS, carried
 from core.language.dialect import Dialect
 from core.language.source import Source
+from core.machine.load import load_machine
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
 
@@ -81,3 +82,24 @@ def test_no_repeat_in_another_unit_than_the_first_time() -> None:
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("refused")[-1].startswith("no repeat: the control counts in mm now")
+
+
+@pytest.mark.parametrize(("inch", "metric"), [(True, False), (False, True)])
+def test_the_control_is_switched_on_in_what_its_builder_counts_in(inch: bool, metric: bool) -> None:
+    rig = Rig(replace(load_machine(), inch=inch))
+    assert rig.shot.modal.metric is metric
+
+
+@pytest.mark.parametrize("unit", ["G70", "G71"])
+def test_a_program_of_another_dialect_leaves_the_unit_as_it_was(unit: str) -> None:
+    rig = Rig()
+    mdi(rig, unit)
+    before = rig.shot.modal.metric
+    rig.post(Prepare())
+    other = "G70" if before else "G71"
+    source = Source("PART.MPF", f"{other} G0 X1\nG1 Z-.1 F100\nM30\n", Dialect.SINUMERIK)
+    load(rig, make_job(source, replace(rig.load(NAMES_NONE).setup, metric=before)))
+    rig.until_true(lambda shot: shot.line == 2)
+    assert rig.shot.modal.metric is not before
+    rig.until(State.IDLE)
+    assert rig.shot.modal.metric is before

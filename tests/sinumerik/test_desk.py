@@ -139,3 +139,47 @@ def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_pa
     loaded = bench.desk.session.settled(60.0)
     assert loaded.phase is Phase.REFUSED
     assert [each.code for each in loaded.errors] == ["subprogram-missing"]
+
+
+def shown(bench: Bench) -> str:
+    return view_of(bench.desk.snapshot(), Readout.POSITION, with_c=True).position.unit
+
+
+def test_a_metric_lathe_counts_in_mm_before_in_and_after_a_program(bench: Bench) -> None:
+    assert shown(bench) == "MM"
+    bench.started()
+    assert shown(bench) == "MM"
+    bench.until(lambda s: s.state is State.IDLE)
+    assert shown(bench) == "MM"
+    assert bench.desk.snapshot().modal.metric
+
+
+def test_and_so_it_does_after_a_program_in_inches_and_after_one_that_was_given_up(
+    bench: Bench, tmp_path: Path
+) -> None:
+    (tmp_path / "home" / "programs" / "part.mpf").write_text("G70 G0 X1 Z.1\nG1 Z-.4 F50\nM30\n")
+    bench.started()
+    bench.until(lambda s: s.line == 2)
+    assert shown(bench) == "INCH"
+    bench.desk.feed_hold()
+    bench.until(lambda s: s.state is State.HOLD)
+    bench.desk.reset()
+    bench.desk.reset()
+    bench.until(lambda s: s.state is State.IDLE)
+    assert shown(bench) == "MM"
+
+
+def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
+    bench: Bench, tmp_path: Path
+) -> None:
+    """What names no unit runs in the control's; the editor and the list prove it as it will run."""
+    bench.until(lambda s: s.state is State.DISABLED)
+    path = tmp_path / "home" / "programs" / "plain.nc"
+    path.write_text("G90G94F300\nX10Z-10\nM30\n")
+    assert bench.desk.choose("plain")
+    loaded = bench.desk.session.settled(60.0)
+    assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
+    assert loaded.job is not None
+    assert bench.desk.editor is not None
+    proved = bench.desk.editor.bench.workshop.make_job(loaded.job.source, False)
+    assert proved.digest == loaded.job.digest
