@@ -11,8 +11,7 @@ READY, ACTIVE, WAIT, STOPPED = "READY", "ACTIVE", "WAIT", "STOPPED"
 FEED_HOLD, INTERRUPTED = "FEED_HOLD", "INTERRUPTED"
 PROGRAM_STOPPED, OPTIONAL_STOP, COMPLETED = "PROGRAM_STOPPED", "OPTIONAL_STOP", "PROGRAM_COMPLETED"
 
-# The cycle does its own work while it waits for these; for anything else it waits for somebody else.
-_OWN_WAITS = frozenset({"DWELL", "AT SPEED", "SPINDLE STOP"})
+_COLLET = "COLLET"  # a wait for a device that handles the material, as the inputs of bar feed and loader are
 # An operator keeps it from going on, and has to do something before it does.
 _KEPT = {
     "FEED OVERRIDE AT 0": FEED_HOLD,
@@ -34,8 +33,13 @@ _BY_STATE = {
 
 @dataclass(slots=True)
 class Execution:
-    """Remembers whether the last thing that happened was the end of a program."""
+    """Remembers whether the last thing that happened was the end of a program.
 
+    ``inputs`` are the names and terminals for which a program can wait; whatever else a cycle waits for (a
+    dwell, the spindle, a proof) is its own work.
+    """
+
+    inputs: frozenset[str] = frozenset()
     _ends: int | None = None
     _program: str = ""
     _lines: int = 0
@@ -55,7 +59,7 @@ class Execution:
     def _of(self, snapshot: Snapshot) -> str:
         match snapshot.state:
             case State.WAIT:
-                return _waiting(snapshot.waiting_for)
+                return self._waiting(snapshot.waiting_for)
             case State.HOLD:
                 return INTERRUPTED if snapshot.waiting_for else FEED_HOLD
             case State.PROGRAM_STOP:
@@ -67,11 +71,10 @@ class Execution:
             case state:
                 return _BY_STATE[state]
 
-
-def _waiting(what: str) -> str:
-    if what in _OWN_WAITS:
-        return ACTIVE
-    return _KEPT.get(what, WAIT)
+    def _waiting(self, what: str) -> str:
+        if what == _COLLET or what in self.inputs:
+            return WAIT
+        return _KEPT.get(what, ACTIVE)
 
 
 def mode_of(snapshot: Snapshot) -> str:

@@ -42,8 +42,13 @@ class FloorReader:
     machine: Machine
     keys: frozenset[str]  # of the conditions that there are
     clock: Callable[[], float]
-    _execution: Execution = field(default_factory=Execution)
+    _execution: Execution = field(init=False)
     _pulse: Pulse = field(default_factory=Pulse)
+
+    def __post_init__(self) -> None:
+        wired = self.machine.inputs
+        terminals = (each.terminal for each in wired.values() if each.terminal)
+        self._execution = Execution(frozenset((*wired, *terminals)))
 
     def look(self, snapshot: Snapshot) -> Reading:
         """What is true now. Of a control that is silent nothing is known but that."""

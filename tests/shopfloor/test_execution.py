@@ -32,6 +32,9 @@ RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE
         (State.WAIT, "DWELL", "ACTIVE", "a dwell is a block like any other"),
         (State.WAIT, "AT SPEED", "ACTIVE", "the spindle runs up"),
         (State.WAIT, "SPINDLE STOP", "ACTIVE", "the spindle runs down"),
+        (State.WAIT, "C AXIS", "ACTIVE", "the drive changes from turning to positioning"),
+        (State.WAIT, "PROOF WITH THE CHANGED OFFSETS", "ACTIVE", "the control thinks"),
+        (State.WAIT, "PLC-1", "WAIT", "an input by its terminal"),
         (State.WAIT, "COLLET", "WAIT", "a device moves the material"),
         (State.WAIT, "TB2-5", "WAIT", "bar feed or loader have to answer"),
         (State.WAIT, "FEED OVERRIDE AT 0", "FEED_HOLD", "the pot holds the slides"),
@@ -43,7 +46,8 @@ RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE
     ],
 )
 def test_states(state: State, waits: str, told: str, why: str) -> None:
-    assert Execution().look(Snapshot(state=state, waiting_for=waits)) == told, why
+    execution = Execution(frozenset({"TB2-5", "1", "PLC-1"}))
+    assert execution.look(Snapshot(state=state, waiting_for=waits)) == told, why
 
 
 @pytest.mark.parametrize("state", State)

@@ -198,3 +198,9 @@ def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
     assert active(held) == {"system": (("WARNING", "hold", "SETPOINTS RAN LOW"),)}
     assert active(replace(held, waiting_for="")) == {}
     assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}
+
+
+def test_waiting_for_any_input_of_the_machine_is_waiting_for_a_device() -> None:
+    for waits in ("TB2-5", "end_of_bar", "16", "PLC-16"):
+        assert values_of(replace(AT, state=State.WAIT, waiting_for=waits))["execution"] == "WAIT"
+    assert values_of(replace(AT, state=State.WAIT, waiting_for="TB9-9"))["execution"] == "ACTIVE"
