@@ -158,7 +158,7 @@ class ThreadPass:
         return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
 
     def _blend(self, t: float, s: float, v: float) -> Phases | None:
-        """Two accelerations that lead onto the line; None where the thread leaves no room for that."""
+        """Two accelerations that lead onto the line, never backwards; None where no room is left for that."""
         way, time = self._way, _BLEND
         while time <= _LONGEST:
             goal, speed, rest = self._target(t + time)
@@ -168,7 +168,8 @@ class ThreadPass:
             half = 0.5 * time
             gain, ahead = (speed - v) / half, (goal - s - v * time) / (half * half)
             first, second = ahead - 0.5 * gain, 1.5 * gain - ahead
-            if max(abs(first), abs(second)) <= way.a:
+            onwards = min(v + first * half, speed) >= 0.0 or v < 0.0
+            if onwards and max(abs(first), abs(second)) <= way.a:
                 return [(half, first), (half, second), *rest]
             time *= 2.0
         return None
