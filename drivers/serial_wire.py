@@ -11,7 +11,9 @@ from typing import NamedTuple
 import serial
 from serial.tools.list_ports import comports
 
+from drivers.line_errors import why
 from drivers.marks import Unmarker
+from drivers.parity import PARITIES, table_of
 from drivers.wire import LineSettings, WireError
 
 _POSIX = sys.platform != "win32"
@@ -21,6 +23,8 @@ _FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeE
 if sys.platform != "win32":
     import select
     import termios
+
+    from drivers import terminal
 
     _FAILURES += (termios.error,)
 _NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
@@ -39,29 +43,37 @@ def found_ports() -> list[Found]:
 
 
 class SerialWire:
-    """A port of this computer, opened for us alone. ``watch``: damaged characters are told from good ones."""
+    """A port of this computer, opened for us alone. ``watch``: damaged characters are told from good ones.
+
+    Seven bits and parity on a port that does not do them are done here; XOFF and XON then come to the reader.
+    """
 
     def __init__(self, settings: LineSettings, *, watch: bool = False) -> None:
         """Raises WireError."""
         self.settings = settings
         self._marks = Unmarker() if watch and _POSIX else None
+        self._parities: bytes | None = None
         try:
-            self._port = serial.Serial(
-                settings.port,
-                settings.baud,
-                bytesize=settings.bits,
-                parity=settings.parity,
-                stopbits=settings.stop,
-                xonxoff=settings.flow == "xonxoff",
-                rtscts=settings.flow == "rtscts",
-                timeout=0,
-                write_timeout=1.0,
-                exclusive=True,
-            )
-            if self._marks is not None:
-                self._mark()
+            self._port = _opened(settings)
         except _NOT_OPENED as error:
-            raise WireError(f"{settings.port} cannot be opened: {_why(error)}") from error
+            raise WireError(f"{settings.port} cannot be opened: {why(error)}") from error
+        try:
+            self._set_up(settings)
+        except _NOT_OPENED as error:
+            self._port.close()
+            raise WireError(f"{settings.port} cannot be set to {settings.words}: {why(error)}") from error
+
+    def _set_up(self, settings: LineSettings) -> None:
+        if sys.platform == "win32":
+            return
+        handle = self._port.fileno()
+        kept = terminal.frame(handle, settings.bits, settings.parity)
+        if settings.bits == 7 and settings.parity in PARITIES and not kept:
+            self._parities = table_of(settings.parity)
+        if settings.flow == "xonxoff":
+            self.obey_codes()
+        if self._marks is not None:
+            terminal.mark_damage(handle, parity=settings.parity != "N")
 
     @property
     def damaged(self) -> int:
@@ -71,13 +83,14 @@ class SerialWire:
     def send(self, data: bytes) -> None:
         """Raises WireError; also when the other side holds the line for more than a second."""
         try:
-            self._port.write(data)
+            self._port.write(self._coded(data))
         except _FAILURES as error:
             raise self._cut(error) from error
 
     def offer(self, data: bytes) -> int:
         """What the kernel takes at once."""
         try:
+            data = self._coded(data)
             if sys.platform == "win32":
                 self._port.write(data)
                 return len(data)
@@ -89,9 +102,12 @@ class SerialWire:
             raise self._cut(error) from error
 
     def obey_codes(self) -> None:
-        """Flow control by XON and XOFF, in the kernel."""
+        """Flow control by XON and XOFF, in the kernel; not where they carry a parity bit it does not know."""
         try:
-            self._port.xonxoff = True
+            if sys.platform == "win32":
+                self._port.xonxoff = True
+            elif self._parities is None:
+                terminal.obey_codes(self._port.fileno())
         except _FAILURES as error:
             raise self._cut(error) from error
 
@@ -153,25 +169,24 @@ class SerialWire:
             time.sleep(min(left * self.settings.character, _GLANCE))
         return not self._port.out_waiting
 
-    def _mark(self) -> None:
-        """Damaged characters come as FF 00 and the character, FF as FF FF."""
-        if sys.platform != "win32":
-            handle = self._port.fileno()
-            attributes = termios.tcgetattr(handle)
-            attributes[0] |= termios.PARMRK
-            if self.settings.parity != "N":
-                attributes[0] |= termios.INPCK
-            attributes[0] &= ~(termios.IGNPAR | termios.ISTRIP)
-            termios.tcsetattr(handle, termios.TCSANOW, attributes)
+    def _coded(self, data: bytes) -> bytes:
+        return data if self._parities is None else data.translate(self._parities)
 
     def _cut(self, error: Exception) -> WireError:
-        return WireError(f"{self.settings.port} has failed: {_why(error)}")
+        return WireError(f"{self.settings.port} has failed: {why(error)}")
 
 
-def _why(error: Exception) -> str:
-    """The operating system's word for it, where there is one."""
-    if isinstance(error, OSError) and error.strerror:
-        return os.strerror(error.errno) if error.errno else error.strerror
-    if error.args and isinstance(error.args[0], int):
-        return os.strerror(error.args[0])
-    return str(error).splitlines()[0] if str(error) else type(error).__name__
+def _opened(settings: LineSettings) -> serial.Serial:
+    """On POSIX bits, parity and XON/XOFF are set afterwards: pyserial does not look whether they are kept."""
+    return serial.Serial(
+        settings.port,
+        settings.baud,
+        bytesize=8 if _POSIX else settings.bits,
+        parity="N" if _POSIX else settings.parity,
+        stopbits=settings.stop,
+        xonxoff=not _POSIX and settings.flow == "xonxoff",
+        rtscts=settings.flow == "rtscts",
+        timeout=0,
+        write_timeout=1.0,
+        exclusive=True,
+    )

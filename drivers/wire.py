@@ -65,7 +65,10 @@ class FlowWire(Wire, Protocol):
         ...
 
     def obey_codes(self) -> None:
-        """From now on the other side's DC3 and DC1 (XOFF, XON) hold and release what is sent."""
+        """From now on the other side's DC3 and DC1 (XOFF, XON) hold and release what is sent.
+
+        A line that cannot leaves them in what comes.
+        """
         ...
 
     def waiting(self) -> int:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import sha256
 
 from core.ports import DriverError
-from drivers.transfer.settings import PARITIES, TransferSettings, parity_of
+from drivers.parity import PARITIES, parity_of
+from drivers.transfer.settings import TransferSettings
+from drivers.transfer.tape import lines_of, name_of
 
 LARGEST = 50_000_000  # bytes: no program is larger
 _SEVEN = 0x7F
 _CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
 _ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: the sender has no more
 _SKIPPED = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))  # leader, tape, flow; rubbed out
-_LINE_ENDS = re.compile(rb"[\r\n]+")
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
 
 
 class Phase(StrEnum):
@@ -97,11 +96,11 @@ class Incoming:
             raise IncompleteError("the program that came is empty; send it again")
         detected = seven and not self._settings.own_parity
         digest = sha256(whole).hexdigest()
-        return Program(whole, _name(head, lines), len(lines), digest, detected, self._skipped)
+        return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
 
     def _parted(self, text: bytes) -> tuple[bytes, list[bytes]]:
         """What stands behind the first %, and the lines."""
-        lines = _lines(text)
+        lines = lines_of(text)
         if not self._wrap:
             return b"", lines
         if lines and lines[-1].strip() == self._wrap:
@@ -190,27 +189,3 @@ class Incoming:
 def _even(raw: bytes) -> bool:
     """Whether every character is a seven-bit one with even parity: at least one must have its top bit set."""
     return any(character > _SEVEN for character in raw) and not any(parity_of(c) for c in raw if c)
-
-
-def _lines(text: bytes) -> list[bytes]:
-    """Lines ended by LF, CR LF, CR or, as on tapes, LF CR CR; empty ones between stay."""
-    lines: list[bytes] = []
-    at = 0
-    for ends in _LINE_ENDS.finditer(text):
-        count = ends[0].count(b"\n") or ends[0].count(b"\r")
-        lines += [text[at : ends.start()], *[b""] * (count - 1)]
-        at = ends.end()
-    return [*lines, text[at:]] if text[at:].strip() else lines
-
-
-def _name(head: bytes, lines: list[bytes]) -> str:
-    """As written behind the first %, else the O number of the first line that has words."""
-    said = head.decode("ascii", "replace").strip().strip("()").strip()
-    header = re.fullmatch(r"_N_(.+)_(MPF|SPF)", said, re.IGNORECASE)
-    if header is not None:
-        said = f"{header[1]}.{header[2].lower()}"
-    if _NAME.fullmatch(said):
-        return said
-    first = next((line for line in lines if line.strip()), b"").decode("ascii", "replace")
-    number = re.match(r"\s*[O:](\d{1,8})\b", first, re.IGNORECASE)
-    return f"O{number[1]}" if number else ""

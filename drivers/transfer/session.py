@@ -6,8 +6,9 @@ import threading
 from dataclasses import dataclass
 
 from core.ports import Clock, DriverError
+from drivers.parity import table_of
 from drivers.transfer.incoming import Incoming, IncompleteError, Phase, Program
-from drivers.transfer.settings import DC1, DC3, TransferSettings
+from drivers.transfer.settings import DC1, DC3, DC4, TransferSettings
 from drivers.wire import FlowWire
 
 CHUNK = 64  # bytes: what a USB adapter may still send after the other side has said stop
@@ -58,8 +59,10 @@ class Sending(_Transfer):
     def __init__(self, wire: FlowWire, clock: Clock, settings: TransferSettings, data: bytes) -> None:
         super().__init__(wire, clock, settings)
         self._data = data
+        self._needed = len(data.rstrip(b"\r\n\x00" + DC4))  # what comes behind need not be taken
         self._moved = clock.now()
         self._lines = 0
+        self._held = False  # by a DC3 that the kernel did not obey
         self.reach = Reach(0, len(data))
 
     def run(self) -> int:
@@ -78,24 +81,29 @@ class Sending(_Transfer):
     def _wait_for_start(self) -> None:
         until = self._clock.now() + PATIENCE
         self._tell(0, FOR_DC1)
-        while DC1[0] not in {character & 0x7F for character in self._wire.receive(TICK)}:
+        come = b""
+        while DC1[0] not in {character & 0x7F for character in come}:
             self._go_on()
             if self._clock.now() > until:
                 raise DriverError(
                     "the other side has not asked for a program (DC1) for 2 minutes; start it there"
                 )
+            come = self._wire.receive(TICK)
         if self._settings.line.flow == "xonxoff":
             self._wire.obey_codes()
+        self._heed(come)
 
     def _send(self) -> None:
         taken = out = 0
         self._moved = self._clock.now()
         while out < len(self._data):
             self._go_on()
-            if not self._wire.waiting() and taken < len(self._data):
+            if not self._held and not self._wire.waiting() and taken < len(self._data):
                 taken += self._wire.offer(self._data[taken : taken + CHUNK])
             before, out = out, taken - self._wire.waiting()
             self._watch(out, moved=out > before)
+            if out >= self._needed and (self._held or self.reach.what == HELD_BACK):
+                return  # DC3 behind the last %: that was enough
             if out < len(self._data):
                 self._pause(taken - out)
 
@@ -111,8 +119,17 @@ class Sending(_Transfer):
         self._tell(out, HELD_BACK if still > HELD else "")
 
     def _pause(self, waiting: int) -> None:
-        """As long as what waits takes to go out, or until something comes back, which nobody asked for."""
-        self._wire.receive(min(max(waiting, 1) * self._settings.line.character, TICK))
+        """As long as what waits takes to go out, or until something comes back."""
+        self._heed(self._wire.receive(min(max(waiting, 1) * self._settings.line.character, TICK)))
+
+    def _heed(self, come: bytes) -> None:
+        """DC3 and DC1 come here where the kernel does not obey them. Nothing else was asked for."""
+        if self._settings.line.flow != "xonxoff":
+            return
+        for character in come:
+            plain = character & 0x7F
+            if plain in {DC1[0], DC3[0]}:
+                self._held = plain == DC3[0]
 
     def _tell(self, out: int, what: str) -> None:
         line_end = self._settings.eol[-1].encode("ascii")
@@ -176,4 +193,5 @@ class Receiving(_Transfer):
 
     def _say(self, code: bytes) -> None:
         if self._settings.dc_codes or self._settings.line.flow == "xonxoff":
-            self._wire.offer(code)
+            own = self._settings.own_parity
+            self._wire.offer(code.translate(table_of(self._settings.line.parity)) if own else code)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from drivers.parity import PARITIES
 from drivers.wire import LineSettings
 
 DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
-PARITIES = {"E": 0, "O": 1}  # what the count of ones in a character is, modulo 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +43,3 @@ class TransferSettings:
         if self.own_parity:
             return replace(self.line, bits=8, parity="N", flow=flow)
         return replace(self.line, flow=flow)
-
-
-def parity_of(character: int) -> int:
-    """Its ones, modulo 2."""
-    return character.bit_count() & 1

@@ -31,6 +31,31 @@ def test_from_one_command_to_the_other(tmp_path: Path, capsys: pytest.CaptureFix
     assert status == 0, told.err
 
 
+SETTINGS = (
+    "--baud 110 --bits 7 --parity O --stop 2",
+    "--bits 7 --parity E --dc-codes",
+    "--bits 7 --parity N --flow none --dc-codes",
+    "--parity E --baud 115200",
+    "--stop 2 --flow none --dc-codes",
+)
+
+
+@pytest.mark.parametrize("settings", SETTINGS)
+def test_every_setting_of_a_line(settings: str, tmp_path: Path) -> None:
+    """Both ends set to the same; twice, because a port is left as it was set."""
+    source = tmp_path / "PIN.nc"
+    source.write_bytes(b"G90G72\nG00X1.Z.1\nM30\n")
+    end = settings.split()
+    with Pair() as cable, ThreadPoolExecutor(1) as pool:
+        for name in ("ONE.nc", "TWO.nc"):
+            out = tmp_path / name
+            future = pool.submit(main, ["serial", "receive", "--port", cable.far, "--out", str(out), *end])
+            send = ["serial", "send", str(source), "--port", cable.near, "--wait", "--leader", "8", *end]
+            assert main(send) == 0
+            assert future.result(WAIT) == 0
+            assert out.read_bytes() == source.read_bytes()
+
+
 def test_a_received_program_overwrites_nothing(far: FarEnd, tmp_path: Path, pool: ThreadPoolExecutor) -> None:
     target = tmp_path / "OLD.nc"
     target.write_bytes(b"M02\n")
@@ -69,7 +94,7 @@ def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[s
     program = tmp_path / "p.nc"
     program.write_text("M30\n")
     assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7"]) == 1
-    assert "/dev/ttyNONE7 cannot be opened: No such file" in capsys.readouterr().err
+    assert "/dev/ttyNONE7 cannot be opened: there is no such port" in capsys.readouterr().err
     assert main(["serial", "send", str(program)]) == 2
     assert "no port: say --port" in capsys.readouterr().err
 

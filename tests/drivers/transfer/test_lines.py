@@ -43,6 +43,25 @@ def test_xoff_in_the_middle_of_a_line_stops_it_and_xon_goes_on(far: FarEnd, pool
     assert bytes(far.heard) == data
 
 
+def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
+    far: FarEnd, pool: ThreadPoolExecutor
+) -> None:
+    """DC3 has three ones: with even parity it is 93 on the line, DC1 stays 11."""
+    settings = TransferSettings(LineSettings(far.port, bits=7, parity="E", flow="xonxoff"), eol="\n")
+    job = Sending(SerialWire(settings.sending), RealClock(), settings, outgoing(LONG[:40_000], settings))
+    future = pool.submit(job.run)
+    until(lambda: far.hear() != b"" and len(far.heard) > 200, "the beginning")
+    far.say(b"\x93")
+    until(lambda: far.hear(0.3) == b"", "a stop")
+    assert not future.done()
+    far.say(b"\x11")
+    until(lambda: far.hear() == b"" and future.done(), "the end")
+    while far.hear():
+        pass
+    assert all(c.bit_count() % 2 == 0 for c in far.heard)
+    assert bytes(c & 0x7F for c in far.heard) == outgoing(LONG[:40_000], settings)
+
+
 def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPoolExecutor) -> None:
     job, _, future = sent(far.port, pool)
     until(lambda: far.hear() != b"", "the beginning")

@@ -63,6 +63,19 @@ def test_a_hold_that_does_not_end_is_a_sentence() -> None:
     assert side.closed
 
 
+@pytest.mark.parametrize("obeyed", [True, False])
+def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
+    """The other side has all of it and says DC3 while the trailer goes out, with or without the kernel."""
+    settings = dataclasses.replace(SETTINGS, dc_codes=True, leader=200)
+    data = outgoing(TEXT, settings)
+    at = (len(data) - 130) / 960.0 * 1.05  # the last % is over
+    side = OtherSide(StepClock(), holds=(at, 1e9)) if obeyed else OtherSide(StepClock(), [(at, b"\x13")])
+    assert Sending(side, side.clock, settings, data).run() == len(data)
+    assert data.startswith(bytes(side.taken))
+    assert bytes(side.taken).rstrip(b"\0\x14\n").endswith(b"\n%")
+    assert len(side.taken) < len(data)
+
+
 def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
     side = OtherSide(StepClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
     settings = dataclasses.replace(SETTINGS, wait=True)
