@@ -55,7 +55,7 @@ class BesideInverter:
             raise
         assert isinstance(self.ports.spindle, InverterSpindle)
         spindle = self.ports.spindle
-        encoder.asked = lambda: spindle.asked
+        encoder.way = lambda: spindle.given
 
     def close(self) -> None:
         """Spindle first."""

@@ -14,6 +14,7 @@ from drivers.grblhal.overrides import LEAST, MOST
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _HIGHEST = 30  # setting
+_STANDS = 30.0  # rpm, between two reports of a spindle that reverses
 
 
 class GrblEncoder:
@@ -21,8 +22,8 @@ class GrblEncoder:
 
     def __init__(self, controller: Controller) -> None:
         self._c = controller
-        self.asked: Callable[[], float] = lambda: 0.0  # signed rpm that is asked of the spindle
-        self._way = 1.0
+        self.way: Callable[[], float] = lambda: 0.0  # signed rpm, as whatever turns it says
+        self._sign = 1.0
 
     @property
     def there(self) -> bool:
@@ -30,14 +31,32 @@ class GrblEncoder:
         return self._c.report is not None and self._c.report.measured is not None
 
     def speed(self) -> float:
-        """rpm; one that runs down has the sign of what was last asked."""
-        asked, report = self.asked(), self._c.report
-        self._way = math.copysign(1.0, asked) if asked else self._way
-        return self._way * abs(report.measured or 0.0) if report is not None else 0.0
+        """rpm; one that runs down has the sign that it had."""
+        way, report = self.way(), self._c.report
+        self._sign = math.copysign(1.0, way) if way else self._sign
+        return self._sign * abs(report.measured or 0.0) if report is not None else 0.0
 
     def angle(self) -> tuple[float, float] | None:
         """The controller keeps it to itself."""
         return None
+
+
+class _Way:
+    """The sign of a speed that is measured without one: reversed when it has come down, and no sooner."""
+
+    def __init__(self) -> None:
+        self._sign, self._least = 1.0, math.inf
+
+    def of(self, rpm: float, asked: float) -> float:
+        """``rpm`` with its sign, towards that of ``asked``."""
+        rpm = abs(rpm)
+        if math.copysign(1.0, asked) == self._sign:
+            self._least = math.inf
+            return self._sign * rpm
+        self._least = min(self._least, rpm)
+        if rpm < _STANDS or rpm > 1.05 * self._least + _STANDS:
+            self._sign, self._least = -self._sign, math.inf
+        return self._sign * rpm
 
 
 class GrblSpindle:
@@ -49,6 +68,7 @@ class GrblSpindle:
         self._wanted = 0.0
         self._said = 0.0  # of the last M3 or M4, signed
         self._runs = False  # in the controller: a stop or a reset ends that
+        self._way = _Way()
         self._paused_at: float | None = None  # stopped in a feed hold, whose lines are not read
 
     def run(self, rpm: float) -> None:
@@ -78,8 +98,9 @@ class GrblSpindle:
         report = self._c.report
         if report is None or report.speeds is None or len(report.speeds) < 2:
             return 0.0
-        told = report.measured if report.measured is not None else report.speeds[1]
-        return math.copysign(abs(told), self._said)
+        if report.measured is None:
+            return math.copysign(report.speeds[1], self._said)
+        return self._way.of(report.measured, self._said)
 
     def angle(self) -> tuple[float, float] | None:
         """The controller keeps it to itself."""
@@ -96,6 +117,7 @@ class GrblSpindle:
     def pump(self) -> None:
         """Bring the controller to what is wanted."""
         c = self._c
+        self.speed()  # of each report, or a reversal between two looks would be missed
         if not c.ready:
             return
         if c.state == "Hold":

@@ -76,11 +76,6 @@ class InverterSpindle:
         limit = self._config.rpm_max
         self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
-    @property
-    def asked(self) -> float:
-        """Rpm that the inverter has been told, signed."""
-        return self._attendant.want / self._config.hz_per_rpm
-
     def coast(self) -> None:
         """Over its line an inverter knows one stop, that of its ramp; to run free is what its STO is for."""
         self._attendant.want = 0.0
@@ -98,13 +93,13 @@ class InverterSpindle:
         The inverter's word also while the encoder is lost; of two that disagree the higher.
         """
         if self._encoder is None or self._lost():
-            return self._given
+            return self.given
         if self._unmeasured:
-            return max(self._encoder.speed(), self._given, key=abs)
+            return max(self._encoder.speed(), self.given, key=abs)
         return self._encoder.speed()
 
     @property
-    def _given(self) -> float:
+    def given(self) -> float:
         """rpm, signed, as the inverter last said."""
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
@@ -138,10 +133,10 @@ class InverterSpindle:
 
     def _wrong(self, encoder: Encoder) -> bool:
         """Whether it turns, or has to, and nobody measures it."""
-        needed = self._attendant.want != 0.0 or self._given != 0.0
+        needed = self._attendant.want != 0.0 or self.given != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
-            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self._given, now)
+            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.given, now)
         return bool(self._unmeasured)
 
     def status(self) -> str:

@@ -61,6 +61,19 @@ def test_the_spindle_turns_and_stops() -> None:
     assert bench.machine.spindle.fault() == ""
 
 
+def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_down() -> None:
+    """Its encoder tells no direction: 600 rpm of before are none the other way, at which one may cut."""
+    bench = powered()
+    bench.machine.spindle.run(600.0)
+    bench.alone(1.5)
+    bench.machine.spindle.run(-600.0)
+    for _ in range(300):
+        bench.alone(0.01)
+        real, told = bench.peer.spindle.speed, bench.machine.spindle.speed()
+        assert told > -450.0 or real < 0.0
+    assert bench.machine.spindle.speed() == pytest.approx(-600.0, abs=1.0)
+
+
 def test_in_motion_the_spindle_follows_by_its_override() -> None:
     bench = powered()
     bench.machine.spindle.run(1000.0)

@@ -1,0 +1,148 @@
+"""An inverter beside the controller: it turns the spindle, the controller moves and at most measures."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from app.compose.backends import connect
+from app.compose.grblhal import grblhal_config
+from core.machine.errors import MachineFileError
+from core.machine.load import load_machine, parse_machine
+from core.ports import DriverError
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.grblhal.peer.serve import TcpEnd, serve
+from drivers.simulated import RealClock
+from drivers.simulated.drive_spindle import SpindleFaults
+from tests.drivers.grblhal.bench import SHIPPED, quirky
+from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
+from tests.drivers.inverter.peers import HuanyangSlave, Inverter
+
+Captured = pytest.CaptureFixture[str]
+_VFD = 'driver = "vfd"\nvfd = {{ family = "huanyang", port = "{}", comm_loss_s = 1.5, hz_per_rpm = 0.01667 }}'
+
+
+class Belt:
+    """The controller's encoder on a spindle that it does not turn; whatever it orders goes nowhere."""
+
+    def __init__(self, turned: Inverter) -> None:
+        self._turned = turned
+        self.faults = SpindleFaults()
+        self.ordered = 0.0
+
+    @property
+    def speed(self) -> float:
+        return self._turned.motor.speed
+
+    @property
+    def turns(self) -> float:
+        return self._turned.motor.turns
+
+    def advance(self, now: float) -> None:
+        """The inverter's peer does."""
+
+    def order(self, now: float, rpm: float) -> None:  # noqa: ARG002  a motor's
+        self.ordered = max(self.ordered, abs(rpm))
+
+
+@dataclass
+class Both:
+    """A machine file whose controller and inverter answer."""
+
+    path: Path
+    inverter: Inverter
+    firmware: Firmware
+    belt: Belt
+
+
+@pytest.fixture(params=["encoder", "none"])
+def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
+    one = inverter()
+    firmware = Firmware(RealClock(), quirky(encoder=request.param == "encoder"))
+    belt = Belt(one)
+    firmware.spindle = belt  # type: ignore[assignment]  what it asks of a motor
+    end, over = TcpEnd("127.0.0.1", 0), threading.Event()
+    peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
+    with ExitStack() as stack:
+        cable = stack.enter_context(Pair())
+        stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
+        peer.start()
+        path = tmp_path / "both.toml"
+        text = SHIPPED.replace("/dev/ttyACM0", end.name)
+        path.write_text(text.replace('driver = "grblhal"', _VFD.format(cable.near)), encoding="utf-8")
+        yield Both(path, one, firmware, belt)
+        over.set()
+        peer.join(5.0)
+
+
+def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:
+    made = connect(load_machine(both.path), RealClock())
+    try:
+        spindle = made.ports.spindle
+
+        def speed() -> float:
+            made.ports.axes.sample()  # the driver's round
+            return spindle.speed()
+
+        spindle.run(600.0)
+        until(lambda: abs(speed() - 600.0) < 3.0, "600 rpm")
+        spindle.run(-600.0)
+        early = []
+        while not both.inverter.back:
+            early.append(speed())
+        assert all(speed > -60.0 for speed in early)
+        until(lambda: abs(speed() + 600.0) < 3.0, "600 rpm back")
+        assert both.inverter.motor.speed == pytest.approx(-600.0, abs=5.0)
+        spindle.run(0.0)
+        until(lambda: speed() == 0.0, "standstill")
+        assert spindle.fault() == ""
+        assert both.belt.ordered == 0.0
+        assert not [line for line in both.firmware.program.executed if line.startswith(("M3", "M4"))]
+    finally:
+        made.close()
+
+
+def test_threads_need_the_controllers_encoder(both: Both) -> None:
+    made = connect(load_machine(both.path), RealClock())
+    try:
+        assert made.ports.blocks is not None
+        able = both.firmware.quirks.encoder
+        assert ("thread" in made.ports.blocks.caps) is able
+        by_frequency = [told for told in made.ports.warnings if "frequency" in told]
+        assert bool(by_frequency) is not able
+        assert not [told for told in made.ports.warnings if "$30" in told]
+    finally:
+        made.close()
+
+
+def test_a_program_runs_with_it(
+    both: Both, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    program = tmp_path / "part.nc"
+    program.write_text("G90G94F300\nM03S600\nX.1Z.1\nG01X.05F60\nM05\nM30\n", encoding="utf-8")
+    assert main(["run", str(program), "--headless", "--machine", str(both.path)]) == 0
+    assert "complete" in capsys.readouterr().out
+    assert both.inverter.stops >= 1
+    assert not both.inverter.running
+
+
+def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_let_go(both: Both) -> None:
+    text = both.path.read_text(encoding="utf-8")
+    port = text.partition('family = "huanyang", port = "')[2].partition('"')[0]
+    missing = parse_machine(text.replace(port, "/dev/ttyNONE7"), "missing.toml")
+    with pytest.raises(DriverError, match="huanyang on /dev/ttyNONE7"):
+        connect(missing, RealClock())
+    connect(load_machine(both.path), RealClock()).close()
+
+
+def test_another_driver_beside_the_controller_is_refused() -> None:
+    text = SHIPPED.replace('driver = "grblhal"', 'driver = "cia402"')
+    with pytest.raises((DriverError, MachineFileError), match=r"spindle\.driver"):
+        grblhal_config(parse_machine(text, "bad.toml"))
