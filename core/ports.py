@@ -110,6 +110,22 @@ class Spindle(Protocol):
     def fault(self) -> str: ...
 
 
+class SpindleHold(Protocol):
+    """The spindle's drive as C, where it is the same drive: changed over at standstill."""
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        """Ask for it to be held as C, or to turn again; C keeps its count.
+
+        ``orient``: it turns by the short way until its count is also its place from the index, in whole
+        turns. Raises DriverError while it turns or has no power.
+        """
+        ...
+
+    def held(self) -> bool:
+        """Whether C may move, and stays where it is put."""
+        ...
+
+
 class Cam(NamedTuple):
     """Motion over the turns of the spindle instead of over time.
 
@@ -207,4 +223,5 @@ class MachinePorts:
     station: Station
     warnings: Sequence[str] = ()
     gear: Gear | None = None  # None: threads follow the spindle by setpoints in time
+    lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints

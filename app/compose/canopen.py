@@ -142,6 +142,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
         counts_per_rev=node.counts_per_rev,
         eds=_eds(node, machine),
         objects=_objects(node),
+        is_c=machine.c_enabled and machine.spindle_is_c and "C" not in nodes,
     )
 
 

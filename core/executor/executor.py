@@ -48,7 +48,7 @@ class Executor:
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
-        spindle = SpindleControl(ports.spindle, machine.spindle)
+        spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         self._bench = Bench(
             machine, ports, on_event, spindle, ports.clock.now(), ports.axes.sample(), dict(ports.io.inputs())
         )

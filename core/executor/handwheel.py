@@ -130,7 +130,7 @@ class Handwheel:
             (not inputs.get(selector(axis), True), f"the station's switch does not select {axis}"),
         )
         found = next((why for so, why in reasons if so), "")
-        return found or self._jogger.spinning(axis)
+        return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
 
     def _follow(self, clicks: int) -> bool:
         bench, jogger = self._bench, self._jogger

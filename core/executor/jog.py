@@ -71,7 +71,7 @@ class Jogger:
             return "feed hold is pressed"
         if self.axis and self.axis != name:
             return f"{self.axis} is still being jogged"
-        return self.spinning(name)
+        return self.spinning(name) or self.uncoupled(name)
 
     def spinning(self, name: str) -> str:
         """Why C does not move as long as it turns as the spindle."""
@@ -80,6 +80,12 @@ class Jogger:
         if name == "C" and bench.machine.spindle_is_c and turns:
             return "C is the spindle, and the spindle turns; stop it first"
         return ""
+
+    def uncoupled(self, name: str) -> str:
+        """Why C does not move yet: the spindle's drive has to become C first, which begins here."""
+        if name != "C" or not self._bench.machine.spindle_is_c or self._bench.spindle.hold(orient=False):
+            return ""
+        return "the spindle's drive becomes C: let go, and begin again in two seconds"
 
     def _too_far(self, name: str, distance: float) -> str:
         """A step that would leave the travel is not shortened: it would no longer be what was asked."""

@@ -10,7 +10,7 @@ from core.executor.turns import Turns
 from core.geometry.spindle import surface_rpm
 from core.interpreter.blocks import Block
 from core.machine.model import SpindleModel
-from core.ports import Spindle
+from core.ports import Spindle, SpindleHold
 
 _GRACE = 1.0  # s in which a drive must have begun to obey a lower speed
 _OVER = 0.1  # fraction and
@@ -37,8 +37,9 @@ class SpindleControl:
     Nothing in here starts a spindle but ``ask``: after ``stop`` it stays still until the program asks again.
     """
 
-    def __init__(self, port: Spindle, model: SpindleModel) -> None:
+    def __init__(self, port: Spindle, model: SpindleModel, lock: SpindleHold | None = None) -> None:
         self._port = port
+        self._lock = lock
         self._model = model
         self.limit: float | None = None  # F10, until restart
         self.command = 0.0  # signed rpm as sent
@@ -90,6 +91,7 @@ class SpindleControl:
 
     def ask(self, ask: Ask) -> None:
         """M03, M04, S."""
+        self._let_go()
         self._ask = ask
         self._in_band_since = None
 
@@ -101,13 +103,32 @@ class SpindleControl:
     def stop(self) -> None:
         """M05, and every stop of the control: the word is forgotten."""
         self._ask = None
+        self._let_go()
         self._send(0.0, self._now)
 
     def coast(self) -> None:
         """Let it run down without torque: E-stop, and drives that are no longer trusted."""
         self._ask, self.command = None, 0.0
         self._coasting = True
+        self._let_go()
         self._port.coast()
+
+    def hold(self, *, orient: bool) -> bool:
+        """M19 and M89: as C; True once it is. Raises DriverError."""
+        if self._lock is None:
+            return True
+        if not self._lock.held():
+            self._lock.hold(True, orient)
+        return self._lock.held()
+
+    @property
+    def held(self) -> bool:
+        """Whether C may move, as far as the spindle's drive decides that."""
+        return self._lock is None or self._lock.held()
+
+    def _let_go(self) -> None:
+        if self._lock is not None:
+            self._lock.hold(False)
 
     def look(self) -> None:
         """First thing in a tick: read the encoder."""

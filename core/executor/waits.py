@@ -23,6 +23,7 @@ from core.interpreter.blocks import Block
 
 _IN_POSITION = 1.0  # s for a slide that is at rest to arrive
 _COLLET_LATE = 2.0  # s beyond its time
+_CHANGE_OVER = 25.0  # s in which a spindle's drive has become C, its index found
 
 
 @dataclass(slots=True)
@@ -84,8 +85,8 @@ def carry_out(block: Block, bench: Bench) -> Wait | None:
             _start_spindle(block, bench)
         case SpindleStop():
             bench.spindle.stop()
-        case SpindleLock():
-            return _lock_spindle(bench)
+        case SpindleLock(orient=orient):
+            return _lock_spindle(bench, orient=orient)
         case Coolant(on=on):
             bench.ports.io.write("coolant", on)
         case Output(name=name, on=on):
@@ -111,11 +112,20 @@ def _start_spindle(block: Block, bench: Bench) -> None:
     bench.spindle.ask(Ask.of(block))
 
 
-def _lock_spindle(bench: Bench) -> Wait:
-    """C may move once the spindle stands: until then its drive turns, and does not position."""
-    bench.spindle.stop()
-    limit = bench.machine.spindle.timeout
-    return Wait(lambda: "SPINDLE STOP", lambda _: bench.spindle.stopped, bench.now, limit, "ignores-stop")
+def _lock_spindle(bench: Bench, *, orient: bool) -> Wait:
+    """C may move once the spindle stands and its drive positions; held already it is only kept."""
+    spindle, change = bench.spindle, 0.0
+    if bench.ports.lock is None or not spindle.held:
+        spindle.stop()
+        change = 0.0 if bench.ports.lock is None else _CHANGE_OVER
+    limit = bench.machine.spindle.timeout + change
+    return Wait(
+        lambda: "C AXIS" if spindle.stopped else "SPINDLE STOP",
+        lambda _: spindle.stopped and spindle.hold(orient=orient),
+        bench.now,
+        limit,
+        "ignores-stop",
+    )
 
 
 def _move_collet(closed: bool, bench: Bench) -> Wait:

@@ -24,7 +24,7 @@ class CanopenAxes:
 
     def __init__(self, config: CanopenConfig, bus: Bus) -> None:
         self._bus = bus
-        self._config = config
+        self.config = config
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
         self.drives = DriveSet(config.axes, bus, MODES[config.mode])
@@ -77,7 +77,7 @@ class CanopenAxes:
         homing = self.homing or self._given_up
         if homing is not None:
             raise DriverError(f"{homing.config.name} is homing; wait until it is done")
-        check_limits(segments, self._config.axes, self._homed())
+        check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
         self.queue.splice(segments, self.now())
 
@@ -146,6 +146,14 @@ class CanopenAxes:
         self.beside = self.fault = ""
         self.drives.clear()
 
+    def follower_rests(self, now: float) -> bool:
+        """Nothing is queued, and nothing is left in the drives."""
+        return self.queue.horizon(now) <= now and not self.follower.playing
+
+    def rest_here(self) -> None:
+        """The path goes on from where the drives stand."""
+        self.queue.rest_at(self._actual())
+
     # --- inside -------------------------------------------------------------------------------------------
 
     def _supervise(self) -> None:
@@ -176,7 +184,7 @@ class CanopenAxes:
         elif self._given_up is None:
             at = self.now() + self.commit
             if any(self.queue.demand_at(at)[1]):
-                self.queue.brake(at, [axis.amax for axis in self._config.axes])
+                self.queue.brake(at, [axis.amax for axis in self.config.axes])
             else:
                 self._end(at)
             self.follower.braked(at)

@@ -33,7 +33,10 @@ class AxisConfig:
 
 @dataclass(frozen=True, slots=True)
 class SpindleConfig:
-    """A drive in profile velocity mode; rpm and rpm/s. ``counts_per_rev`` 0: it tells no angle."""
+    """A drive in profile velocity mode; rpm and rpm/s. ``counts_per_rev`` 0: it tells no angle.
+
+    ``is_c``: it positions C too.
+    """
 
     node: int
     rpm_max: float
@@ -42,6 +45,7 @@ class SpindleConfig:
     counts_per_rev: int = 0
     eds: str = ""
     objects: Objects = ()
+    is_c: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,11 @@ class DriveSet:
         self.seen = self._sent = bus.clock.now()  # the SYNC of the last answers, of the last exchange
 
     @property
+    def drives(self) -> list[Drive402]:
+        """Without what they move."""
+        return [axis.drive for axis in self.axes]
+
+    @property
     def powered(self) -> bool:
         """Every one of them."""
         return all(axis.drive.enabled for axis in self.axes)

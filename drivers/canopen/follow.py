@@ -27,6 +27,11 @@ class Follower(Protocol):
     urgent: bool  # the commands must go out in this tick
     off_path: float  # counts, the worst deviation that could not be avoided
 
+    @property
+    def playing(self) -> bool:
+        """The drives still have something of it to do."""
+        ...
+
     def check(self, segments: Segments) -> None:
         """Refuse, by DriverError, what these drives cannot follow."""
         ...
@@ -63,6 +68,11 @@ class CspFollower:
         self.trouble = ""
         self.urgent = False
         self.off_path = 0.0
+
+    @property
+    def playing(self) -> bool:
+        """Each setpoint is alone."""
+        return False
 
     def check(self, segments: Segments) -> None:
         """Any path will do."""

@@ -33,6 +33,11 @@ class ProfiledFollower:
         self.urgent = False
         self.off_path = 0.0
 
+    @property
+    def playing(self) -> bool:
+        """A target waits, or was not acknowledged yet."""
+        return self._pending is not None or self._told >= 0.0
+
     def check(self, segments: Segments) -> None:
         """Refuse what is no straight line."""
         dt = segments.dt[-1]

@@ -42,7 +42,6 @@ class PvtFollower:
         self._queue = queue
         self._ahead = ahead - RESTART
         self._longest = round(1000 * record)
-        self._counts = [axis.config.count for axis in axes]
         self._phase = _Phase.REST
         self.front = 0.0  # time of the next point
         self._begun = 0.0
@@ -119,7 +118,7 @@ class PvtFollower:
             self._phase = _Phase.ENDING
             return
         while self._in_drives(now) < MOST:
-            stretch = span(self._demand, self.front, self._longest, self._counts)
+            stretch = span(self._demand, self.front, self._longest, self._counts())
             if self.front + 0.001 * stretch.ms > now + self._ahead:
                 return
             self.off_path = max(self.off_path, stretch.off)
@@ -140,6 +139,10 @@ class PvtFollower:
             axis.drive.push(packed(ms, speed, p / axis.config.count))
         self.front += 0.001 * ms
         self._sent.append(self.front)
+
+    def _counts(self) -> list[float]:
+        """Lengths of a count: C may have joined."""
+        return [axis.config.count for axis in self._axes]
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         p, v = self._queue.demand_at(t)

@@ -8,7 +8,7 @@ from drivers.canopen.bus import Bus
 from drivers.canopen.config import SpindleConfig
 from drivers.canopen.drive import Drive402
 from drivers.canopen.standing import stopping
-from drivers.canopen.states import MODE_BITS, PV, DriveState
+from drivers.canopen.states import HM, IP, MODE_BITS, PV, DriveState
 
 _STANDS = 2.0  # rpm
 _POWER = 1.0  # s in which the drive must come on
@@ -23,6 +23,8 @@ class CanopenSpindle:
         self._came_on = False
         self._last = self._counts = 0
         self._ordered = 0.0  # s, when power was last asked for
+        self.lent = False  # to C: it does not turn as the spindle
+        self.kept = False  # and shall stay so
         self.drive = Drive402(bus, "spindle", config.node, config.eds, od.TARGET_SPEED, od.VELOCITY)
 
     def connect(self) -> None:
@@ -34,7 +36,12 @@ class CanopenSpindle:
             (od.PROFILE_DECEL, 0, round(config.decel)),
             (od.QUICK_DECEL, 0, round(config.decel)),
         )
-        self.drive.connect((), MODE_BITS[PV], (*standing, *config.objects))
+        if config.is_c:
+            modes = MODE_BITS[PV] | MODE_BITS[HM] | MODE_BITS[IP]
+            objects = (*standing, (od.IP_SUBMODE, 0, -1), *config.objects)
+            self.drive.connect((od.PVT_RECORD,), modes, objects)
+        else:
+            self.drive.connect((), MODE_BITS[PV], (*standing, *config.objects))
         self.drive.mode, self.drive.target = PV, 0
 
     def tick(self) -> None:
@@ -45,6 +52,8 @@ class CanopenSpindle:
         self._came_on = drive.enabled and drive.goal is DriveState.ENABLED
         if drive.trouble:
             drive.goal, drive.target = DriveState.QUICK_STOP, 0
+        elif self.lent:
+            self._came_on = False
         elif drive.goal is DriveState.ENABLED:
             self._watch(lost)
 
@@ -62,14 +71,35 @@ class CanopenSpindle:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
         if rpm and (self._bus.trouble or self.drive.trouble):
             raise DriverError(f"the spindle stays off: {self._bus.trouble or self.drive.trouble}")
+        if rpm and self.kept:
+            raise DriverError("the spindle stays off: its drive is held as C; let it go first, by M05")
         limit = self._config.rpm_max
         self.drive.target = round(min(max(rpm, -limit), limit))
+        if rpm and self.lent:
+            return  # it turns as soon as it is no longer C
         if rpm and self.drive.goal is not DriveState.ENABLED:
             self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
 
     def coast(self) -> None:
         """No torque: it runs down by itself."""
-        self.drive.target, self.drive.goal = 0, DriveState.OFF
+        self.drive.target = 0
+        if not self.lent:
+            self.drive.goal = DriveState.OFF
+
+    @property
+    def counts_per_rev(self) -> int:
+        """Of its encoder; 0: not known."""
+        return self._config.counts_per_rev
+
+    @property
+    def wanted(self) -> bool:
+        """Whether it is told to turn."""
+        return self.drive.target != 0
+
+    def resume(self) -> None:
+        """It is no longer C: what it was told meanwhile is done."""
+        if self.drive.target:
+            self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
 
     def clear_fault(self) -> None:
         """Forget and reset a fault, without power. Raises DriverError where it has to be configured anew."""
@@ -80,8 +110,8 @@ class CanopenSpindle:
         self.drive.clear()
 
     def speed(self) -> float:
-        """Measured rpm, signed."""
-        return float(self.drive.more)
+        """Measured rpm, signed; as C it does not turn as the spindle."""
+        return 0.0 if self.lent else float(self.drive.more)
 
     def angle(self) -> tuple[float, float] | None:
         """(time, turns) by the drive's encoder, of the last answer; None without counts a turn."""

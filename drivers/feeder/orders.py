@@ -18,6 +18,7 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
         "clear_fault": ports.axes.clear_fault,
         "run": lambda: ports.spindle.run(number(head, "rpm")),
         "coast": ports.spindle.coast,
+        "hold": lambda: _hold(ports, on=on, orient=head.get("orient") is True),
         "write": lambda: ports.io.write(text(head, "name"), on),
         "safe": ports.io.safe,
     }
@@ -37,6 +38,12 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
         return use(*values)
     except TypeError as error:
         raise DriverError(f"the simulated station cannot {name} with {values}") from error
+
+
+def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
+    if ports.lock is None:
+        raise DriverError("the spindle's drive of this machine is not C")
+    ports.lock.hold(on, orient)
 
 
 def _how(word: str) -> Stop:

@@ -127,6 +127,21 @@ class FeederSpindle:
         return self._line.lost or text(self._line.look(), "spindle")
 
 
+class FeederLock:
+    """``core.ports.SpindleHold``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        """Ask for the spindle's drive as C, or let it turn again."""
+        self._line.order("hold", on=on, orient=orient)
+
+    def held(self) -> bool:
+        """Whether C may move."""
+        return self._line.look().get("held") is True and not self._line.lost
+
+
 class FeederIO:
     """``core.ports.DigitalIO``."""
 
@@ -180,6 +195,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         station=FeederStation(line),
         warnings=tuple(texts(hello.get("warnings"))),
         gear=FeederGear(line) if hello.get("gear") is True else None,
+        lock=FeederLock(line) if hello.get("lock") is True else None,
     )
 
 

@@ -146,6 +146,7 @@ class Feeder:
             "axes": axes.axes,
             "commit": axes.commit,
             "gear": self._ports.gear is not None,
+            "lock": self._ports.lock is not None,
             "warnings": [*self._warnings, *self._ports.warnings],
         }
         return Message(head, NOTHING)
@@ -162,6 +163,7 @@ class Feeder:
             "outputs": dict(ports.io.outputs()),
             "station": asdict(ports.station.snapshot()),
             "geared": geared,
+            "held": ports.lock is not None and ports.lock.held(),
             "notes": self._notes,
         }
         self._notes = []

@@ -151,7 +151,7 @@ def _drives(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding
         if axis == "C" and not (values.has("axis.C.enabled") and values.flag("axis.C.enabled")):
             continue
         path = f"axis.{axis}"
-        if axis not in reading.nodes:
+        if axis not in reading.nodes and not (axis == "C" and _turned_by_spindle(reading)):
             yield Finding(f"canopen.nodes.{axis}", "", f"missing; axis {axis} needs a drive")
         if values.has(f"{path}.home.method") and values.number(f"{path}.home.method") == 0:
             yield Finding(
@@ -159,6 +159,14 @@ def _drives(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding
             )
     if _is(values, "spindle.driver", "cia402") and _SPINDLE not in reading.nodes:
         yield Finding("canopen.nodes.spindle", "", 'missing; spindle.driver = "cia402" needs a drive')
+
+
+def _turned_by_spindle(reading: HardwareReading) -> bool:
+    """Whether C of a lathe can be the spindle's own drive: one that counts, and queues positions."""
+    values, counts = reading.values, f"canopen.nodes.{_SPINDLE}.counts_per_rev"
+    own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
+    drives = _is(values, "spindle.driver", "cia402") and _is(values, "canopen.mode", "pvt")
+    return drives and not own and values.has(counts) and values.number(counts) > 0
 
 
 def _heartbeat(reading: HardwareReading) -> Iterator[Finding]:

@@ -40,6 +40,7 @@ class AxisDrive:
         self._pending = False  # a new target, to be acknowledged
         self._going = False
         self.values: dict[tuple[int, int], int] = {}
+        self.unit = 1.0  # counts/s of one unit of its velocities
         self.second: Callable[[], int] | None = None  # counts of a second encoder input
 
     # --- objects ------------------------------------------------------------------------------------------
@@ -165,8 +166,9 @@ class AxisDrive:
             return
         ms, v0, p0 = self._now
         _, v1, p1 = self.queue[0]
+        unit = self.unit
         before = self.p
-        self.p = count * hermite(p0, v0, p1, v1, 0.001 * ms, self._in / (0.001 * ms))
+        self.p = count * hermite(p0, unit * v0, p1, unit * v1, 0.001 * ms, self._in / (0.001 * ms))
         self.v = (self.p - before) / dt
 
     def _towards(self, goal: float, dt: float) -> None:
@@ -185,7 +187,7 @@ class AxisDrive:
     def _look_for_home(self, dt: float) -> None:
         """To the switch at the first homing speed; the reference once it stands there."""
         way = self.servo.switch - self.p
-        speed = max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.servo.axis.count
+        speed = max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.unit * self.servo.axis.count
         self.v = math.copysign(min(speed, abs(way) / dt), way)
         self.p += self.v * dt
         if abs(way) > 1e-9:

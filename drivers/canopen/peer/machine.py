@@ -130,7 +130,8 @@ class Peers:
                 self._add(axis.name, axis.node, drive)
         if config.spindle is not None:
             counts = config.spindle.counts_per_rev
-            spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"))
+            as_c = plant.config.axes[plant.names.index("C")] if config.spindle.is_c else None
+            spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"), as_c)
             plant.spindle_drive = spindle
             self._add("spindle", config.spindle.node, spindle)
         if config.encoder is not None:

@@ -1,0 +1,270 @@
+"""C on the spindle's own drive: changed over at standstill from turning to positioning, and back.
+
+Free, the drive turns as the spindle. Held, it is one more axis of the set: powered, fed and stopped with the
+others. Where C then stands is what the control last counted; oriented, the spindle first turns so far that
+this is also its place from the index.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+
+from core.ports import DriverError
+from drivers.canopen import objects as od
+from drivers.canopen.axes import CanopenAxes
+from drivers.canopen.drives import DrivenAxis
+from drivers.canopen.spindle import CanopenSpindle
+from drivers.canopen.states import BIT_12, BIT_13, HM, IP, NEW, PV, REACHED, DriveState
+from drivers.straight import straight
+
+_STANDS = 2.0  # rpm
+_CHANGE = 2.0  # s for a change of mode with power
+_SEARCH = 15.0  # s for the index
+_FIRST = 0.1  # s in which "target reached" may still be that of the last move
+_HERE = (37, 35)  # homing methods "where it stands", the new code and the old one
+_INDEX = 34  # homing method: the index, turning forward
+_SEARCH_RPM = 60
+_TURN = 360.0
+
+
+class Step(Enum):
+    """How far the change-over is."""
+
+    FREE = "turns as the spindle"
+    REST = "waits until the slides' queues have ended"
+    INDEX = "looks for its index"
+    HERE = "is told where it stands"
+    POWER = "changes to positions"
+    TURN = "turns to its place"
+    HELD = "is C"
+    LEAVE = "ends being C"
+    BACK = "changes to speeds"
+
+
+class SpindleC:
+    """``core.ports.SpindleHold``. ``tick`` with the bus's rounds; ``trouble`` stops all axes."""
+
+    def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
+        self._axes, self._spindle, self._drive = axes, spindle, spindle.drive
+        self._number = axes.axes.index(name)
+        config = axes.config.axes[self._number]
+        self._per_turn = spindle.counts_per_rev
+        count = _TURN / self._per_turn
+        self._axis = DrivenAxis(
+            replace(config, count=count, counts_per_rev=self._per_turn), spindle.drive, homed=True
+        )
+        self.step = Step.FREE
+        self.trouble = ""
+        self._wanted = self._orient = False
+        self._since = 0.0
+        self._told = False  # the drive was told to begin its homing
+        self._phase: int | None = None  # counts from the index, within a turn; None: it was never looked for
+        self._last = 0
+        self._off = 0.0  # degrees that it has to turn to its place
+
+    # --- the port ----------------------------------------------------------------------------------------
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        """Hold it as C, or let it turn again. Raises DriverError where it cannot be held now."""
+        if on and not self._wanted:
+            if not self._axes.sample().enabled:
+                raise DriverError("C is the spindle's drive, and the drives are off; switch them on first")
+            if self._spindle.wanted or abs(self._drive.more) >= _STANDS:
+                raise DriverError("C is the spindle's drive, and the spindle turns; stop it first")
+            self._orient = orient
+        self._want(on)
+
+    def held(self) -> bool:
+        """Whether C may move."""
+        return self.step is Step.HELD and self._wanted
+
+    # --- every round -------------------------------------------------------------------------------------
+
+    def tick(self, now: float) -> None:
+        """Go on with whatever is under way."""
+        self._follow_phase()
+        if self._drive.rebooted:
+            self._phase = None
+        if self.step is not Step.FREE and (self._drive.trouble or not self._axes.sample().enabled):
+            self._want(False)  # power is gone, or will be: C ends with it
+        steps: dict[Step, Callable[[float], None]] = {
+            Step.FREE: self._free,
+            Step.REST: self._rest,
+            Step.INDEX: self._search,
+            Step.HERE: self._here,
+            Step.POWER: self._power,
+            Step.TURN: self._turn,
+            Step.HELD: self._held,
+            Step.LEAVE: self._leave,
+            Step.BACK: self._back,
+        }
+        try:
+            steps[self.step](now)
+        except DriverError as error:
+            self._fail(str(error))
+
+    def clear_fault(self) -> None:
+        """The operator has seen it."""
+        self.trouble = ""
+        self._want(False)
+
+    def _free(self, now: float) -> None:
+        if self._wanted:
+            self._spindle.lent = True
+            self._enter(Step.REST, now)
+
+    def _rest(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.BACK, now)
+        elif not self._axes.follower_rests(now):
+            self._since = now
+        elif self._orient and self._phase is None:
+            self._begin_homing(_INDEX, 0, now)
+            self._enter(Step.INDEX, now)
+        else:
+            self._tell_place(now)
+
+    def _search(self, now: float) -> None:
+        if self._homed(now, _SEARCH, "no index was found within a turn"):
+            self._phase, self._last = self._drive.position % self._per_turn, self._drive.position
+            self._tell_place(now)
+
+    def _tell_place(self, now: float) -> None:
+        """Its counter begins anew, so that it counts as C does: the drive stays where it is."""
+        self._off = self._beside()
+        place = self._demand() - self._off
+        self._begin_homing(_HERE[0], round(place / self._axis.config.count), now)
+        self._enter(Step.HERE, now)
+
+    def _here(self, now: float) -> None:
+        if self._homed(now, _CHANGE, "it does not take its position"):
+            self._last = self._drive.position  # the counter has leapt, the spindle has not
+            self._drive.mode = IP
+            for clear in (0, 1):
+                self._drive.setup.write(od.BUFFER, 6, clear)
+            self._enter(Step.POWER, now)
+
+    def _power(self, now: float) -> None:
+        if self._drive.enabled and self._drive.shown_mode == IP:
+            self._join()
+            self._begin_turn()
+            self._enter(Step.TURN, now)
+        elif now - self._since > _CHANGE:
+            self._fail(f"the spindle's drive stays in mode {self._drive.shown_mode}")
+
+    def _turn(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.LEAVE, now)
+        elif self._axes.horizon() <= now and not self._axes.drives.moving:
+            self._enter(Step.HELD, now)
+
+    def _held(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.LEAVE, now)
+
+    def _leave(self, now: float) -> None:
+        """At rest, and the drives' queues ended: nothing is left in this one."""
+        if self._axes.follower_rests(now):
+            self._part()
+            self._enter(Step.BACK, now)
+
+    def _back(self, now: float) -> None:
+        drive = self._drive
+        drive.goal, drive.extra, drive.mode = DriveState.OFF, 0, PV
+        if drive.shown_mode == PV and not drive.enabled:
+            self._spindle.lent = False
+            self.step = Step.FREE
+            self._spindle.resume()
+        elif now - self._since > _CHANGE and not self.trouble:
+            self._fail(f"the spindle's drive stays in mode {drive.shown_mode}")
+
+    # --- inside ------------------------------------------------------------------------------------------
+
+    def _begin_homing(self, method: int, place: int, now: float) -> None:
+        write, drive = self._drive.setup.write, self._drive
+        try:
+            write(od.HOME_METHOD, 0, method)
+        except DriverError:
+            if method != _HERE[0]:
+                raise
+            write(od.HOME_METHOD, 0, _HERE[1])
+        write(od.HOME_SPEEDS, 1, _SEARCH_RPM)
+        write(od.HOME_SPEEDS, 2, _SEARCH_RPM // 10)
+        write(od.HOME_OFFSET, 0, place)
+        drive.mode, drive.goal, drive.extra, drive.target = HM, DriveState.ENABLED, 0, 0
+        self._told, self._since = False, now
+
+    def _homed(self, now: float, limit: float, why: str) -> bool:
+        """Whether the drive's homing is done. Raises DriverError."""
+        drive = self._drive
+        if not self._wanted:
+            drive.extra = 0
+            self._enter(Step.BACK, now)
+            return False
+        if not self._told:
+            if drive.enabled and drive.shown_mode == HM:
+                drive.extra, self._told, self._since = NEW, True, now
+            elif now - self._since > _CHANGE:
+                raise DriverError(f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}")
+            return False
+        if drive.status & BIT_13 or now - self._since > limit:
+            raise DriverError(f"C: {why}")
+        done = now - self._since > _FIRST and drive.status & BIT_12 and drive.status & REACHED
+        if done:
+            drive.extra = 0
+        return bool(done)
+
+    def _demand(self) -> float:
+        return self._axes.queue.demand_at(self._axes.now())[0][self._number]
+
+    def _beside(self) -> float:
+        """How far the spindle must still turn to its place, degrees, by the short way."""
+        if not self._orient or self._phase is None:
+            return 0.0
+        off = self._demand() - self._phase * self._axis.config.count
+        return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
+
+    def _join(self) -> None:
+        """From here on it is one of the axes."""
+        drives = self._axes.drives
+        drives.axes.append(self._axis)
+        drives.indices.append(self._number)
+        self._axis.last = self._drive.position
+        self._axes.rest_here()
+
+    def _part(self) -> None:
+        drives = self._axes.drives
+        if self._axis in drives.axes:
+            drives.axes.remove(self._axis)
+            drives.indices.remove(self._number)
+
+    def _begin_turn(self) -> None:
+        axes, config = self._axes, self._axis.config
+        here, off = self._demand(), self._off
+        if abs(off) > config.count:
+            rest, _ = axes.queue.demand_at(axes.now())
+            speed = min(config.vmax, _SEARCH_RPM * 6.0)
+            start = axes.now() + axes.commit
+            axes.splice(straight(start, rest, self._number, to=here + off, speed=speed, accel=config.amax))
+
+    def _follow_phase(self) -> None:
+        """How far it is from its index, through all that it turns as the spindle."""
+        moved = (self._drive.position - self._last + 2**31) % 2**32 - 2**31
+        self._last = self._drive.position
+        if self._phase is not None and self.step not in {Step.INDEX, Step.HERE}:
+            self._phase = (self._phase + moved) % self._per_turn
+
+    def _want(self, on: bool) -> None:
+        self._wanted = self._spindle.kept = on
+
+    def _enter(self, step: Step, now: float) -> None:
+        self.step, self._since = step, now
+
+    def _fail(self, why: str) -> None:
+        self.trouble = self.trouble or why
+        self._want(False)
+        self._part()
+        self._drive.extra = 0
+        self._enter(Step.BACK, self._axes.now())

@@ -1,0 +1,254 @@
+"""C on the spindle's own drive: changed over at standstill, turned to its place, and given back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from core.executor.commands import EnableDrives, FeedHold, Jog, Reset
+from core.executor.snapshot import State
+from core.machine.model import Machine
+from core.ports import DriverError
+from drivers.canopen.coupling import SpindleC, Step
+from tests.drivers.canopen.bench import CanBench, can_machine
+from tests.drivers.canopen.test_executor import BusRig
+
+CHANGES = (
+    ("two_hand_start = true", "two_hand_start = false"),
+    ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 18000 }"),
+    ("in rpm, amax in rpm/s\nenabled = false", "in rpm, amax in rpm/s\nenabled = true"),
+)
+
+
+def c_machine(*changes: tuple[str, str]) -> Machine:
+    """The shipped machine whose spindle's drive is C."""
+    return can_machine(*CHANGES, *changes)
+
+
+class CBench(CanBench):
+    """Drives on."""
+
+    @property
+    def c(self) -> SpindleC:
+        assert self.machine.c is not None
+        return self.machine.c
+
+    def degrees(self) -> float:
+        """Where the spindle really is from its index, 0…360."""
+        return self.peers.plant.spindle.turns * 360.0 % 360.0
+
+    def hold(self, *, orient: bool) -> None:
+        self.c.hold(True, orient)
+        self.until(self.c.held, 20.0)
+
+
+@pytest.fixture
+def stand() -> Iterator[CBench]:
+    made = CBench(c_machine())
+    made.machine.axes.enable(True)
+    yield made
+    made.close()
+
+
+def stopped_somewhere(stand: CBench, rpm: float = 700.0) -> float:
+    """It has turned as the spindle; where it stands."""
+    stand.machine.ports.spindle.run(rpm)
+    stand.run(1.13)
+    stand.machine.ports.spindle.run(0.0)
+    stand.run(2.0)
+    return stand.degrees()
+
+
+def test_held_where_it_stands_it_does_not_turn(stand: CBench) -> None:
+    at = stopped_somewhere(stand)
+    stand.hold(orient=False)
+    assert stand.degrees() == pytest.approx(at, abs=0.1)
+    assert stand.machine.axes.sample().actual[2] == pytest.approx(0.0, abs=0.1)
+    assert stand.peers.plant.spindle_drive is not None
+    assert stand.peers.plant.spindle_drive.power.powered  # it holds
+
+
+def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
+    stopped_somewhere(stand)
+    stand.hold(orient=True)
+    off = (stand.degrees() + 180.0) % 360.0 - 180.0
+    assert off == pytest.approx(0.0, abs=0.1)
+    assert stand.machine.axes.sample().actual[2] == pytest.approx(0.0, abs=0.1)
+
+
+def test_the_index_is_looked_for_once(stand: CBench) -> None:
+    stand.hold(orient=True)
+    stand.c.hold(False)
+    stand.until(lambda: stand.c.step is Step.FREE, 5.0)
+    seen: list[Step] = []
+    stopped_somewhere(stand, -1234.0)
+    stand.c.hold(True, True)
+    for _ in range(1000):
+        stand.tick()
+        if stand.c.step not in seen:
+            seen.append(stand.c.step)
+    assert Step.INDEX not in seen
+    assert stand.c.held()
+    off = (stand.degrees() + 180.0) % 360.0 - 180.0
+    assert off == pytest.approx(0.0, abs=0.15)
+
+
+def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
+    stand.hold(orient=False)
+    with pytest.raises(DriverError, match="held as C"):
+        stand.machine.ports.spindle.run(500.0)
+    stand.c.hold(False)
+    stand.machine.ports.spindle.run(500.0)
+    stand.run(0.02)
+    assert stand.peers.machine.spindle_rpm() == 0.0
+    stand.until(lambda: stand.c.step is Step.FREE, 5.0)
+    stand.run(1.5)
+    assert stand.peers.machine.spindle_rpm() == pytest.approx(500.0, abs=2.0)
+
+
+def test_it_is_refused_while_it_turns(stand: CBench) -> None:
+    stand.machine.ports.spindle.run(300.0)
+    stand.run(1.0)
+    with pytest.raises(DriverError, match="the spindle turns"):
+        stand.c.hold(True)
+    stand.machine.ports.spindle.run(0.0)
+    stand.run(0.05)
+    with pytest.raises(DriverError, match="the spindle turns"):
+        stand.c.hold(True)
+
+
+def test_it_is_refused_without_power() -> None:
+    stand = CBench(c_machine())
+    with pytest.raises(DriverError, match="drives are off"):
+        stand.c.hold(True)
+    stand.close()
+
+
+def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
+    stand.hold(orient=False)
+    stand.peers.machine.press_estop()
+    stand.machine.ports.spindle.coast()
+    stand.run(2.0)
+    assert not stand.c.held()
+    stand.peers.machine.release_estop()
+    stand.run(2.0)
+    assert stand.c.step is Step.FREE
+    assert stand.peers.plant.spindle_drive is not None
+    assert not stand.peers.plant.spindle_drive.power.powered
+
+
+def test_a_drive_without_those_modes_is_refused_at_the_start() -> None:
+    stand = CBench(c_machine())
+    assert stand.peers.plant.spindle_drive is not None
+    stand.peers.plant.spindle_drive.positions = False
+    assert stand.machine.spindle is not None
+    with pytest.raises(DriverError, match="has no mode homing, interpolated position"):
+        stand.machine.spindle.connect()
+    stand.close()
+
+
+# --- through the executor ---------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def rig() -> Iterator[BusRig]:
+    made = BusRig(c_machine())
+    yield made
+    made.bench.close()
+
+
+def degrees(rig: BusRig) -> float:
+    return rig.bench.peers.plant.spindle.turns * 360.0 % 360.0
+
+
+def test_a_program_turns_then_positions_then_turns_again(rig: BusRig) -> None:
+    rig.start(
+        "G90G94F300\nM03S900\nG04F1\nM05\nM19\nC90S60\nG04F1\nX.1Z-.1C180\nG04F1\nM05\nM03S600\nG04F2\nM05\nM30"
+    )
+    at: dict[str, float] = {}
+
+    def note(shot: object) -> None:
+        del shot
+        if rig.shot.waiting_for == "DWELL":
+            at[rig.shot.block_text + str(rig.shot.line)] = degrees(rig)
+
+    rig.watch.append(note)
+    rig.until(State.IDLE, State.FAULT, limit=90.0)
+    assert rig.shot.alarms == ()
+    angles = list(at.values())
+    assert any(abs(angle - 90.0) < 0.2 for angle in angles), at
+    assert any(abs(angle - 180.0) < 0.2 for angle in angles), at
+
+
+def test_a_slide_moves_while_c_is_held_still(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nG01X.2Z-.5F60\nX0Z0\nM05\nM30")
+    turned: list[float] = []
+    rig.watch.append(lambda shot: turned.append(degrees(rig)) if shot.velocity > 5.0 else None)
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    assert rig.shot.alarms == ()
+    assert len(turned) > 20
+    assert max((t + 180.0) % 360.0 for t in turned) - min((t + 180.0) % 360.0 for t in turned) < 0.1
+
+
+def test_x_and_c_together_keep_to_their_path(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nG04F1\nG01X.5C360F30\nG04F1\nM05\nM30")
+    off: list[float] = []
+
+    def note(_shot: object) -> None:
+        x = rig.bench.peers.machine.true_position()[0]
+        if rig.state is State.RUN and 0.5 < x < 12.0:
+            off.append(((degrees(rig) - x / 12.7 * 360.0) + 180.0) % 360.0 - 180.0)
+
+    rig.watch.append(note)
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    assert rig.shot.alarms == ()
+    assert len(off) > 50
+    # X trails its setpoint by the servo's lag, C does not: 12.7 mm/s times 8 ms is .1 mm, 3 degrees
+    assert max(off) - min(off) < 0.6
+
+
+def test_hold_and_reset_in_a_turn(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nC3600S100\nM05\nM30")
+    rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
+    rig.post(FeedHold())
+    rig.until(State.HOLD, limit=1.0)
+    rig.run(0.3)
+    at = degrees(rig)
+    rig.run(1.0)
+    assert degrees(rig) == pytest.approx(at, abs=0.01)
+    rig.post(Reset())
+    rig.until(State.IDLE, limit=3.0)
+    rig.run(3.0)
+    assert rig.bench.machine.c is not None
+    assert rig.bench.machine.c.step is Step.FREE
+    assert rig.shot.alarms == ()
+
+
+def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nG01X.5C3600F10\nM05\nM30")
+    rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
+    rig.bench.peers.machine.spindle_fault("blocked")
+    rig.until(State.FAULT, limit=0.3)
+    rig.run(2.0)
+    assert not any(drive.power.powered for drive in rig.bench.peers.plant.drives.values())
+    rig.bench.peers.machine.spindle_fault("")
+    rig.post(Reset())
+    rig.until(State.DISABLED, limit=2.0)
+    rig.post(EnableDrives())
+    rig.until(State.IDLE, limit=2.0)
+    rig.run(1.0)
+    assert rig.shot.alarms == ()
+
+
+def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
+    rig.ready()
+    rig.post(Jog("C", 60.0, 0.2))
+    assert "becomes C" in rig.said("refused")[-1]
+    rig.run(2.0)
+    rig.post(Jog("C", 60.0, 0.2))
+    rig.until(State.JOG)
+    rig.until(State.IDLE, limit=2.0)
+    assert 2.0 < rig.shot.demand[2] < 20.0
+    rig.run(0.3)
+    assert degrees(rig) == pytest.approx(rig.shot.demand[2], abs=0.1)
