@@ -75,8 +75,8 @@ def build_desk(
     let_go = desk.shut
 
     def shut() -> None:
+        thread.close()  # first: nothing may keep the machine from being stopped
         close_floor()
-        thread.close()
         let_go()
         journal.close()
         log.close()
