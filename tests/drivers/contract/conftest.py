@@ -11,6 +11,7 @@ from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.rigs import RIGS, make
 
 Broken = tuple[Rig, str]
+SHIPPED = [name for name in RIGS if name != "canopen"]
 _FAULTS = [(name, fault) for name, kind in RIGS.items() for fault in kind.faults]
 _HARMLESS = [(name, what) for name, kind in RIGS.items() for what in kind.harmless]
 
@@ -46,10 +47,18 @@ def lost(request: pytest.FixtureRequest) -> Iterator[Rig]:
     made.close()
 
 
+@pytest.fixture(params=SHIPPED)
+def shipped(request: pytest.FixtureRequest) -> Iterator[Rig]:
+    """As an executor gets it: a bus always by the feeder."""
+    made = make(request.param)
+    yield made
+    made.close()
+
+
 @pytest.fixture
-def control(rig: Rig) -> Control:
+def control(shipped: Rig) -> Control:
     """The executor on it."""
-    return Control(rig)
+    return Control(shipped)
 
 
 @pytest.fixture(params=_FAULTS, ids="-".join)

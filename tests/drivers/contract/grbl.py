@@ -50,6 +50,7 @@ class GrblWorld:
 
     def __init__(self, machine: Machine, peer: Firmware, panel: PanelStation) -> None:
         self._machine, self._peer, self._panel = machine, peer, panel
+        self._by_hand = False  # somebody has opened the collet
         self.press_hold, self.release_hold = panel.press_hold, panel.release_hold
         self.set_feed_pot, self.set_spindle_auto = panel.set_feed_pot, panel.set_spindle_auto
 
@@ -66,7 +67,8 @@ class GrblWorld:
     def outputs(self) -> Readings:
         """By the names of the machine file."""
         return {
-            name: self._peer.outputs.get(out.terminal, False) for name, out in self._machine.outputs.items()
+            name: self._peer.outputs.get(out.terminal, name == "collet")
+            for name, out in self._machine.outputs.items()
         }
 
     def set_input(self, name: str, on: bool, /) -> None:
@@ -88,12 +90,27 @@ class GrblWorld:
     def press_estop(self) -> None:
         """Its pin, its alarm, and the relay of the spindle."""
         self.set_input("estop", True)
+        self._peer.turn(0.0)
+        self._peer.outputs.update(flood=False, mist=False)
         self._peer.raise_alarm(10)
         self._peer.spindle.cut(self._peer.clock.now())
 
     def release_estop(self) -> None:
         """Free."""
         self.set_input("estop", False)
+
+    def open_collet(self) -> None:
+        """Its switch."""
+        self._by_hand = True
+
+    def follow(self) -> None:
+        """The collet's switch follows its valve, which is closed until it is told otherwise."""
+        closed = self._peer.outputs.get(self._machine.outputs["collet"].terminal, True)
+        self.set_input("collet_closed", closed and not self._by_hand)
+
+    def silence_station(self) -> None:
+        """There is none that could."""
+        raise NotImplementedError
 
     def spindle_ignores_stop(self) -> None:
         """Its inverter no longer obeys."""
@@ -119,9 +136,14 @@ class Grblhal(Rig):
     missing: ClassVar[Mapping[str, str]] = {
         "bus-off": "a serial line and a TCP connection have no such state",
         "dead reader": "there is no reading thread: the executor's look reads the wire",
+        "station": "its buttons are on the screen of this program: there is no wire",
         "setpoints": "the controller plans by itself and takes blocks",
     }
     hold = 0.25
+    kept_in_estop: ClassVar[Mapping[str, str]] = {
+        "catcher": "a controller in alarm takes no M65 before Reset"
+    }
+    world: GrblWorld
 
     def __init__(self, *, homing: bool = False) -> None:
         self.machine = grbl_machine(*(_HOMING if homing else ()))
@@ -135,6 +157,7 @@ class Grblhal(Rig):
     def alone(self, dt: float) -> None:
         """The controller is brought up to its clock by whoever looks."""
         self.clock.advance(dt)
+        self.world.follow()
         self.peer.advance()
 
     def acts(self) -> Mapping[str, Callable[[], None]]:

@@ -56,6 +56,7 @@ class Rig(ABC):
     missing: ClassVar[Mapping[str, str]] = {}  # of ``NINE`` and of demands: why not here
     hold: ClassVar[float]  # s from 127 mm/s to rest
     runs_on: ClassVar[float] = 0.0  # s that a jog let go still goes at its speed
+    kept_in_estop: ClassVar[Mapping[str, str]] = {}  # outputs that only Reset switches off, and why
     heals: ClassVar[float] = 0.3  # s until it sees that a wire has been mended
 
     machine: Machine

@@ -10,7 +10,7 @@ from tests.drivers.contract.conftest import Broken
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, Fault
 
-OVER = "G90G94F300\nM03S600\nM08\nX0Z0\nG01F300\n" + "X3Z-.2\nX0Z0\n" * 6 + "M30\n"
+OVER = "G90G94F300\nM03S600\nM08\nX0Z0\nG01F300\n" + "X3Z-.2\nX0Z0\n" * 2 + "M30\n"
 SHORT = "G90G94F300\nM03S600\nX.1\nG01F100X0\nM30\n"
 
 

@@ -41,6 +41,14 @@ class World(Protocol):
 
     def set_spindle_auto(self, auto: bool, /) -> None: ...
 
+    def open_collet(self) -> None:
+        """By hand: its switch says so, whatever the valve is told."""
+        ...
+
+    def silence_station(self) -> None:
+        """Its cable is off, that of the E-stop is not."""
+        ...
+
     def spindle_ignores_stop(self) -> None: ...
 
     def spindle_dies(self) -> None:
@@ -75,6 +83,15 @@ class SimWorld:
     def release_estop(self) -> None:
         """Free."""
         self.hands.release_estop()
+
+    def open_collet(self) -> None:
+        """The switch is open and stays so."""
+        self.hands.collet_sensor_stuck()
+        self.hands.set_input("collet_closed", False)
+
+    def silence_station(self) -> None:
+        """Nothing comes any more."""
+        self.hands.station_silent()
 
     def spindle_ignores_stop(self) -> None:
         """The inverter no longer obeys."""
