@@ -177,8 +177,6 @@ class Hearing(Known):
                 self.alarmed(number)
             self.alarm, self.ready = number, False
         elif report.state == "Door":
-            self.fail(
-                "the controller's safety door is open, spindle and coolant are off: close it, then Reset"
-            )
+            self.fail(f"{codes.DOOR}, spindle and coolant are off: close it, then Reset")
         elif report.state in _IDLERS:
             self.fail(f"the controller is in state {report.state}, in which it runs no program of ours")

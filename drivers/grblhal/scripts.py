@@ -70,7 +70,8 @@ def abort(c: Controller) -> Script:
     if _alarm_of(c):
         return
     yield from stop(c, waits=waits)
-    if not _alarm_of(c):
+    yield from full_report(c)
+    if not (_alarm_of(c) or _door(c)):
         yield from verify(c)
 
 
@@ -84,6 +85,8 @@ def recover(c: Controller) -> Script:
         yield from stop(c)
     yield from reset(c)
     yield from full_report(c)
+    if _door(c):
+        raise ScriptError(f"{codes.DOOR}: close it, then Reset")
     number = _alarm_of(c)
     if number == codes.HOMING_REQUIRED:
         return
@@ -126,6 +129,11 @@ def jog_end(c: Controller) -> Script:
         "a cancelled jog does not end",
     )
     yield from verify(c)
+
+
+def _door(c: Controller) -> bool:
+    """Whether it reads no lines for its door."""
+    return c.report is not None and c.report.state == "Door"
 
 
 def _alarm_of(c: Controller) -> int:

@@ -1,0 +1,171 @@
+"""What another host, a power-up or an alarm has left behind: mended, waited for or told."""
+
+from __future__ import annotations
+
+import socket
+import threading
+
+import pytest
+
+from app.compose.grblhal import grblhal_config
+from core.block_port import LineOp
+from core.executor.commands import EnableDrives, Reset
+from core.executor.snapshot import State
+from drivers.grblhal.machine import GrblMachine
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.grblhal.wire import TcpWire
+from drivers.simulated import StepClock
+from tests.drivers.grblhal.bench import GrblBench, LoopWire, grbl_machine, quirky
+
+
+def connect(firmware: Firmware, clock: StepClock, *changes: tuple[str, str]) -> GrblMachine:
+    return GrblMachine(grblhal_config(grbl_machine(*changes)), clock, LoopWire(firmware))
+
+
+def left_behind(data: bytes, **quirks: object) -> tuple[Firmware, StepClock]:
+    """A controller that another host has spoken to."""
+    clock = StepClock()
+    firmware = Firmware(clock, quirky(**quirks))
+    firmware.feed(data)
+    clock.advance(0.2)
+    firmware.advance()
+    firmware.take()
+    return firmware, clock
+
+
+def test_modes_of_another_host_are_ended() -> None:
+    firmware, clock = left_behind(b"G7G17G20G91G95\nG96S100\nG51\nM53P0\n")
+    assert firmware.program.modes.speed == "G96"
+    connect(firmware, clock)
+    modes = firmware.program.modes
+    assert (modes.radius, modes.plane, modes.units, modes.distance) == ("G8", "G18", "G21", "G90")
+    assert (modes.feed_mode, modes.speed, modes.scaling, modes.hold_disabled) == ("G94", "G97", "G50", False)
+
+
+def test_offsets_of_another_host_are_taken_out() -> None:
+    firmware, clock = left_behind(b"G8G18G21G90\nG10L2P1X5Y0Z-3\n")
+    made = connect(firmware, clock)
+    assert firmware.program.offset == [0.0, 0.0, 0.0]
+    made.axes.enable(True)
+    made.blocks.submit(LineOp(1.0, 2.0, 40.0))
+    for _ in range(100):
+        clock.advance(0.01)
+        made.pump()
+    assert firmware.slides.place == (1.0, 2.0)
+
+
+def test_half_a_line_of_another_host_is_no_part_of_ours() -> None:
+    firmware, clock = left_behind(b"G1X5")
+    made = connect(firmware, clock)
+    assert made.controller.fault == ""
+    assert firmware.slides.place == (0.0, 0.0)
+
+
+def test_a_program_of_another_host_is_braked_and_given_up() -> None:
+    firmware, clock = left_behind(b"G8G18G21G90G94\nG1X80F600\n")
+    assert firmware.slides.moving
+    connect(firmware, clock)
+    assert firmware.torn == 0
+    assert not firmware.slides.queue
+    assert firmware.slides.place[0] < 10.0
+
+
+def test_firmware_that_is_built_for_lathes_has_no_lathe_setting() -> None:
+    firmware, clock = left_behind(b"", built_for_lathes=True)
+    assert connect(firmware, clock).controller.fault == ""
+
+
+def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
+    clock = StepClock()
+    firmware = Firmware(clock, quirky(settings={13: 1.0}))
+    firmware.raise_alarm(17)
+    made = connect(firmware, clock)
+    assert "ALARM:17" in made.controller.fault
+    assert firmware.registers[13] == 1.0
+    made.axes.clear_fault()
+    for _ in range(200):
+        clock.advance(0.01)
+        made.pump()
+    assert made.controller.fault == ""
+    assert firmware.alarm == 0
+    assert firmware.registers[13] == 0.0
+    assert made.blocks.state().hindrance == ""
+
+
+def test_an_alarm_without_a_number_is_one() -> None:
+    """Its number is a matter of $10 while it is told plainly."""
+    bench = GrblBench()
+    bench.ready()
+    bench.run(0.5)
+    bench.peer.alarm = 14
+    bench.until(State.FAULT, limit=1.0)
+    assert "ALARM" in bench.alarms()
+
+
+def test_an_open_door_is_told_and_left_by_reset() -> None:
+    bench = GrblBench()
+    bench.start("G90G94F300\nX1\nM30\n")
+    bench.until_true(lambda _: bench.peer.slides.moving)
+    bench.peer.door = True
+    bench.until(State.FAULT, limit=2.0)
+    assert "safety door" in bench.alarms()
+    bench.run(1.5)
+    bench.post(Reset())
+    bench.run(1.0)
+    assert bench.state is State.FAULT  # it still stands open
+    bench.peer.door = False
+    bench.run(0.5)
+    bench.post(Reset())
+    bench.run(1.5)
+    bench.post(EnableDrives())
+    bench.until(State.IDLE, limit=2.0)
+    assert bench.peer.torn == 0
+    assert not bench.peer.slides.queue
+
+
+def test_what_nobody_knows_in_a_report_or_a_message_is_no_trouble() -> None:
+    bench = GrblBench()
+    bench.ready()
+    bench.run(0.5)
+    bench.peer.say("[MSG:Info: something new]\r\n\r\n[NEW:1,2]\r\n$N0=\r\n>G8:ok\r\n")
+    bench.peer.say("<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0,0|New:x,y|SD:1|MPG:0|TCP>\r\n")
+    bench.run(0.5)
+    assert bench.state is State.IDLE
+    assert not bench.shot.alarms
+
+
+def test_three_axes_and_more_are_read_by_their_letters() -> None:
+    firmware, clock = left_behind(b"")
+    made = connect(firmware, clock)
+    firmware.slides.place = (1.25, -2.5)
+    for _ in range(50):
+        clock.advance(0.01)
+        made.pump()
+    assert made.controller.position == {"X": 1.25, "Y": 0.0, "Z": -2.5}
+
+
+@pytest.mark.parametrize("rests", [b"", b"<Idle|MPos:0.000,0.000,0.000>\r\n" * 200])
+def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None:
+    """The simulator ends when it writes to a connection that is gone."""
+    listener = socket.create_server(("127.0.0.1", 0))
+    broken: list[OSError] = []
+
+    def answer() -> None:
+        other, _ = listener.accept()
+        try:
+            while other.recv(4096):
+                continue
+            other.sendall(rests)
+        except OSError as error:
+            broken.append(error)
+        other.close()
+
+    end = threading.Thread(target=answer)
+    end.start()
+    wire = TcpWire(*listener.getsockname()[:2])
+    wire.write(b"\x80")
+    wire.close()
+    end.join(5.0)
+    listener.close()
+    assert not end.is_alive()
+    assert not broken
