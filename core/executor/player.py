@@ -1,31 +1,28 @@
 """Plays one stretch of motion, from rest to rest, on the axes: plans it, keeps it queued, brakes it, goes on.
 
-Only a second or so is ever queued, and a braking tail behind it, so the slides stop on the path when nobody
-comes back. Hold, override and single block are the same act: plan from the present state, splice the result.
+Hold, override and single block are the same act: plan from the present state, splice the result.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from core.executor.geared_pass import GearedPass
+from core.executor.plan_queue import PlanQueue
 from core.executor.stretch import Scales, Stretch
 from core.executor.thread_pass import ThreadPass
-from core.executor.tracks import Track, Tracks
+from core.executor.tracks import Track
 from core.executor.turns import Turns
 from core.interpreter.blocks import Block
 from core.motion.limits import MotionLimits
+from core.motion.path import Path
 from core.motion.plan import plan
 from core.motion.profile import Profile
-from core.ports import AxisSink, DriverError, Gear, Segments
+from core.ports import AxisSink, Gear
 
-_AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
-_SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
 _LEAST = 0.2  # of the acceleration: what braking has in short chords at least
-_TRIES = 3
-_PATIENCE = 0.02  # s added to the lead when a plan came too late
 
 
 class Player:
@@ -34,15 +31,9 @@ class Player:
     def __init__(self, axes: AxisSink, limits: MotionLimits, lookahead: float) -> None:
         self._axes = axes
         self._limits = limits
-        self._ahead = lookahead + _AHEAD
-        self._lookahead = lookahead
-        self._cost = 0.0  # s that planning took of late
+        self._queue = PlanQueue(axes, lookahead)
         self._stretch: Stretch | None = None
-        self._profile: Profile | None = None
         self._pass: ThreadPass | GearedPass | None = None  # instead of a stretch
-        self._origin = 0.0
-        self._queued_to = 0.0  # end of the plan's part in the queue; behind it lies the tail
-        self._tracks = Tracks()
         self._shown: Block | None = None
 
     @property
@@ -58,16 +49,12 @@ class Player:
     @property
     def planned_to(self) -> float:
         """When the present plan comes to rest."""
-        if self._pass is not None:
-            return self._pass.end
-        return self._origin + (self._profile.duration if self._profile else 0.0)
+        return self._pass.end if self._pass is not None else self._queue.planned_to
 
     @property
     def starving(self) -> float:
         """When the tail begins although the plan goes on; endless when the whole plan is queued."""
-        if self._pass is not None:
-            return np.inf
-        return self._queued_to if self._queued_to < self.planned_to - 1e-9 else np.inf
+        return np.inf if self._pass is not None else self._queue.starving
 
     def begin(self, blocks: Iterable[Block], rpm_max: float) -> None:
         """A new stretch from where the slides rest. Raises MotionError for a block that cannot be moved."""
@@ -96,9 +83,8 @@ class Player:
 
     def forget(self) -> None:
         """The stretch is over, or nothing of it holds any more."""
-        self._stretch, self._profile, self._shown, self._pass = None, None, None, None
-        self._tracks.clear()
-        self._origin = self._queued_to = 0.0
+        self._stretch = self._shown = self._pass = None
+        self._queue.clear()
 
     def go(self, scales: Scales, last: int | None = None, *, soon: bool = True) -> None:
         """Plan on from the present state and splice. ``last``: the block at whose end to stop.
@@ -108,47 +94,41 @@ class Player:
         """
         if self._pass is not None:
             self._pass.go_on()
-        self._resplice(lambda t: self._plan_on(t, scales, last), soon=soon)
+        else:
+            self._queue.splice(lambda t: self._plan_on(t, scales, last), soon=soon)
 
     def hold(self, scales: Scales) -> None:
         """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
         if self._pass is not None:
             self._pass.hold()
-        self._resplice(lambda t: self._plan_stop(t, scales), soon=True)
+        else:
+            self._queue.splice(lambda t: self._plan_stop(t, scales), soon=True)
 
     def brake(self) -> None:
         """Come to rest at once on the path, thread or not."""
         if self._pass is not None:
             self._pass.brake()
-        self._resplice(lambda t: self._plan_stop(t, Scales()), soon=True)
+        else:
+            self._queue.splice(lambda t: self._plan_stop(t, Scales()), soon=True)
 
     def let_stop(self) -> None:
         """Leave the tail in the queue as it is: what was planned beyond it no longer holds."""
-        track = self._tracks.last
-        if track is not None:
-            self._origin, self._profile = track.origin, track.profile
-            self._queued_to = self.planned_to
+        self._queue.let_stop()
 
     def extend(self, now: float) -> bool:
         """Keep the queue filled from the present plan; False when it is too late for that."""
         if self._pass is not None:
             self._pass.track()
-        if self._profile is None or self._queued_to - now >= self._lookahead or self.starving == np.inf:
-            return True
-        at = self._queued_to
-        if at < self._axes.now() + self._axes.commit:
-            return False
-        self._queue(at, self._origin, self._profile)
-        return True
+        return self._queue.extend(now)
 
     def settle_at(self, last: int | None, now: float) -> int | None:
         """The first block at or after ``last`` at whose end the slides can still come to rest."""
         if self._pass is not None:
             return self._pass.blocks[-1].n
         assert self._stretch is not None
-        if self._tracks.last is None:
+        if self._queue.last is None:
             return self._stretch.stoppable(last, -np.inf)
-        return self._stretch.stoppable(last, self._plan_stop(self._lead(now), Scales()).end_s)
+        return self._stretch.stoppable(last, self._plan_stop(self._queue.lead(now), Scales()).end_s)
 
     def at_rest(self) -> bool:
         """Nothing that was queued moves any more. The clock goes on between two questions: ask it last."""
@@ -159,7 +139,7 @@ class Player:
         """Whether what is queued ends where the stretch does."""
         if self._pass is not None:
             return self._pass.complete
-        track = self._tracks.last
+        track = self._queue.last
         if self._stretch is None or not self._stretch.length:
             return True
         return track is not None and track.profile.end_s >= self._stretch.end_s - 1e-9
@@ -170,7 +150,7 @@ class Player:
             return self._pass.block(now)
         if self._stretch is None:
             return None
-        track = self._tracks.at(now)
+        track = self._queue.at(now)
         playing = self._stretch.block(track.block(now)) if track else None
         self._shown = playing or self._shown or self._stretch.first_block
         return self._shown
@@ -190,77 +170,27 @@ class Player:
 
     def _reached(self) -> float:
         """Distance before which the motion under way can come to rest, from when it can be changed on."""
-        t = self._lead(self._axes.now()) + _TRIES * _PATIENCE
-        track = self._tracks.at(t)
+        t = self._queue.latest(self._axes.now())
+        track = self._queue.at(t)
         if track is None:
             return -np.inf
         s, v = track.state(t)
         return s + v * v / (2.0 * _LEAST * self._limits.plane_acceleration)
 
-    def _lead(self, now: float) -> float:
-        return now + self._axes.commit + 1.5 * self._cost
-
     def _plan_on(self, t: float, scales: Scales, last: int | None) -> Profile:
         assert self._stretch is not None
         playing = self.block(self._axes.now())
         self._stretch.drop_before(playing.n if playing else None)
-        path = self._stretch.path(scales, last)
-        track = self._tracks.at(t)
-        if track is None:
-            return plan(path)
-        s, v = track.state(t)
-        return plan(path, start_s=s, start_v=v)
+        return _planned(self._stretch.path(scales, last), self._queue.at(t), t)
 
     def _plan_stop(self, t: float, scales: Scales) -> Profile:
         assert self._stretch is not None
-        track = self._tracks.at(t)
-        path = self._stretch.path(scales, None)
-        if track is None:
-            return plan(path, stop=True)
-        s, v = track.state(t)
-        return plan(path, start_s=s, start_v=v, stop=True)
-
-    def _resplice(self, make: Callable[[float], Profile], *, soon: bool) -> None:
-        """Plan for a moment that can still be changed, and splice; again, later, when that took too long."""
-        if self._pass is not None:
-            return
-        for attempt in range(_TRIES):
-            began = self._axes.now()
-            t = self._lead(began) + attempt * _PATIENCE
-            if not soon:
-                t = max(t, min(self._queued_to, self.planned_to - _SETTLED))
-            profile = make(t)
-            try:
-                self._queue(t, t, profile)
-            except DriverError:
-                late = self._axes.now() + self._axes.commit > t
-                self._cost = min(self._axes.now() - began, 0.2)
-                if not late or attempt == _TRIES - 1:
-                    raise
-                continue
-            self._cost = max(min(self._axes.now() - began, 0.2), 0.8 * self._cost)
-            self._origin, self._profile = t, profile
-            return
-
-    def _queue(self, t: float, origin: float, profile: Profile) -> None:
-        """Splice the plan from ``t`` on, as far as the look-ahead, and its tail."""
-        end = min(origin + profile.duration, max(self._axes.now() + self._ahead, t + _AHEAD))
-        parts = [profile.segments(t - origin, end - origin, origin)]
-        tracks = [Track(t, origin, profile)]
-        if end < origin + profile.duration - 1e-9:
-            s, v = profile.at(end - origin)
-            tail = plan(profile.path, start_s=float(s[0]), start_v=float(v[0]), stop=True)
-            parts.append(tail.segments(0.0, tail.duration, end))
-            tracks.append(Track(end, end, tail))
-        arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
-        if not len(arrays[0]):
-            arrays = _standing(t, profile)
-        self._axes.splice(Segments(*arrays))
-        self._tracks.replace(t, tracks, self._axes.now())
-        self._queued_to = end
+        return _planned(self._stretch.path(scales, None), self._queue.at(t), t, stop=True)
 
 
-def _standing(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
-    """Setpoints that stay where the plan stands: they cut off whatever was queued behind."""
-    still = np.zeros((1, len(profile.path.start)))
-    return [np.array([t]), np.zeros(1), profile.path.point(np.array([profile.end_s])), still, still]
+def _planned(path: Path, playing: Track | None, t: float, *, stop: bool = False) -> Profile:
+    """A plan from the state in which the one that is being played is at ``t``; from rest without one."""
+    if playing is None:
+        return plan(path, stop=stop)
+    s, v = playing.state(t)
+    return plan(path, start_s=s, start_v=v, stop=stop)
