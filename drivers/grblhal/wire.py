@@ -8,6 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
 from core.ports import DriverError
+from drivers.line_errors import why
 
 if TYPE_CHECKING:
     import serial
@@ -60,9 +61,7 @@ class SerialWire:
         try:
             self._port.open()
         except (OSError, ValueError) as error:
-            raise DriverError(
-                f"{port} cannot be opened: {error}; check the cable and [grblhal] port"
-            ) from error
+            raise DriverError(f"{port} cannot be opened: {why(error)} ([grblhal] port)") from error
 
     def read(self) -> bytes:
         """What has arrived."""

@@ -140,13 +140,14 @@ class FedCanopen(Canopen):
     """As it is shipped: the control here, bus and queue in the feeder."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        **{fault: Canopen.faults[fault] for fault in ("cable out", "node reboot", "bus-off")},
+        "cable out": Canopen.faults["cable out"],
         **FEEDER_FAULTS,
     }
     missing: ClassVar[Mapping[str, str]] = {
         **Canopen.missing,
         **dict.fromkeys(
-            ("late answers", "two masters"), "the bus below the feeder is that of canopen: there"
+            ("late answers", "node reboot", "bus-off", "two masters"),
+            "the bus below the feeder is that of canopen: tried there",
         ),
     }
     harmless: ClassVar[tuple[str, ...]] = ()

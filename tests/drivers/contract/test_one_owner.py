@@ -1,0 +1,47 @@
+"""Two masters on a serial port: the second one, whatever it wants there, is refused with one sentence."""
+
+from __future__ import annotations
+
+import os
+import tty
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.compose.serial_line import open_wire as open_line
+from core.ports import DriverError
+from drivers.grblhal.wire import open_wire as open_controller
+from drivers.wire import LineSettings
+from tests.drivers.ptys import open_pty
+
+Opened = Callable[[], None]  # lets it go again
+OWNERS: dict[str, Callable[[str], Opened]] = {
+    "inverter": lambda port: open_line(LineSettings(port)).close,
+    "programs": lambda port: (
+        open_line(LineSettings(port, bits=7, parity="E", flow="xonxoff"), watch=True).close
+    ),
+    "grblhal": lambda port: open_controller(port, 115_200).close,
+}
+
+
+@pytest.fixture
+def port() -> Iterator[str]:
+    """A serial port of this computer."""
+    handles = open_pty()
+    tty.setraw(handles[1])
+    yield os.ttyname(handles[1])
+    for handle in handles:
+        os.close(handle)
+
+
+@pytest.mark.parametrize("second", OWNERS)
+@pytest.mark.parametrize("first", OWNERS)
+def test_a_second_owner_is_one_sentence(port: str, first: str, second: str) -> None:
+    close = OWNERS[first](port)
+    with pytest.raises(DriverError) as refused:
+        OWNERS[second](port)
+    said = str(refused.value)
+    assert said.startswith(f"{port} cannot be opened: another program has it open; close it there")
+    assert "\n" not in said
+    close()
+    OWNERS[second](port)()
