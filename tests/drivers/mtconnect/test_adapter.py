@@ -9,7 +9,7 @@ import pytest
 from core.ports import DriverError
 from drivers.mtconnect.adapter import MOST, Adapter, Settings
 from drivers.mtconnect.lines import Active, Report
-from drivers.mtconnect.link import BEHIND
+from drivers.mtconnect.link import BEHIND, READ, AgentLink
 from drivers.simulated import StepClock
 from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
 
@@ -126,6 +126,19 @@ def test_a_flood_of_lines_does_not_keep_others_waiting(bench: Bench) -> None:
     before = flooding.lines.count("* PONG 10000")
     bench.until(lambda: flooding.lines.count("* PONG 10000") > before)  # all of it was taken, bit by bit
     assert bench.adapter.agents == 2
+
+
+def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
+    near, far = socket.socketpair()
+    with near, far:
+        near.setblocking(False)
+        far.sendall(b"x\n" * 2000)
+        link = AgentLink(near, HEARTBEAT)
+        link.read(0.0)
+        assert link.ignored == READ // 2
+        for _ in range(10):
+            link.read(0.0)
+        assert link.ignored == 2000
 
 
 def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
