@@ -89,6 +89,7 @@ class Conductor:
         elif self.state is State.HOME:
             self._stop_homing()
         elif self.cycle is not None and self.state in ACTIVE:
+            self._bench.spindle.break_off()
             self.cycle.hold(reason)
 
     def reset(self) -> None:

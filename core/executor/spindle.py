@@ -121,6 +121,11 @@ class SpindleControl:
             self._lock.hold(True, orient)
         return self._lock.held()
 
+    def break_off(self) -> None:
+        """Feed hold: a change-over that is under way ends; what waits for it asks again."""
+        if not self.held:
+            self._let_go()
+
     @property
     def held(self) -> bool:
         """Whether C may move, as far as the spindle's drive decides that."""

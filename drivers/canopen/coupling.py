@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
-from core.ports import DriverError
+from core.ports import DriverError, Stop
 from drivers.canopen import objects as od
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.drives import DrivenAxis
@@ -63,15 +63,18 @@ class SpindleC:
         self._phase: int | None = None  # counts from the index, within a turn; None: it was never looked for
         self._last = 0
         self._off = 0.0  # degrees that it has to turn to its place
+        self._goal: float | None = None  # what C shall count when it is held, through broken off tries
 
     # --- the port ----------------------------------------------------------------------------------------
 
     def hold(self, on: bool, orient: bool = False) -> None:
         """Hold it as C, or let it turn again. Raises DriverError where it cannot be held now."""
+        if on and self.trouble:
+            raise DriverError(self.trouble)
         if on and not self._wanted:
             if not self._axes.sample().enabled:
                 raise DriverError("C is the spindle's drive, and the drives are off; switch them on first")
-            if self._spindle.wanted or abs(self._drive.more) >= _STANDS:
+            if self.step is Step.FREE and (self._spindle.wanted or abs(self._drive.more) >= _STANDS):
                 raise DriverError("C is the spindle's drive, and the spindle turns; stop it first")
             self._orient = orient
         self._want(on)
@@ -113,6 +116,7 @@ class SpindleC:
     def _free(self, now: float) -> None:
         if self._wanted:
             self._spindle.lent = True
+            self._goal = self._demand() if self._goal is None else self._goal
             self._enter(Step.REST, now)
 
     def _rest(self, now: float) -> None:
@@ -134,13 +138,14 @@ class SpindleC:
     def _tell_place(self, now: float) -> None:
         """Its counter begins anew, so that it counts as C does: the drive stays where it is."""
         self._off = self._beside()
-        place = self._demand() - self._off
+        place = self._place() - self._off
         self._begin_homing(_HERE[0], round(place / self._axis.config.count), now)
         self._enter(Step.HERE, now)
 
     def _here(self, now: float) -> None:
         if self._homed(now, _CHANGE, "it does not take its position"):
             self._last = self._drive.position  # the counter has leapt, the spindle has not
+            self._spindle.leapt()
             self._drive.mode = IP
             for clear in (0, 1):
                 self._drive.setup.write(od.BUFFER, 6, clear)
@@ -156,8 +161,10 @@ class SpindleC:
 
     def _turn(self, now: float) -> None:
         if not self._wanted:
+            self._axes.stop(Stop.RAMP_HOLD)
             self._enter(Step.LEAVE, now)
         elif self._axes.horizon() <= now and not self._axes.drives.moving:
+            self._goal = None
             self._enter(Step.HELD, now)
 
     def _held(self, now: float) -> None:
@@ -175,6 +182,7 @@ class SpindleC:
         drive.goal, drive.extra, drive.mode = DriveState.OFF, 0, PV
         if drive.shown_mode == PV and not drive.enabled:
             self._spindle.lent = False
+            self._spindle.leapt()
             self.step = Step.FREE
             self._spindle.resume()
         elif now - self._since > _CHANGE and not self.trouble:
@@ -195,6 +203,7 @@ class SpindleC:
         write(od.HOME_OFFSET, 0, place)
         drive.mode, drive.goal, drive.extra, drive.target = HM, DriveState.ENABLED, 0, 0
         self._told, self._since = False, now
+        self._spindle.blind = True
 
     def _homed(self, now: float, limit: float, why: str) -> bool:
         """Whether the drive's homing is done. Raises DriverError."""
@@ -219,11 +228,14 @@ class SpindleC:
     def _demand(self) -> float:
         return self._axes.queue.demand_at(self._axes.now())[0][self._number]
 
+    def _place(self) -> float:
+        return self._demand() if self._goal is None else self._goal
+
     def _beside(self) -> float:
         """How far the spindle must still turn to its place, degrees, by the short way."""
         if not self._orient or self._phase is None:
             return 0.0
-        off = self._demand() - self._phase * self._axis.config.count
+        off = self._place() - self._phase * self._axis.config.count
         return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
 
     def _join(self) -> None:
@@ -242,12 +254,16 @@ class SpindleC:
 
     def _begin_turn(self) -> None:
         axes, config = self._axes, self._axis.config
-        here, off = self._demand(), self._off
+        off = self._off
         if abs(off) > config.count:
             rest, _ = axes.queue.demand_at(axes.now())
             speed = min(config.vmax, _SEARCH_RPM * 6.0)
             start = axes.now() + axes.commit
-            axes.splice(straight(start, rest, self._number, to=here + off, speed=speed, accel=config.amax))
+            axes.splice(
+                straight(
+                    start, rest, self._number, to=rest[self._number] + off, speed=speed, accel=config.amax
+                )
+            )
 
     def _follow_phase(self) -> None:
         """How far it is from its index, through all that it turns as the spindle."""

@@ -25,6 +25,7 @@ class CanopenSpindle:
         self._ordered = 0.0  # s, when power was last asked for
         self.lent = False  # to C: it does not turn as the spindle
         self.kept = False  # and shall stay so
+        self.blind = False  # its counter leaps by homing: that is no turning
         self.drive = Drive402(bus, "spindle", config.node, config.eds, od.TARGET_SPEED, od.VELOCITY)
 
     def connect(self) -> None:
@@ -118,9 +119,16 @@ class CanopenSpindle:
         if not self._config.counts_per_rev:
             return None
         now = self.drive.position
+        if self.blind:
+            return self.drive.answered, self._counts / self._config.counts_per_rev
         self._counts += (now - self._last + 2**31) % 2**32 - 2**31  # its counter goes round every few hours
         self._last = now
         return self.drive.answered, self._counts / self._config.counts_per_rev
+
+    def leapt(self) -> None:
+        """Its counter stands elsewhere now: it goes on from there."""
+        if self.blind:
+            self._last, self.blind = self.drive.position, False
 
     def fault(self) -> str:
         """What is wrong with it; empty when well."""

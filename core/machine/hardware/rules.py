@@ -17,6 +17,10 @@ from core.machine.schema import Values, written
 RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
 _RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
 _WATCH = 0x1016
+_C_WITHOUT = (
+    ', or counts_per_rev of the spindle\'s drive, which is C as well with canopen mode = "pvt"'
+    " and without axis.C.own_drive"
+)
 _SPINDLE, _DRIVE, _MODULE = "spindle", 402, 401
 
 
@@ -152,7 +156,8 @@ def _drives(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding
             continue
         path = f"axis.{axis}"
         if axis not in reading.nodes and not (axis == "C" and _turned_by_spindle(reading)):
-            yield Finding(f"canopen.nodes.{axis}", "", f"missing; axis {axis} needs a drive")
+            own = _C_WITHOUT if axis == "C" and _is(values, "spindle.driver", "cia402") else ""
+            yield Finding(f"canopen.nodes.{axis}", "", f"missing; axis {axis} needs a drive{own}")
         if values.has(f"{path}.home.method") and values.number(f"{path}.home.method") == 0:
             yield Finding(
                 f"{path}.home.method", "", "missing; expected the drive's method, 1 or 2 for a limit switch"

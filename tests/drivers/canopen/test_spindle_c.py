@@ -6,11 +6,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.executor.commands import EnableDrives, FeedHold, Jog, Reset
+from app.compose.backends import connect
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset
 from core.executor.snapshot import State
 from core.machine.model import Machine
 from core.ports import DriverError
 from drivers.canopen.coupling import SpindleC, Step
+from drivers.simulated import StepClock
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.canopen.test_executor import BusRig
 
@@ -223,6 +225,86 @@ def test_hold_and_reset_in_a_turn(rig: BusRig) -> None:
     assert rig.bench.machine.c is not None
     assert rig.bench.machine.c.step is Step.FREE
     assert rig.shot.alarms == ()
+
+
+@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.TURN])
+def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(rig: BusRig, step: Step) -> None:
+    c = rig.bench.machine.c
+    assert c is not None
+    rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nC90S60\nG04F2\nM05\nM30")
+    rig.until_true(lambda _: c.step is step, limit=60.0)
+    rig.post(FeedHold())
+    rig.until(State.HOLD, limit=1.0)
+    rig.run(0.3)
+    at = degrees(rig)
+    rig.run(2.0)
+    assert degrees(rig) == pytest.approx(at, abs=0.01)
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.waiting_for == "DWELL", limit=60.0)
+    rig.run(0.2)
+    assert degrees(rig) == pytest.approx(90.0, abs=0.2)
+    rig.until(State.IDLE, limit=30.0)
+    assert rig.shot.alarms == ()
+
+
+def test_an_index_that_is_missing_is_an_alarm(rig: BusRig, monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = rig.bench.peers.plant.spindle_drive
+    assert drive is not None
+    monkeypatch.setattr(drive.slide, "seek", lambda _method: setattr(drive.slide, "switch", 1e9))
+    rig.start("G90G94F300\nM19\nC90S60\nM05\nM30")
+    rig.until(State.FAULT, limit=30.0)
+    assert "no index was found" in rig.shot.alarms[-1].cause
+    rig.run(3.0)
+    assert not drive.power.powered
+
+
+def test_the_turns_of_the_spindle_do_not_leap_with_its_counter(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nM05\nM03S777\nG04F1\nM05\nM89\nG04F1\nM05\nM30")
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    angle = rig.bench.machine.ports.spindle.angle()
+    assert angle is not None
+    assert rig.shot.alarms == ()
+    assert angle[1] == pytest.approx(
+        rig.bench.peers.plant.spindle.turns, abs=1.01
+    )  # the search is not counted
+
+
+def test_m89_locks_where_it_stands(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM03S777\nG04F1\nM05\nG04F1\nM89\nG04F1\nG91C90S60\nG04F2\nM05\nM30")
+    seen: list[float] = []
+    rig.watch.append(lambda shot: seen.append(degrees(rig)) if shot.waiting_for == "DWELL" else None)
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    assert rig.shot.alarms == ()
+    assert (seen[-1] - seen[-250]) % 360.0 == pytest.approx(90.0, abs=0.2)
+
+
+def test_through_the_feeder_too() -> None:
+    clock = StepClock()
+    machine = c_machine()
+    connected = connect(machine, clock)
+    lock, axes = connected.ports.lock, connected.ports.axes
+    assert lock is not None
+    link = connected.ports.spindle
+    axes.enable(True)
+
+    def run(seconds: float) -> None:
+        end = clock.now() + seconds
+        while clock.now() < end:
+            clock.advance(0.005)
+            axes.sample()
+
+    lock.hold(True, orient=True)
+    run(8.0)
+    assert lock.held()
+    with pytest.raises(DriverError, match="held as C"):
+        link.run(100.0)
+    lock.hold(False)
+    run(3.0)
+    assert not lock.held()
+    link.run(100.0)
+    run(1.5)
+    assert link.speed() == pytest.approx(100.0, abs=2.0)
+    connected.close()
 
 
 def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:

@@ -1,0 +1,38 @@
+"""C on the spindle's own drive in the machine file."""
+
+from __future__ import annotations
+
+from core.machine.load import parse_machine
+from tests.machine.test_hardware import CAN, assert_refused, changed
+
+ON = "in rpm, amax in rpm/s\nenabled = "
+
+
+def with_c(*changes: tuple[str, str]) -> str:
+    text = changed(f"{ON}false", f"{ON}true", CAN)
+    for old, new in changes:
+        text = changed(old, new, text)
+    return text
+
+
+COUNTS = ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 18000 }")
+
+
+def test_a_spindle_drive_that_counts_is_c() -> None:
+    machine = parse_machine(with_c(COUNTS), "can")
+    assert machine.c_enabled
+    assert machine.spindle_is_c
+
+
+def test_one_that_does_not_count_is_none() -> None:
+    assert_refused(with_c(), "canopen.nodes.C", "counts_per_rev of the spindle's drive")
+
+
+def test_one_without_a_queue_of_positions_is_none() -> None:
+    text = with_c(COUNTS, ('mode = "pvt"', 'mode = "pp"'))
+    assert_refused(text, "canopen.nodes.C", 'mode = "pvt"')
+
+
+def test_a_drive_of_its_own_needs_one() -> None:
+    text = with_c(COUNTS, (f"{ON}true", f"{ON}true\nown_drive = true"))
+    assert_refused(text, "canopen.nodes.C", "needs a drive")
