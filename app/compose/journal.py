@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Collection
 from pathlib import Path
 
+from app.desk.files.record import tell_cut_off
 from app.desk.home import home
 from app.desk.offsets.book import OffsetBook
 from app.desk.zero_offsets.book import ZeroBook
@@ -36,6 +37,7 @@ class Journal:
         self._trouble = ""
         try:
             self._store = Store.open(folder)
+            tell_cut_off(self._store)
         except StoreError as error:
             self._trouble = str(error)
 

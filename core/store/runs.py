@@ -32,6 +32,16 @@ def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
     connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, program))
 
 
+def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
+    """Runs that began and never ended get this outcome; their programs."""
+    rows = connection.execute(
+        "UPDATE runs SET outcome = ? WHERE started IS NOT NULL AND coalesce(outcome, '') = ''"
+        " RETURNING program",
+        (outcome,),
+    )
+    return tuple(sorted(program for (program,) in rows))
+
+
 def finished(connection: sqlite3.Connection, program: str, seconds: float) -> None:
     """One whole cycle, with its time."""
     _row(connection, program)

@@ -157,6 +157,10 @@ class Store(StoreReader):
         """How it ended."""
         return self.write(lambda c: runs.ended(c, program, outcome))
 
+    def runs_cut_off(self, outcome: str) -> Future[tuple[str, ...]]:
+        """How those ended whose end was never told; their programs."""
+        return self.write(lambda c: runs.cut_off(c, outcome))
+
     def cycle_finished(self, program: str, seconds: float) -> Future[None]:
         """One whole cycle of this program and its time."""
         return self.write(lambda c: runs.finished(c, program, seconds))

@@ -10,8 +10,10 @@ from app.desk.keep import Keep, NothingKept
 from app.desk.session import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
+from core.store.store import Store
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
+CUT_OFF = "CUT OFF"  # the control ended in its middle: found at the next start
 _RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompts.INTERRUPTED
 _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 
@@ -82,3 +84,9 @@ def _outcome(snapshot: Snapshot) -> str:
     if snapshot.state is State.FAULT and snapshot.alarms:
         return f"ALARM {snapshot.alarms[-1].number}"
     return GIVEN_UP
+
+
+def tell_cut_off(store: Store) -> None:
+    """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
+    for program in store.runs_cut_off(CUT_OFF).result():
+        store.log_event("warning", f"{program}: the control ended in the middle of its last run")

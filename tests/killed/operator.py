@@ -1,0 +1,124 @@
+"""An operator in a process of his own: the real window, driven by keys, and he tells what he sees.
+
+``python -m tests.killed.operator MACHINE PROGRAM``: types tool 9's offset, makes parts until he is killed.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.screen.frame import Frame
+from app.screen.main import run_screen
+from app.screen.window import MainWindow
+from core.executor.snapshot import State
+
+LOOK = 20  # ms
+Key = Qt.Key
+
+
+class Operator:
+    """Goes on a step whenever he sees what it waits for; a ``False`` is that he does not yet."""
+
+    def __init__(self) -> None:
+        self._steps = self._day()
+        self._told: dict[str, object] = {}
+
+    def look(self) -> None:
+        """Once in a while; his own timer brings him back."""
+        next(self._steps)
+        self._tell()
+        QTimer.singleShot(LOOK, self.look)
+
+    def _day(self) -> Iterator[bool]:
+        while not (self._windows() and self._windows()[0].frame):
+            yield False
+        while self._frame.desk.session.now.picture is None or self._state is not State.DISABLED:
+            yield False
+        self._key(Key.Key_D)
+        while self._state is not State.IDLE:
+            yield False
+        yield from self._set_tool_nine()
+        while True:
+            if self._state is State.IDLE:
+                for key in (Key.Key_F11, Key.Key_F12):
+                    QTest.keyPress(self._window, key)
+                yield True
+                for key in (Key.Key_F11, Key.Key_F12):
+                    QTest.keyRelease(self._window, key)
+            yield True
+
+    def _set_tool_nine(self) -> Iterator[bool]:
+        self._key(Key.Key_F8)
+        for _ in range(8):
+            self._key(Key.Key_Down)
+        for words in ("-.5", "-3.25"):
+            yield True
+            QTest.keyClicks(self._focus, words)
+            self._key(Key.Key_Return)
+        book = self._frame.desk.book
+        while book is None or 9 not in book.tools:
+            yield False
+        self._key(Key.Key_Escape)
+        while self._frame.page is not self._frame.automatic or not self._ready:
+            yield False
+
+    @property
+    def _ready(self) -> bool:
+        return self._frame.prompt.text.startswith(("TO START", "PRESS"))
+
+    def _tell(self) -> None:
+        """What has changed since the last time, as a line of JSON."""
+        if not self._windows() or self._windows()[0].frame is None:
+            return
+        shot = self._frame.desk.snapshot()
+        now: dict[str, object] = {
+            "state": shot.state.value,
+            "parts": shot.parts,
+            "prompt": self._frame.prompt.text,
+            "alarms": [f"{alarm.text}: {alarm.cause}" for alarm in shot.alarms],
+        }
+        if now != self._told:
+            self._told = now
+            sys.stdout.write(json.dumps(now) + "\n")
+            sys.stdout.flush()
+
+    def _windows(self) -> list[MainWindow]:
+        return [w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible()]
+
+    @property
+    def _window(self) -> MainWindow:
+        return self._windows()[0]
+
+    @property
+    def _frame(self) -> Frame:
+        frame = self._window.frame
+        assert frame is not None
+        return frame
+
+    @property
+    def _focus(self) -> QWidget:
+        return QApplication.focusWidget() or self._window
+
+    @property
+    def _state(self) -> State:
+        return self._frame.desk.snapshot().state
+
+    def _key(self, key: Qt.Key) -> None:
+        QTest.keyClick(self._focus, key)
+
+
+def main(machine: str, program: str) -> int:
+    operator = Operator()  # Qt alone would let it go
+    QTimer.singleShot(LOOK, operator.look)
+    return run_screen(machine=machine, program=program)
+
+
+if __name__ == "__main__":
+    app = QApplication(sys.argv[:1])
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,88 @@
+"""kill -9 of the screen, which is the control: what stops, what is kept; the next start works at once."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.journal import Journal
+from core.store.store import Store
+from tests.killed.bench import Process, process, until
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc")
+PROGRAM = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0.Z0.\nM30\n"  # 2 s of motion a part
+OPERATOR = "tests.killed.operator"
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[str, str]:
+    """The simulated lathe with its drivers in the feeder, and a program of which many parts are made."""
+    machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
+    text = resources.machine_file("gt75.toml")
+    machine.write_text(text.replace("[machine]\n", "[machine]\nfeeder = true\n", 1))
+    program.write_text(PROGRAM)
+    return str(machine), str(program)
+
+
+def cutting(desk: Process, parts: int) -> None:
+    """At work on the part after so many."""
+
+    def so() -> bool:
+        return desk.says("state", "RUNNING") and int(str(desk.lines[-1]["parts"])) >= parts
+
+    until(so, lambda: desk.lines[-3:])
+
+
+def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
+    files: tuple[str, str], tmp_path: Path
+) -> None:
+    home = tmp_path / "home"
+    with process(home, OPERATOR, *files) as desk:
+        cutting(desk, 1)
+        assert len(desk.family()) == 2
+        desk.kill()
+        made = int(str(desk.lines[-1]["parts"]))
+        until(lambda: not desk.family(), lambda: "the feeder has not ended")
+    with Store.open(home) as store:
+        assert store.tools()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
+        assert store.parts("part.nc") >= made
+        assert store.load_program("part.nc") == PROGRAM.encode()
+        assert {"load", "part"} <= {event.kind for event in store.events()}
+        (run,) = store.runs()
+        assert (run.program, run.outcome, run.started is not None) == ("part.nc", "", True)
+        counted = store.parts("part.nc")
+    with process(home, OPERATOR, *files) as again:
+        cutting(again, 1)
+        assert again.lines[-1]["alarms"] == []
+        again.kill()
+        until(lambda: not again.family(), lambda: "the feeder has not ended")
+    with Store.open(home, read_only=True) as store:
+        assert store.parts("part.nc") > counted
+        told = [event.text for event in store.events() if event.kind == "warning"]
+        assert "part.nc: the control ended in the middle of its last run" in told
+
+
+def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.run_started("cut.nc")
+        store.run_started("whole.nc")
+        store.run_ended("whole.nc", "COMPLETE")
+        store.count_part("counted.nc")
+    journal = Journal(tmp_path)
+    ended = {run.program: run.outcome for run in journal.runs()}
+    journal.close()
+    assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
+
+
+def test_a_killed_feeder_stops_the_program_and_says_so(files: tuple[str, str], tmp_path: Path) -> None:
+    with process(tmp_path / "home", OPERATOR, *files) as desk:
+        cutting(desk, 0)
+        os.kill(desk.feeder(), signal.SIGKILL)
+        until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
+        assert "feeder process has ended" in str(desk.lines[-1]["alarms"])
+        assert desk.family() == {desk.popen.pid}  # the screen goes on: offsets and editor stay at hand
