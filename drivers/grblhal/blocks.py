@@ -10,13 +10,13 @@ from core.ports import DriverError
 from drivers.grblhal import codes, scripts
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import line_number, line_of
+from drivers.grblhal.holding import Holds
 from drivers.grblhal.jog import Jogs
 from drivers.grblhal.overrides import Overrides
 from drivers.grblhal.report import Report
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
 _ABORT = "abort"
-_LATE = 3  # reports that may still tell of a hold that has just been ended
 
 
 class GrblBlocks:
@@ -28,15 +28,13 @@ class GrblBlocks:
         self._c = controller
         self.overrides = Overrides(lambda data: controller.realtime(*data), controller.fail)
         self._jogs = Jogs(controller)
+        self._holds = Holds(controller)
         self.powered = False  # leave to move, given and taken by ``GrblAxes``
         self._last = 0  # ticket
         self._done = 0
         self._active = 0
         self._threads: set[int] = set()  # tickets of passes that are not done
         self._settled = False  # a report since the last line has said that all is done
-        self._hold = False  # asked, and not yet taken back
-        self._ours = False  # the hold that stands is our own
-        self._released = 0  # reports after which a hold is one again
         self._target: tuple[float, float] | None = None
         self.rest: tuple[float, float] | None = None  # X and Z where the last block has exactly ended
         self.terminals: Callable[[], frozenset[str]] = frozenset  # what the inputs and outputs can do
@@ -90,10 +88,8 @@ class GrblBlocks:
     def state(self) -> BlockState:
         """From the last report and what has been sent since."""
         c = self._c
-        held = c.report is not None and c.report.state == "Hold" and not c.report.sub
-        held = held and c.reports >= self._released
         resting = self.quiet or c.lost or (c.fault != "" and self._dead())
-        return BlockState(self._done, self._active, resting, held and not c.busy, self.hindrance())
+        return BlockState(self._done, self._active, resting, self._holds.stands, self.hindrance())
 
     def hindrance(self) -> str:
         """Why nothing may be begun now."""
@@ -101,19 +97,15 @@ class GrblBlocks:
 
     def hold(self) -> None:
         """0x82, at once: nobody may ask it in a thread pass, which the controller would leave half cut."""
-        self._hold = self._ours = True
-        self._released = 0
-        self._c.realtime(codes.HOLD)
-        self._c.question()
+        self._holds.begin()
 
     def resume(self) -> None:
-        """0x81, at once where it rests, or as soon as it does; the operator's word ends any hold."""
-        self._hold, self._ours = False, True
-        self._go_on()
+        """0x81; the operator's word ends any hold."""
+        self._holds.end()
 
     def abort(self) -> None:
         """To rest; the tickets are void."""
-        self._hold = self._ours = False
+        self._holds.forget()
         if not self._c.lost and not (self._c.busy and self._c.doing == _ABORT):
             self._c.run(scripts.abort(self._c), _ABORT)
 
@@ -198,10 +190,7 @@ class GrblBlocks:
             self._done = max(self._done, self._active - 1)
             self._threads = {ticket for ticket in self._threads if ticket > self._done}
             c.index_wait = bool(self._threads)
-        if report.state == "Hold":
-            self._go_on()
-        else:
-            self._ours = self._ours and (self._hold or report.state in {"Run", "Jog"})
+        self._holds.reported(report)
 
     def _finished(self, report: Report) -> None:
         """Everything has been moved to its end."""
@@ -219,12 +208,3 @@ class GrblBlocks:
         self._threads.clear()
         self._settled = False
         self._jogs.forget()
-
-    def _go_on(self) -> None:
-        """Out of a hold once it rests and somebody has said so; never out of another's by itself."""
-        report = self._c.report
-        if self._ours and not self._hold and report is not None and report.state == "Hold" and not report.sub:
-            self._ours = False
-            self._released = self._c.reports + _LATE
-            self._c.realtime(codes.START)
-            self._c.question()

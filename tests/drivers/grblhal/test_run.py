@@ -271,3 +271,20 @@ def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
     bench.press()
     bench.until(State.IDLE)
     assert bench.shot.parts == 1
+
+
+def test_a_button_at_the_controller_ends_no_hold_of_ours() -> None:
+    """Its own cycle start moves the slides at once; the screen says FEED HOLD, so they stand again."""
+    bench = GrblBench()
+    bench.start(LONG)
+    bench.until_true(lambda shot: shot.line == 4)
+    bench.run(0.5)
+    bench.post(FeedHold())
+    bench.until(State.HOLD)
+    bench.peer.feed(b"\x81")
+    bench.run(1.0)
+    assert bench.state is State.HOLD
+    assert bench.peer.state == "Hold:0"
+    bench.press()
+    bench.until(State.IDLE)
+    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
