@@ -14,8 +14,7 @@ from core.interpreter.coarse import looks_ahead
 from core.interpreter.count import MOST_BLOCKS, MOST_LINES, takes_call, terminal
 from core.interpreter.execute import execute
 from core.interpreter.flow import Flow
-from core.interpreter.log import Log, refusal
-from core.interpreter.modal import Modal
+from core.interpreter.log import Log
 from core.interpreter.moves import fast_move, go, on_step, plain_move
 from core.interpreter.nose import nose_code, switch
 from core.interpreter.opening import check_opening
@@ -29,8 +28,9 @@ from core.interpreter.shaper import Shaper
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
+from core.interpreter.told import Told
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.diagnostics import ProgramError
 from core.language.omniturn import lex_line
 
 if TYPE_CHECKING:
@@ -39,21 +39,23 @@ if TYPE_CHECKING:
 _AHEAD = 8
 
 
-class Interpreter:
+class Interpreter(Told):
     """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
 
     No block comes after an error, but the pass goes on as well as it can to find the other errors.
     """
 
+    _state: State
+    _tools: ToolUse
+
     def __init__(self, program: Program, setup: Setup) -> None:
+        super().__init__(Log(program.diagnostics))
         self._program = program
-        self._log = Log(program.diagnostics)
         self._state = State(setup, self._log)
         self._shaper = Shaper(self._state)
         self._tools = ToolUse()
         self._flow = Flow(program)
         self._ahead: Ahead | None = None
-        self._stopped = False  # an error has been met: no more blocks
         self._first, self._refused = check_opening(self._state, program)
         if setup.begin is not None:
             restore(self._state, setup.begin)
@@ -63,31 +65,6 @@ class Interpreter:
     def source_blocks(self) -> int:
         """Lines that hold more than a comment."""
         return self._program.blocks
-
-    @property
-    def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far, those of reading the program first; grows while blocks are taken."""
-        return self._log.found
-
-    @property
-    def failed(self) -> bool:
-        """Whether there is an error among the findings so far."""
-        return bool(self._log.errors)
-
-    @property
-    def modal(self) -> Modal:
-        """The state after the last block that was taken."""
-        return self._state.modal
-
-    @property
-    def used_tools(self) -> list[int]:
-        """Tool numbers asked for so far, in the order of first use."""
-        return self._tools.used
-
-    @property
-    def missing_tools(self) -> list[int]:
-        """Those of them whose offset has never been set."""
-        return self._tools.missing
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once.
@@ -144,7 +121,7 @@ class Interpreter:
             step = steps[at]
             left -= 1
             if left < 0 or state.blocks >= MOST_BLOCKS:
-                self._too_much(at + 1)
+                self._too_much(at + 1, "Lower the counts of the loops.")
                 break
             try:
                 if isinstance(step, tuple):
@@ -249,8 +226,3 @@ class Interpreter:
         if made.moves and state.absolute:
             go(state, on_step(state, made, "X"), on_step(state, made, "Z"))
             state.tool_line = 0
-
-    def _too_much(self, line: int) -> None:
-        self._stopped = True
-        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the loops."))

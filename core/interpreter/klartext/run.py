@@ -17,10 +17,10 @@ from core.interpreter.klartext.program import Program
 from core.interpreter.klartext.standing import ORIGIN
 from core.interpreter.klartext.state import SLIDES, State
 from core.interpreter.klartext.tools import ToolUse, tool_call
-from core.interpreter.log import Log, refusal
-from core.interpreter.modal import Modal
+from core.interpreter.log import Log
 from core.interpreter.setup import Setup
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.interpreter.told import Told
+from core.language.diagnostics import ProgramError
 from core.language.klartext.nodes import (
     Assign,
     Call,
@@ -38,45 +38,27 @@ from core.language.klartext.nodes import (
 MOST_Q = 999_999_999.999999
 
 
-class Interpreter:
+class Interpreter(Told):
     """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
 
     No block comes after an error, but the pass goes on as well as it can to find the other errors.
     """
 
+    _state: State
+    _tools: ToolUse
+
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
+        super().__init__(Log(program.problems))
         self._program = program
-        self._log = Log(program.problems)
         self._state = State(setup, kinematics, self._log, inch=program.inch)
         self._state.blank = program.corners
         self._tools = ToolUse()
         self._flow = Flow(program)
-        self._stopped = False  # an error has been met: no more blocks
 
     @property
     def source_blocks(self) -> int:
         """Lines that hold more than a comment."""
         return self._program.blocks
-
-    @property
-    def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far, those of reading the program first; grows while blocks are taken."""
-        return self._log.found
-
-    @property
-    def modal(self) -> Modal:
-        """The state after the last block that was taken."""
-        return self._state.modal
-
-    @property
-    def used_tools(self) -> list[int]:
-        """Tool numbers asked for so far, in the order of first use."""
-        return self._tools.used
-
-    @property
-    def missing_tools(self) -> list[int]:
-        """Those of them whose offset has never been set."""
-        return self._tools.missing
 
     @property
     def state(self) -> State:
@@ -96,7 +78,7 @@ class Interpreter:
             flow.at += 1
             left -= 1
             if left < 0 or self._state.blocks >= MOST_BLOCKS:
-                self._too_much(line.number)
+                self._too_much(line.number, "Lower the counts of the repeats.")
                 return
             for block in self._guarded(line):
                 if not self._stopped:
@@ -160,11 +142,6 @@ class Interpreter:
             yield block
             if isinstance(block.action, ProgramEnd):
                 self._flow.at = len(self._program.lines)  # behind END PGM: nothing ends twice
-
-    def _too_much(self, line: int) -> None:
-        self._stopped = True
-        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        self._log.add(refusal(line, 0, "too-many-blocks", text, "Lower the counts of the repeats."))
 
 
 def _datum(state: State, line: int, node: Datum) -> None:

@@ -10,7 +10,6 @@ from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.blocks import Block
 from core.interpreter.count import MOST_BLOCKS, MOST_LINES
 from core.interpreter.log import Log
-from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
 from core.interpreter.sinumerik.arcs import arc
 from core.interpreter.sinumerik.corners import Corners, corner_of
@@ -22,6 +21,7 @@ from core.interpreter.sinumerik.offsets import leave_offsets, programmed_offset
 from core.interpreter.sinumerik.spindle import dwell, spindle_words
 from core.interpreter.sinumerik.state import State
 from core.interpreter.sinumerik.statement import Statement, statement
+from core.interpreter.told import Told
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.faults import refused
 from core.language.sinumerik.sections import HEADER
@@ -40,19 +40,20 @@ _BY_STATE = frozenset(
 )
 
 
-class Interpreter:
+class Interpreter(Told):
     """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
 
     No block comes after an error, but the pass goes on to find the other errors.
     """
 
+    _state: State
+
     def __init__(self, source: Source, setup: Setup) -> None:
+        super().__init__(Log())
         self._source = source
-        self._log = Log()
         self._state = State(setup, self._log)
         self._corners = Corners(self._state, self._log)
         self._flow = Flow(source)
-        self._stopped = False
         self._count = 0
 
     @cached_property
@@ -62,26 +63,6 @@ class Interpreter:
             bool(line.split(";", 1)[0].strip()) and HEADER.fullmatch(line) is None
             for line in self._source.lines
         )
-
-    @property
-    def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far; grows while blocks are taken."""
-        return self._log.found
-
-    @property
-    def modal(self) -> Modal:
-        """The state after the last block that was taken."""
-        return self._state.modal
-
-    @property
-    def used_tools(self) -> list[int]:
-        """None: tools are no part of this subset."""
-        return []
-
-    @property
-    def missing_tools(self) -> list[int]:
-        """None."""
-        return []
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
@@ -98,7 +79,7 @@ class Interpreter:
         while not self._log.full and (line := self._flow.next()) is not None:
             left -= 1
             if left < 0 or self._count >= MOST_BLOCKS:
-                self._too_much(line)
+                self._never_ends(line)
                 return
             if line.skip is not None and self._state.setup.block_delete:
                 continue
@@ -193,7 +174,7 @@ class Interpreter:
         self._stopped = True
         self._corners.drop()
 
-    def _too_much(self, line: Line) -> None:
+    def _never_ends(self, line: Line) -> None:
         text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
         self._refuse(
             refused(line.number, 0, "too-many-blocks", line.block, text, "Lower the passes of the calls.")
