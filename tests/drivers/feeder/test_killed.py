@@ -15,43 +15,11 @@ from pathlib import Path
 
 import pytest
 
-import resources
-from app.compose.canopen import canopen_peers
-from core.machine.load import load_machine
-from core.ports import DriverError
 from drivers.canopen.peer.machine import Peers
-from drivers.simulated import StepClock
+from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 
 PATIENCE = 60.0  # s of a loaded computer
 END = 20.0 * 1.42  # mm at which the path ends
-# A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
-TIMES = (
-    ("sync_ms = 10 ", "sync_ms = 100 "),
-    ("heartbeat_ms = 100 ", "heartbeat_ms = 1000 "),
-    ("commit_ms = 140", "commit_ms = 200"),
-    ("low_water_ms = 200", "low_water_ms = 250"),
-    ("lease_ms = 200", "lease_ms = 220"),
-    ("clearance = 1.25", "clearance = 2"),
-    ("absolute = false", "absolute = true"),
-)
-
-
-class SteadyClock(StepClock):
-    """Goes with the day, but never more than 5 ms at once: after a stall it catches up step by step."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._zero, self._epoch = time.monotonic(), time.time()
-
-    def arrival(self, stamp: float) -> float:
-        """When a frame came, by this clock."""
-        return stamp - self._epoch
-
-    def step(self) -> bool:
-        """On by one step; False when it has caught up."""
-        late = time.monotonic() - self._zero - self.now()
-        self.advance(min(max(late, 0.0), 0.005))
-        return late > 0.005
 
 
 @dataclass
@@ -93,21 +61,10 @@ class Shop:
 @pytest.fixture
 def shop(tmp_path: Path) -> Iterator[Shop]:
     """X and Z on their way, at a third of it; spindle and coolant on."""
-    text = resources.machine_file("gt75-canopen.toml").replace('"socketcan"', '"udp_multicast"')
-    group = f"239.74.163.2:{20000 + os.getpid() % 20000}"  # two runs on one port would hear each other
-    text = text.replace('channel = "can0"', f'channel = "{group}"')
-    for old, new in TIMES:
-        assert old in text, old
-        text = text.replace(old, new)
-    path = tmp_path / "shop.toml"
-    path.write_text(text)
+    path = bus_file(tmp_path)
     clock = SteadyClock()
-    try:
-        peers = canopen_peers(load_machine(path), clock)
-    except DriverError as error:
-        pytest.skip(f"no bus between processes on this computer: {error}")
+    peers = peers_on(path, clock)
     words = [sys.executable, "-m", "tests.drivers.feeder.control", str(path)]
-    peers.arrival = clock.arrival
     control = subprocess.Popen(words, stdout=subprocess.PIPE)
     made = Shop(peers, clock, control)
     try:
