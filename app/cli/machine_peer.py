@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -47,15 +47,27 @@ def _drives(machine: Machine, going: Callable[[], bool]) -> None:
         raise DriverError(
             "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
         )
-    play_peers(machine, going, lambda: _say(f"drives of {machine.name} on {bus.interface} {bus.channel}"))
+    play_peers(machine, going, _say, _typed())
+
+
+def _typed() -> Callable[[], Iterable[str]]:
+    """Lines of the standard input, where there is one."""
+    from app.compose.peer_hands import Typed
+
+    try:
+        return Typed(sys.stdin.fileno()).lines
+    except (OSError, ValueError, AttributeError):
+        return tuple
 
 
 def _controller(machine: Machine, going: Callable[[], bool]) -> None:
     from app.compose.grblhal import play_grblhal
 
-    play_grblhal(machine, going, lambda where: _say(f"grblHAL of {machine.name} on {where}"))
+    play_grblhal(
+        machine, going, lambda where: _say(f"simulated grblHAL of {machine.name} on {where}; end: Ctrl-C")
+    )
 
 
 def _say(what: str) -> None:
-    sys.stdout.write(f"simulated {what}; end: Ctrl-C\n")
+    sys.stdout.write(f"{what}\n")
     sys.stdout.flush()

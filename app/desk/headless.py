@@ -68,40 +68,45 @@ class HeadlessRun:
     def run(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> Outcome:
         """The whole run of one cycle."""
         self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
-        self._home()
+        if not self._home():
+            self._executor.post(FeedHold())
+            self._step()
+            return self._outcome("waiting", f"the axes have not found home in {HOMING:.0f} s")
         self._executor.post(SetSwitch("optional_stop", optional_stop))
         self._executor.post(LoadJob(job, proof))
-        self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused))
+        before = self._executor.snapshot.parts  # a program of one action is over before anybody looks
+        if not self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused) or s.parts > before):
+            return self._outcome("waiting", "no start has come; were both palm buttons pressed?")
         if self._executor.snapshot.state in UNDER_WAY:
             return self._watch()
         return self._ended()
 
-    def _home(self) -> None:
-        """Axes that do not know where they are look for it first, as an operator would have them do."""
+    def _home(self) -> bool:
+        """Axes that do not know where they are look for it, as at the screen; False: in vain."""
         snapshot = self._executor.snapshot
         lost = [name for name, homed in zip(snapshot.axes, snapshot.homed, strict=True) if not homed]
         if not lost or snapshot.state is not State.IDLE:
-            return
+            return True
         self._say(f"homing {', '.join(lost)}")
         self._until(lambda s: s.state is State.HOME, Home(), tries=20)
-        self._wait(lambda s: s.state is not State.HOME, tries=round(HOMING / TICK))
+        return self._wait(lambda s: s.state is not State.HOME, tries=round(HOMING / TICK))
 
-    def _start(self, reached: Callable[[Snapshot], bool]) -> None:
+    def _start(self, reached: Callable[[Snapshot], bool]) -> bool:
         if self._palms is None:
-            self._until(reached, CycleStart(), tries=20)
-        else:
-            self._palms()
-            self._wait(reached, tries=round(PATIENCE / TICK))
+            return self._until(reached, CycleStart(), tries=20)
+        self._palms()
+        return self._wait(reached, tries=round(PATIENCE / TICK))
 
-    def _until(self, reached: Callable[[Snapshot], bool], command: Command, tries: int) -> None:
+    def _until(self, reached: Callable[[Snapshot], bool], command: Command, tries: int) -> bool:
         self._executor.post(command)
-        self._wait(reached, tries)
+        return self._wait(reached, tries)
 
-    def _wait(self, reached: Callable[[Snapshot], bool], tries: int) -> None:
+    def _wait(self, reached: Callable[[Snapshot], bool], tries: int) -> bool:
         for _ in range(tries):
             self._step()
             if reached(self._executor.snapshot):
-                return
+                return True
+        return False
 
     def _watch(self) -> Outcome:
         self._last_move = self._clock.now()

@@ -1,0 +1,54 @@
+"""A run without a screen that nobody starts, or whose slides do not find home, is no complete run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from app.desk.headless import HeadlessRun, Outcome
+from core.executor.commands import Command, EnableDrives, Home
+from core.executor.job import Proof, make_job
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.setup import Setup
+from core.language.source import Source
+from drivers.simulated import StepClock
+
+
+@dataclass
+class Idle:
+    """An executor that switches its drives on, homes where it can, and starts nothing."""
+
+    homes: bool = True
+    snapshot: Snapshot = field(default_factory=lambda: Snapshot(state=State.DISABLED))
+    posted: list[Command] = field(default_factory=list)
+
+    def post(self, command: Command) -> None:
+        self.posted.append(command)
+
+    def tick(self) -> None:
+        if any(isinstance(each, EnableDrives) for each in self.posted):
+            self.snapshot = replace(self.snapshot, state=State.IDLE)
+        if any(isinstance(each, Home) for each in self.posted):
+            done = self.homes
+            self.snapshot = replace(
+                self.snapshot, homed=(done,) * 3, state=State.IDLE if done else State.HOME
+            )
+
+
+def outcome(executor: Idle, said: list[str]) -> Outcome:
+    job = make_job(Source("part.nc", "G90G94F300\nM30\n"), Setup())
+    run = HeadlessRun(executor, StepClock(), said.append, lambda _t: None, lambda: said.append("palms"))
+    return run.run(job, Proof(job.digest, ()))
+
+
+def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:
+    said: list[str] = []
+    ended = outcome(Idle(), said)
+    assert said == ["homing X, Z, C", "palms"]
+    assert ended.state == "waiting"
+    assert "no start has come" in ended.why
+
+
+def test_slides_that_do_not_find_home_are_no_complete_run() -> None:
+    ended = outcome(Idle(homes=False), [])
+    assert ended.state == "waiting"
+    assert "home" in ended.why

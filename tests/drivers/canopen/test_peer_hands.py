@@ -1,0 +1,74 @@
+"""Words typed at simulated drives: what they do, and what is not understood."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from app.compose.peer_hands import Typed, obey
+from tests.drivers.canopen.bench import CanBench
+
+
+def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
+    assert obey("estop", bench.peers) == "estop: done"
+    bench.run(0.1)
+    assert bench.machine.io.snapshot().estop
+    assert obey("release", bench.peers) == "release: done"
+    assert obey("feed 50", bench.peers) == "feed 50: done"
+    assert obey("auto off", bench.peers) == "auto off: done"
+    assert obey("input TB2-5 on", bench.peers) == "input TB2-5 on: done"
+    bench.run(0.2)
+    state = bench.machine.io.snapshot()
+    assert not state.estop
+    assert not state.spindle_auto
+    assert state.feed_pot == pytest.approx(0.5, abs=0.01)
+    assert bench.machine.io.inputs()["TB2-5"]
+
+
+def test_both_palms_are_one_start(bench: CanBench) -> None:
+    seen = []
+    assert obey("start", bench.peers) == "start: done"
+    for _ in range(60):
+        bench.tick()
+        seen.append(bench.machine.io.snapshot().start)
+    assert True in seen
+    assert not seen[-1]
+
+
+def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
+    assert obey("cable off", bench.peers) == "cable off: done"
+    bench.run(0.5)
+    assert bench.machine.axes.sample().fault
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("dance", "not understood; known: start"),
+        ("feed", "not understood"),
+        ("feed fast", "not understood"),
+        ("auto maybe", "not understood"),
+        ("start now", "not understood"),
+        ("input 77 on", "77"),
+        ("jam Q on", "no drive is called Q: X, Z"),
+    ],
+)
+def test_what_is_not_understood_is_told_and_changes_nothing(bench: CanBench, line: str, told: str) -> None:
+    assert told in obey(line, bench.peers)
+    bench.run(0.1)
+    assert not bench.machine.axes.sample().fault
+
+
+def test_lines_come_whole_and_an_end_is_no_trouble() -> None:
+    theirs, ours = os.pipe()
+    typed = Typed(theirs)
+    assert list(typed.lines()) == []
+    os.write(ours, b"sta")
+    assert list(typed.lines()) == []
+    os.write(ours, b"rt\n\n hold \n")
+    assert list(typed.lines()) == ["start", "hold"]
+    os.close(ours)
+    assert list(typed.lines()) == []
+    assert list(typed.lines()) == []
+    os.close(theirs)
