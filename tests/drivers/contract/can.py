@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
@@ -20,8 +20,8 @@ from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, Broken
 from tests.drivers.contract.world import SimWorld
 
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
-_SILENT = Fault(told=0.35, rests=0.45)
-_DEAF = Fault(told=0.05, rests=0.45, final=True)  # nothing can be said: the drives miss our heartbeat
+_SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
+_DEAF = Fault(told=0.05, rests=0.45, says="", final=True)  # the drives miss our heartbeat
 _ROUNDS = 2  # of the bus in a tick of the executor
 
 
@@ -29,18 +29,18 @@ class Canopen(Rig):
     """Queued in the drives (PVT)."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.03, rests=0.1),
-        "following error": Fault(told=0.08, rests=0.2),
+        "drive fault": Fault(told=0.03, rests=0.1, says="X: "),
+        "following error": Fault(told=0.08, rests=0.2, says="X: monitoring (EMCY 8611)"),
         "cable out": _SILENT,
-        "silence": _SILENT,
-        "silent terminals": _SILENT,
-        "garbage": _DEAF,
-        "node reboot": Fault(told=0.03, rests=0.4),
-        "terminals reboot": Fault(told=0.03, rests=0.2),
-        "NMT stop": Fault(told=0.15, rests=0.45),
-        "bus-off": _DEAF,
-        "two masters": _DEAF,
-        "dead reader": _DEAF,
+        "silence": replace(_SILENT, says="Z: "),
+        "silent terminals": replace(_SILENT, says="io: "),
+        "garbage": replace(_DEAF, says="frames that make no sense"),
+        "node reboot": Fault(told=0.03, rests=0.4, says="X: the drive has restarted"),
+        "terminals reboot": Fault(told=0.03, rests=0.2, says="io: "),
+        "NMT stop": Fault(told=0.15, rests=0.45, says="Z: "),
+        "bus-off": replace(_DEAF, says="bus-off"),
+        "two masters": replace(_DEAF, says="another master"),
+        "dead reader": replace(_DEAF, says="the CAN interface"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {

@@ -125,12 +125,12 @@ class Grblhal(Rig):
     """On an in-memory wire."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.02, rests=0.02, homeless=True),
-        "cable out": Fault(told=0.02, rests=0.9, final=True, spins=_ALONE, flows=_ALONE),
-        "silence": Fault(told=1.4, rests=2.2),
-        "garbage": Fault(told=0.15, rests=0.3),
-        "node reboot": Fault(told=0.15, rests=0.1, homeless=True),
-        "two masters": Fault(told=0.15, rests=0.3),
+        "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault"),
+        "cable out": Fault(0.02, 0.9, "the connection to the controller is lost", True, _ALONE, _ALONE),
+        "silence": Fault(told=1.4, rests=2.2, says="does not answer"),
+        "garbage": Fault(told=0.15, rests=0.3, says="disturbed"),
+        "node reboot": Fault(told=0.15, rests=0.1, says="reset", homeless=True),
+        "two masters": Fault(told=0.15, rests=0.3, says="disturbed"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {
@@ -174,7 +174,8 @@ class Grblhal(Rig):
 
     def _motor_fault(self) -> None:
         """As its firmware does on this input: all off, then the alarm."""
-        self.peer.reset()
+        self.peer.turn(0.0)
+        self.peer.outputs.update(flood=False, mist=False)
         self.peer.raise_alarm(17)
 
     def mend(self) -> None:

@@ -22,8 +22,12 @@ from tests.drivers.inverter.peers import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"
-_LOST = Fault(told=_RTU, rests=_RTU + 0.2)  # a second of silence, and the tries under way
-_DISOBEYS = Fault(told=1.6, rests=1.8)  # a second, and the looks under way
+_LOST = Fault(
+    told=_RTU, rests=_RTU + 0.2, says="PRESS E-STOP"
+)  # a second of silence, and the tries under way
+_DISOBEYS = Fault(
+    told=1.6, rests=1.8, says="understood 0.00 Hz: PRESS E-STOP"
+)  # a second, and the looks under way
 
 
 class InverterWorld(SimWorld):
@@ -65,8 +69,8 @@ class OnALine(Simulated):
         "garbage": _LOST,
         "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
         "node reboot": _DISOBEYS,
-        "dead reader": Fault(told=0.1, rests=0.2, final=True),
-        "two masters": _DISOBEYS,
+        "dead reader": Fault(0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", final=True),
+        "two masters": dataclasses.replace(_DISOBEYS, says="PRESS E-STOP"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers", "noise")
     heals = 2.0  # a port that has gone is tried again each second

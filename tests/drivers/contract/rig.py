@@ -35,13 +35,14 @@ NINE = (
 class Fault:
     """What may be counted on once something has gone wrong on a driver's wires.
 
-    ``told`` and ``rests``: s until the driver says so, and until every slide stands. ``final``: the control
-    has to be started again. ``spins`` and ``flows``: why spindle or coolant stay on, where nothing can be
-    said to them any more. ``homeless``: nobody knows any more where the slides are.
+    ``told`` and ``rests``: s until the driver ``says`` so, and until every slide stands. ``final``: the
+    control has to be started again. ``spins``, ``flows``: why spindle or coolant stay on, where nothing
+    can be said to them any more. ``homeless``: nobody knows any more where the slides are.
     """
 
     told: float
     rests: float
+    says: str
     final: bool = False
     spins: str = ""
     flows: str = ""

@@ -20,7 +20,7 @@ from drivers.simulated import StepClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
-_TRIP = Fault(told=0.02, rests=0.1)
+_TRIP = Fault(told=0.02, rests=0.1, says="X: drive fault")
 _INSIDE = "the simulated machine is in this process: there is no wire"
 
 
@@ -34,7 +34,10 @@ def unhomed(machine: Machine) -> Machine:
 class Simulated(Rig):
     """In process."""
 
-    faults: ClassVar[Mapping[str, Fault]] = {"drive fault": _TRIP, "following error": Fault(0.07, 0.15)}
+    faults: ClassVar[Mapping[str, Fault]] = {
+        "drive fault": _TRIP,
+        "following error": Fault(0.07, 0.15, "X: following error"),
+    }
     missing: ClassVar[Mapping[str, str]] = {
         "cable out": _INSIDE,
         "silence": _INSIDE,
@@ -110,12 +113,13 @@ class SimDriven:
 
 
 # The feeder ends the queue of a control that it no longer hears, and then takes the power: 1.0 s of way here.
-_GONE = Fault(told=0.02, rests=1.5, final=True)
-FEEDER_FAULTS = {"dead reader": _GONE, "silence": _GONE, "garbage": _GONE}
 FEEDER_WORDS = {
     "dead reader": "the feeder process has ended",
     "silence": "the feeder has not answered",
     "garbage": "the feeder's socket carries something that is no message",
+}
+FEEDER_FAULTS = {
+    fault: Fault(told=0.02, rests=1.5, says=says, final=True) for fault, says in FEEDER_WORDS.items()
 }
 FEEDER_MISSING = {
     "cable out": "the feeder hangs on a socket pair inside one computer",

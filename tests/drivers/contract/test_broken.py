@@ -65,6 +65,7 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
     rig.under_way()
     rig.acts()[fault]()
     rig.until(lambda: rig.told != "", rig.faults[fault].told)
+    assert rig.faults[fault].says in rig.told
     costs_no_time(rig)
     rig.run(0.8)
     costs_no_time(rig)

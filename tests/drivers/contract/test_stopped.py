@@ -48,6 +48,8 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     rig.acts()[fault]()
     control.until(State.FAULT, limit=outcome.told + 0.01)
     control.rest(max(outcome.rests + struck - control.clock.now(), 0.0))
+    alarm = control.shot.alarms[0]
+    assert outcome.says in alarm.cause + alarm.remedy
     all_off(control, outcome)
     stood, powered = control.world.place(), rig.ports.axes.sample().enabled
     control.press()
@@ -64,7 +66,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     control.until(on, limit=2.0)
     control.run(0.5)
     assert math.dist(control.world.place(), stood) < STILL
-    assert control.world.rpm() == 0.0 or outcome.spins
+    assert control.world.rpm() == 0.0 or (outcome.spins and outcome.final)
     if outcome.final:
         return
     assert control.shot.alarms == ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Reset
+from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from core.interpreter.setup import ToolOffset
 from drivers.feeder.client import Line
@@ -57,35 +57,6 @@ def test_a_hold_comes_to_rest_at_the_same_place() -> None:
         rig.until(State.HOLD)
         places.append(rig.shot.demand)
     assert places[0] == pytest.approx(places[1], abs=1e-12)
-
-
-def test_estop_takes_the_same_way() -> None:
-    for rig in (Rig(), FedRig()):
-        rig.start("G90G94F300\nG01F300\nX3Z-4\nX0Z0\nM30\n")
-        rig.run(0.5)
-        rig.sim.machine.press_estop()
-        rig.until(State.ESTOP, limit=0.05)
-        rig.run(0.5)
-        rig.sim.machine.release_estop()
-        rig.run(0.5)
-        assert rig.state is State.DISABLED
-
-
-def test_a_feeder_that_dies_is_one_alarm_and_the_control_lives_on() -> None:
-    rig = FedRig()
-    rig.start("G90G94F300\nM03S500\nM08\nG01F300\nX3Z-4\nX0Z0\nM30\n")
-    rig.run(1.5)
-    rig.link.why = "the feeder process has ended; start the control again"
-    rig.until(State.FAULT, limit=0.05)
-    assert "feeder process has ended" in rig.shot.alarms[0].cause
-    rig.run(1.0)
-    assert not any(alarm.code == "internal" for alarm in rig.shot.alarms)
-    rig.post(Reset())
-    rig.run(0.2)
-    assert rig.state is State.FAULT  # nothing leads out of it but a new start
-    rig.post(EnableDrives(), CycleStart())
-    rig.run(0.2)
-    assert rig.state is State.FAULT
 
 
 def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None:
