@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from app.desk.drawing.approach import Leg
     from app.desk.picture import Picture
     from app.screen.path.measure import Measure
-    from app.screen.path.pane import Pane, Place
+    from app.screen.path.pane import Pane
     from app.screen.path.panes import Panes
     from app.screen.path.plot import Frame
+    from app.screen.path.sight import Place
 
 COLUMN = 6.4  # units at the right of a view that are the buttons'
 

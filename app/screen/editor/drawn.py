@@ -14,7 +14,8 @@ from app.screen.pathview import PathView
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture
-    from app.screen.path.pane import Pane, Place
+    from app.screen.path.pane import Pane
+    from app.screen.path.sight import Place
 
 
 class EditedPath(PathView):

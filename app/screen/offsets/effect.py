@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.offsets.shown import ShownEffect
 from app.screen.look import Look
 from app.screen.pages import Doings
-from app.screen.path.pane import ZOOM_STEP
+from app.screen.path.sight import ZOOM_STEP
 from app.screen.pathview import PathView
 
 NEAR = 0.06  # of the width: how far apart the greatest change is shown from near

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
 from app.desk.drawing.apart import farthest
@@ -17,28 +15,21 @@ from app.screen.path.inks import Ink
 from app.screen.path.layers import Layers
 from app.screen.path.plot import Frame, boxed, fitted, polygon, runs, stroke_run, travelled
 from app.screen.path.scenery import draw_scenery
+from app.screen.path.sight import MARGIN, Place, Sight
 
-ZOOM_STEP = 1.25
-PAN_STEP = 0.1  # of the width
 PICK = 1.6  # units: how near a finger must come to a line to mean it
-MARGIN = 2.8  # units round what is fitted
 RING = 6.0  # units round a face: the circle of the part and its angles stand there
 MOST_MARKED = 20_000  # points drawn thick, of a line that makes more of them
 
-Place = tuple[float, float]
 
-
-class Pane:
+class Pane(Sight):
     """A part of the path view; places are the widget's pixels, everything drawn is the pane's own."""
 
     def __init__(self, look: Look, aspect: Aspect, trail: Trail, before: Trail | None = None) -> None:
-        self.look, self.aspect = look, aspect
+        super().__init__(look)
+        self.aspect = aspect
         self.trail, self.before = trail, before
         self.apart = farthest(before, trail) if before is not None else None
-        self.room = QRectF()
-        self._also: tuple[Place, ...] = ()
-        self.by_hand = False  # somebody has zoomed or panned
-        self.frame: Frame | None = None
         self._layers: Layers | None = None
         self._block = 0
         self._place: Place | None = None  # of the tip; nobody has told it yet
@@ -46,115 +37,41 @@ class Pane:
 
     # --- what is seen --------------------------------------------------------------------------------
 
-    def lay(self, room: QRectF) -> None:
-        """Fill this room; another size shows the whole part again."""
-        if room != self.room:
-            self.room = room
-            self.fit()
-
     def take(self, trail: Trail, before: Trail | None) -> None:
         """Another path in the same place; what is looked at stays if it was chosen by hand."""
         self.trail, self.before, self._block, self.marked = trail, before, 0, []
         self.apart = farthest(before, trail) if before is not None else None
         if self.by_hand and self.frame is not None:
-            self._look_at(self.frame)
+            self.look_at(self.frame)
         else:
             self.fit()
 
-    def fit(self) -> None:
-        """Everything."""
-        self.by_hand = False
+    def whole(self) -> Frame:
+        """Everything, the path before a change too."""
         fit = boxed if self.aspect is Aspect.SIDE else fitted
         bounds = self.trail.bounds
         if self.before is not None:
             bounds = _around(bounds, self.before.bounds)
-        for z, x in self._also:
+        for z, x in self.also:
             bounds = _around(bounds, (z, z, x, x))
         margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
-        self._look_at(fit(bounds, int(self.room.width()), int(self.room.height()), margin))
+        return fit(bounds, int(self.room.width()), int(self.room.height()), margin)
 
-    def include(self, places: Sequence[Place]) -> None:
-        """Points of the trail's plane that are to be seen with the whole part."""
-        if tuple(places) != self._also:
-            self._also = tuple(places)
-            if not self.by_hand and self.frame is not None:
-                self.fit()
-
-    def zoom(self, steps: int, at: QPointF | None = None) -> None:
-        """Nearer (positive) or farther, about a point of the widget, the farthest change or the middle."""
-        self.magnify(ZOOM_STEP**steps, at if at is not None else self._middle())
-
-    def _middle(self) -> QPointF:
-        """What one wants to see nearer."""
-        if self.apart is not None and self.frame is not None:
-            changed = self.room.topLeft() + self.spot(self.apart.z, self.apart.x)
-            if self.room.contains(changed):
-                return changed
-        return self.room.center()
-
-    def magnify(self, factor: float, at: QPointF) -> None:
-        """Nearer by a factor; what is at the point stays there."""
-        if self.frame is not None:
-            self.by_hand = True
-            at = at - self.room.topLeft()
-            self._look_at(self.frame.zoomed(factor, at.x(), at.y()))
-
-    def pan(self, across: int, down: int) -> None:
-        """Look further right and down by so many steps."""
-        step = PAN_STEP * self.room.width()
-        self.drag(QPointF(-across * step, -down * step))
-
-    def drag(self, by: QPointF) -> None:
-        """The picture goes along with the finger."""
-        if self.frame is not None:
-            self.by_hand = True
-            self._look_at(self.frame.moved(by.x(), by.y()))
+    def wanted_near(self) -> Place | None:
+        """The greatest change."""
+        return (self.apart.z, self.apart.x) if self.apart is not None else None
 
     def restart(self) -> None:
         """The same again, in other colours."""
         if self.frame is not None:
-            self._look_at(self.frame)
+            self.look_at(self.frame)
 
-    def _look_at(self, frame: Frame) -> None:
-        self.frame = frame
+    def look_at(self, frame: Frame) -> None:
+        """This is seen from now on, drawn anew."""
+        super().look_at(frame)
         self._layers = Layers(self.look, self.trail, frame, self.before)
         self._layers.want(self._block - 1)
         self._layers.advance()
-
-    # --- places --------------------------------------------------------------------------------------
-
-    @property
-    def pixel(self) -> float:
-        """How many mm one is."""
-        return 1.0 / self.frame.scale if self.frame is not None else 1.0
-
-    def spot(self, z: float, x: float) -> QPointF:
-        """Where a point of the trail is in the pane; pixels from its corner."""
-        assert self.frame is not None
-        return QPointF(float(self.frame.across(z)), float(self.frame.down(x)))
-
-    def here(self, at: QPointF) -> Place:
-        """The trail's z and x at a place of the widget."""
-        frame, room = self.frame, self.room
-        assert frame is not None
-        z = frame.z + (at.x() - room.x() - frame.width / 2) / frame.scale
-        return z, frame.x + (at.y() - room.y() - frame.height / 2) / frame.scale
-
-    def sight(self) -> Bounds:
-        """What part of the trail is seen: least and greatest z, least and greatest x."""
-        (z0, x0), (z1, x1) = self.here(self.room.topLeft()), self.here(self.room.bottomRight())
-        return z0, z1, x0, x1
-
-    def show_spot(self, z: float, x: float) -> None:
-        """Look aside as far as is needed to see a point."""
-        at, room = self.spot(z, x), self.room
-        edge = MARGIN * self.look.u
-        over = QPointF(
-            min(0.0, at.x() - edge) + max(0.0, at.x() - room.width() + edge),
-            min(0.0, at.y() - edge) + max(0.0, at.y() - room.height() + edge),
-        )
-        if not over.isNull():
-            self.drag(-over)
 
     def block_at(self, at: QPointF) -> int:
         """The block that was drawn at a place of the widget, or very near to it; 0: none was."""
