@@ -30,6 +30,9 @@ ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0
 ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
+MAY_LACK = {WINDOW_TIME: "no 6066, time-out of the following error: it faults as soon as the window is left"}
+"""Written where a node has them, and what it means where it has not: nothing that is less safe."""
+
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
 _VARIABLES_402 = (

@@ -31,6 +31,7 @@ class Setup:
         self._bus = bus
         self._node = node
         self._name = name
+        self.told: tuple[str, ...] = ()
 
     def pre_operational(self) -> None:
         """PDO mapping may only change there."""
@@ -55,9 +56,12 @@ class Setup:
             )
 
     def write_all(self, values: tuple[tuple[int, int, int], ...]) -> None:
-        """One after the other; a later value of the same object wins."""
+        """One after the other; a later value of the same object wins. ``told``: what it did without."""
         for index, sub, value in values:
-            self.write(index, sub, value)
+            if index in od.MAY_LACK and self._lacks(index, sub):
+                self.told = (f"{self._name}: {od.MAY_LACK[index]}",)
+            else:
+                self.write(index, sub, value)
 
     def demand_profile(self, profile: int) -> None:
         """Is it the kind of device that the machine file says? Raises DriverError."""
@@ -77,13 +81,18 @@ class Setup:
 
     def entries(self, index: int) -> int:
         """How many entries an array of the node has; 0 where the node has no such object."""
+        return 0 if self._lacks(index, 0) else self.read(index, 0)
+
+    def _lacks(self, index: int, sub: int) -> bool:
+        """Whether the node says that it has no such object."""
         try:
-            return self.read(index, 0)
+            self.read(index, sub)
         except DriverError as error:
             refusal = error.__cause__
             if isinstance(refusal, SdoAbortedError) and refusal.code == _NO_SUCH_OBJECT:
-                return 0
+                return True
             raise
+        return False
 
     def receive(self, number: int, *entries: tuple[int, int], at_once: bool = False) -> None:
         """Map what the node receives in PDO ``number``: (object, bits)."""

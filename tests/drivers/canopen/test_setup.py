@@ -46,6 +46,25 @@ def test_outputs_have_their_safe_state_in_the_module(bench: CanBench) -> None:
     assert values[od.ANALOG_EVENTS, 0] == 1
 
 
+def test_a_drive_without_a_time_for_its_window_is_stricter_and_that_is_told() -> None:
+    model, clock = can_machine(), StepClock()
+    peers = canopen_peers(model, clock)
+    del peers.nodes["X"].local.object_dictionary[od.WINDOW_TIME]
+    machine = canopen_machine(model, clock, peers.pump)
+    (warning,) = machine.ports.warnings
+    assert warning.startswith("X: no 6066")
+    assert peers.plant.drives["X"].values[od.WINDOW, 0] == round(2.032 / 0.00127)
+    machine.bus.close()
+    peers.close()
+
+
+def test_a_drive_that_cannot_be_told_what_to_do_without_us_is_refused() -> None:
+    def spoil(peers: Peers) -> None:
+        del peers.nodes["X"].local.object_dictionary[od.ABORT_OPTION]
+
+    assert "X: node 1, object 6007:0: refused by the node" in refused(spoil)
+
+
 def refused(spoil: Callable[[Peers], None], machine: Machine | None = None) -> str:
     """Why a machine with a spoilt node is not connected to."""
     model, clock = machine or can_machine(), StepClock()
