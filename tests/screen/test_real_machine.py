@@ -94,6 +94,8 @@ def test_one_palm_does_not_start_the_lathe(stage: Stage, window: MainWindow) -> 
 
 def test_no_start_with_the_drives_off_and_it_is_said(stage: Stage, window: MainWindow) -> None:
     desk: Desk = stage.desk
+    later = stage.clock.now() + 0.1  # a start that is on when the control begins to look is no press
+    stage.tick(lambda: stage.clock.now() >= later)
     reaches(stage, State.DISABLED)
     both_palms(window)
     stage.tick(lambda: desk.snapshot().start_refused != "", 2.0)
