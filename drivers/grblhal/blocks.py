@@ -47,10 +47,12 @@ class GrblBlocks:
 
     @property
     def caps(self) -> frozenset[str]:
-        """Threads need the controller's own encoder, which a third speed in its reports tells of."""
+        """Threads need the controller's own encoder, which a third speed in its reports tells of; a surface
+        speed needs a spindle that is not the controller's, whose speed cannot follow a path.
+        """
         report = self._c.report
-        encoder = report is not None and report.measured is not None
-        return self.terminals() | ({"arc", "thread"} if encoder else {"arc"})
+        able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
+        return self.terminals() | able | (set() if self._c.config.own_spindle else {"surface-speed"})
 
     @property
     def fastest(self) -> float:

@@ -41,6 +41,8 @@ def connect(c: Controller) -> Script:
         if number != codes.HOMING_REQUIRED:
             c.fail(codes.alarm_text(number))
         return
+    for code in codes.OFF:  # a control that was killed has left them as they were
+        yield from asked(c, code)
     yield from verify(c)
 
 

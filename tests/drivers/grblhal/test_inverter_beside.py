@@ -35,6 +35,7 @@ class Belt:
         self._turned = turned
         self.faults = SpindleFaults()
         self.ordered = 0.0
+        self.most = 0.0  # Hz that the inverter was told
 
     @property
     def speed(self) -> float:
@@ -44,8 +45,9 @@ class Belt:
     def turns(self) -> float:
         return self._turned.motor.turns
 
-    def advance(self, now: float) -> None:
+    def advance(self, now: float) -> None:  # noqa: ARG002  a motor's
         """The inverter's peer does."""
+        self.most = max(self.most, self._turned.hz)
 
     def order(self, now: float, rpm: float) -> None:  # noqa: ARG002  a motor's
         self.ordered = max(self.ordered, abs(rpm))
@@ -131,6 +133,19 @@ def test_a_program_runs_with_it(
     assert "complete" in capsys.readouterr().out
     assert both.inverter.stops >= 1
     assert not both.inverter.running
+
+
+def test_a_surface_speed_is_held_by_the_inverter(
+    both: Both, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """100 ft/min are 1200 in: at a radius of .2 in 1200/(2π·.2) = 955 rpm, from 382 at .5 in."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    program = tmp_path / "face.nc"
+    text = "G90G94F300\nM03S380\nX.5Z.1\nG96S100\nG01X.2F10\nG04F1\nG97S380\nM05\nM30\n"
+    program.write_text(text, encoding="utf-8")
+    assert main(["run", str(program), "--headless", "--machine", str(both.path)]) == 0, capsys.readouterr()
+    assert both.belt.most == pytest.approx(955.0 * 0.01667, rel=0.02)
+    assert both.belt.ordered == 0.0
 
 
 def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_let_go(both: Both) -> None:
