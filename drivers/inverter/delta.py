@@ -5,17 +5,17 @@ It wants each register asked alone, and a reset said once: said again it restart
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
-from drivers.inverter.errors import RefusedError
 from drivers.inverter.family import Look, number
 from drivers.inverter.modbus import Modbus
-from drivers.inverter.settings import Setting, settled
+from drivers.inverter.on_modbus import OnModbus
+from drivers.inverter.settings import Setting, Top
 
 _COMMAND, _FREQUENCY = 0x2000, 0x2001
 _STOP, _RUN, _FORWARD, _REVERSE, _RESET = 0x0001, 0x0002, 0x0010, 0x0020, 0x2000
 _ERROR, _STATUS, _SETPOINT, _OUTPUT, _CURRENT = 0x2100, 0x2101, 0x2102, 0x2103, 0x2104
-_TOP = 0x0100  # 01-00, highest output frequency
+_TOP = Top(0x0100, 100, "Pr.01-00")
 _SOURCES = (
     Setting(0x0200, 5, "Pr.02-00", "the frequency comes by RS-485"),
     Setting(0x0201, 3, "Pr.02-01", "run and stop come by RS-485, the keypad's STOP stays"),
@@ -31,48 +31,24 @@ _TRIPS = {
 }
 
 
-class DeltaVfdB:
+class DeltaVfdB(OnModbus):
     """Status word: bits 0 and 1 say stopped, stopping, standing by, running; bits 3 and 4 the direction:
     forward, back to forward, on to reverse, reverse."""
 
     name = "Delta VFD-B"
-    warm_up = 1
 
     def __init__(self, line: Modbus) -> None:
-        self._line = line
+        super().__init__(line)
         self._said = 0
-
-    @property
-    def hurry(self) -> Callable[[], bool]:
-        return self._line.hurry
-
-    @hurry.setter
-    def hurry(self, asked: Callable[[], bool]) -> None:
-        self._line.hurry = asked
-
-    @property
-    def good(self) -> int:
-        return self._line.good
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
         """09-02 = 1: it ramps down when nothing has come for 09-03."""
-        line = self._line
         self._said = 0
-        known = settled(
-            line,
+        watch = (
             Setting(0x0902, 1, "Pr.09-02", "it ramps down when the line is dead"),
             Setting(0x0903, round(comm_loss * 10.0), "Pr.09-03", f"after {comm_loss:g} s"),
         )
-        known += [text for source in _SOURCES if (text := source.differs(line))]
-        try:
-            (top,) = line.registers(_TOP)
-        except RefusedError as error:
-            return [*known, f"Pr.01-00 cannot be read: {error}"]
-        if top < number(highest):
-            known.append(
-                f"Pr.01-00 ends at {top / 100:g} Hz, the highest speed needs {highest:g} Hz; change either"
-            )
-        return known
+        return self._prepared(watch, _SOURCES, _TOP, highest)
 
     def stop(self) -> None:
         """By its ramp, 02-02 = 0."""
@@ -109,6 +85,3 @@ class DeltaVfdB:
         """Once; its next command is one from the beginning."""
         self._said = 0
         self._line.write_register(_COMMAND, _RESET, tries=1)
-
-    def close(self) -> None:
-        self._line.wire.close()

@@ -6,20 +6,20 @@ needs a second before it answers again.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from core.ports import Clock
-from drivers.inverter.errors import RefusedError
 from drivers.inverter.family import Look, number
 from drivers.inverter.modbus import Modbus
-from drivers.inverter.settings import Setting, settled
+from drivers.inverter.on_modbus import OnModbus
+from drivers.inverter.settings import Setting, Top
 
 _RUN, _DIRECTION, _RESET = 0x0000, 0x0001, 0x0003  # coils 1, 2 and 4
 _STATUS = 0x000E  # coils 000F…0018: running, direction, ready, … alarm
 _FREQUENCY = 0x0000  # registers 1 and 2: high and low word
 _OUTPUT = 0x1000  # d001: two words, then the current d002
 _TRIP = 0x0011  # register 0012: the factor of the trip, d081
-_TOP = 0x1203  # A004, tenths of a hertz
+_TOP = Top(0x1203, 10, "A004")
 _AFTER_RESET = 1.0
 _SOURCES = (
     Setting(0x1200, 3, "A001", "the frequency comes by Modbus"),
@@ -27,47 +27,22 @@ _SOURCES = (
 )
 
 
-class HitachiWj200:
+class HitachiWj200(OnModbus):
     """Coils for run and direction, one register for the frequency."""
 
     name = "Hitachi WJ200"
-    warm_up = 1
 
     def __init__(self, line: Modbus, clock: Clock) -> None:
-        self._line, self._clock = line, clock
-        self._reverse: bool | None = None
-
-    @property
-    def hurry(self) -> Callable[[], bool]:
-        return self._line.hurry
-
-    @hurry.setter
-    def hurry(self, asked: Callable[[], bool]) -> None:
-        self._line.hurry = asked
-
-    @property
-    def good(self) -> int:
-        return self._line.good
+        super().__init__(line)
+        self._clock = clock
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
         """C076 = 4: it ramps down when nothing has come for C077."""
-        line = self._line
-        self._reverse = None
-        known = settled(
-            line,
+        watch = (
             Setting(0x113C, 4, "C076", "it ramps down when the line is dead"),
             Setting(0x113D, round(comm_loss * 100.0), "C077", f"after {comm_loss:g} s"),
         )
-        known += [text for source in _SOURCES if (text := source.differs(line))]
-        try:
-            (top,) = line.registers(_TOP)
-        except RefusedError as error:
-            return [*known, f"A004 cannot be read: {error}"]
-        if top / 10.0 < highest:
-            known.append(
-                f"A004 ends at {top / 10:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
-            )
-        return known
+        return self._prepared(watch, _SOURCES, _TOP, highest)
 
     def stop(self) -> None:
         """By its ramp."""
@@ -110,6 +85,3 @@ class HitachiWj200:
         """It is deaf for a second."""
         self._line.write_coil(_RESET, True)
         self._clock.sleep_until(self._clock.now() + _AFTER_RESET)
-
-    def close(self) -> None:
-        self._line.wire.close()

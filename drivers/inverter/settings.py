@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from drivers.inverter.errors import NoAnswerError, RefusedError
+from drivers.inverter.family import number
 from drivers.inverter.modbus import Modbus
 
 
@@ -25,6 +26,25 @@ class Setting(NamedTuple):
         if there == self.value:
             return ""
         return f"{self.name} is {there}; set it to {self.value}: {self.why}"
+
+
+class Top(NamedTuple):
+    """The register of the highest output frequency, in how many parts of a hertz, its name at the keypad."""
+
+    register: int
+    parts: int
+    name: str
+
+    def below(self, line: Modbus, highest: float) -> str:
+        """A sentence when it ends below ``highest`` Hz; empty when it is enough."""
+        try:
+            (there,) = line.registers(self.register)
+        except RefusedError as error:
+            return f"{self.name} cannot be read: {error}"
+        if there * 100 >= number(highest) * self.parts:
+            return ""
+        ends = there / self.parts
+        return f"{self.name} ends at {ends:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
 
 
 def settled(line: Modbus, *wanted: Setting) -> list[str]:
