@@ -9,56 +9,33 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.desk import formats, pages
+from app.desk import pages
 from app.desk.desk import Desk
-from app.desk.lamps import Lamp
 from app.desk.session import Loaded
 from app.desk.view import View
-from app.screen.bars import FunctionKeys, PromptLine, TitleLine
-from app.screen.dock import StationDock
-from app.screen.gauges import FeedGauge, SpindleGauge, TimesGauge, ToolGauge
-from app.screen.head import HeadLine
-from app.screen.layout import Places, Rect, low_places, places, unit, work_of
+from app.screen.frame_parts import FrameParts, stand
 from app.screen.look import Look
 from app.screen.maker import MAKERS
-from app.screen.overlay import AlarmList, Notice
 from app.screen.page import AutomaticPage
 from app.screen.pages import Host, Page
-from app.screen.position import PositionPanel
-from app.screen.runline import RunLine
-from app.screen.strip import Strip
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import Snapshot
 
 
-class Frame(QWidget):
+class Frame(FrameParts):
     """Polls nothing itself: ``refresh`` is called once a frame.
 
     The Automatic page has large readouts above it, every other page the same figures in one low row.
     """
 
     def __init__(self, look: Look, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
-        super().__init__(parent)
-        self.look, self.desk = look, desk
-        self.title = TitleLine(look, self)
-        self.head = HeadLine(look, self)
-        self.run = RunLine(look, self)
-        self.position = PositionPanel(look, self)
-        self.feed = FeedGauge(look, "FEED", self)
-        self.spindle = SpindleGauge(look, "SPINDLE", self)
-        self.tool = ToolGauge(look, "TOOL  ·  OFFSET", self)
-        self.times = TimesGauge(look, "PARTS  ·  TIME", self)
-        self.strip = Strip(look, press, self)
-        self.dock = StationDock(look, desk, self) if desk.station else None
-        self.prompt = PromptLine(look, self)
-        self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
+        super().__init__(look, desk, press, parent)
         host = Host(look, desk, press, self.go, self._close_log)
         self._host = host
         self.automatic = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {pages.AUTOMATIC: self.automatic}
         self.page: Page = self.automatic
-        self.notice = Notice(look, self)
-        self.log = AlarmList(look, self)
-        self._docked = True
+        self.notice.raise_()
+        self.log.raise_()
         self._front()
 
     # --- pages ---------------------------------------------------------------------------------------
@@ -129,57 +106,24 @@ class Frame(QWidget):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        width, height = self.width(), self.height()
-        self.look.resize(unit(width, height))
-        large = self.page is self.automatic
-        with_dock = self.dock is not None and self.desk.settings.now.dock
-        at, low = places(width, height, with_dock), low_places(width, height, with_dock)
-        self._docked = with_dock
-        over = at.path if large else low.work
-        self._stand_readouts(at, large)
-        for part, rect in ((self.head, low.head), (self.run, low.run)):
-            _stand(part, rect)
-            part.setVisible(not large)
-        if self.dock is not None:
-            self.dock.let_go()
-            self.dock.setVisible(with_dock)
-            _stand(self.dock, at.dock)
-        _stand(self.title, at.title)
-        _stand(self.strip, at.strip if large else low.strip)
-        _stand(self.prompt, at.prompt)
-        _stand(self.keys, at.keys)
-        _stand(self.notice, over)
-        _stand(self.log, over)
-        _stand(self.page, work_of(at) if large else low.work)
-
-    def _stand_readouts(self, at: Places, large: bool) -> None:
-        parts: tuple[tuple[QWidget, Rect], ...] = (
-            (self.position, at.position),
-            (self.feed, at.feed),
-            (self.spindle, at.spindle),
-            (self.tool, at.tool),
-            (self.times, at.times),
-        )
-        for part, rect in parts:
-            _stand(part, rect)
-            part.setVisible(large)
+        stand(self.page, self.lay_parts(large=self.page is self.automatic))
 
     # --- what is shown -------------------------------------------------------------------------------
 
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        if self.dock is not None and self._docked is not self.desk.settings.now.dock:
+        if self.moved_dock:
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
-        lamps = self._lamps(snapshot, view)
+        lamps = self.lamps_of(snapshot, view)
         self.strip.show_lamps(lamps, frozenset(lamp.key for lamp in lamps if self._is_text(lamp.key)))
         if self.page is self.automatic:
-            self._show_large(snapshot, view, loaded)
+            self.show_readouts(snapshot, view, loaded)
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarm)
         else:
             self.head.show_view(view)
-            self.run.show_run(view, self._times(snapshot, view, loaded))
+            self.run.show_run(view, self.times_of(snapshot, view, loaded))
             self.notice.show_notice("", "", None)  # the prompt line tells it: nothing covers an entry
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:
@@ -196,13 +140,6 @@ class Frame(QWidget):
             return False
         return self.isAncestorOf(at)
 
-    def _show_large(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
-        self.position.show_position(view.position)
-        self.feed.show_value(view.feed)
-        self.spindle.show_value(view.spindle)
-        self.tool.show_value((view.tool, view.secondary))
-        self.times.show_value(self._times(snapshot, view, loaded))
-
     def _show_bars(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
         desk = self.desk
         name = view.program or loaded.name
@@ -210,21 +147,3 @@ class Frame(QWidget):
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = desk.prompt(snapshot, loaded, self.page.prompt())
         self.prompt.show_text(text, answer=bool(desk.notice))
-
-    def _times(self, snapshot: Snapshot, view: View, loaded: Loaded) -> tuple[tuple[str, str], ...]:
-        left = formats.duration(self.desk.time_left(snapshot, loaded))
-        return (
-            ("PARTS", self.desk.counter.words),
-            ("CYCLE", view.cycle),
-            ("LEFT", left),
-            ("LAST", view.last_cycle),
-        )
-
-    def _lamps(self, snapshot: Snapshot, view: View) -> tuple[Lamp, ...]:
-        on = snapshot.state not in {State.ESTOP, State.DISABLED}
-        return (*view.modes, *view.lamps, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
-
-
-def _stand(part: QWidget, rect: Rect) -> None:
-    part.setGeometry(*rect)
-    part.update()
