@@ -15,17 +15,13 @@ from core.ports import DriverError, Stop
 from drivers.canopen import objects as od
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.drives import DrivenAxis
+from drivers.canopen.reference import SEARCH_RPM, Phase, Referencing
 from drivers.canopen.spindle import CanopenSpindle
-from drivers.canopen.states import BIT_12, BIT_13, HM, IP, NEW, PV, REACHED, DriveState
+from drivers.canopen.states import IP, PV, DriveState
 from drivers.straight import straight
 
 _STANDS = 2.0  # rpm
 _CHANGE = 2.0  # s for a change of mode with power
-_SEARCH = 15.0  # s for the index
-_FIRST = 0.1  # s in which "target reached" may still be that of the last move
-_HERE = (37, 35)  # homing methods "where it stands", the new code and the old one
-_INDEX = 34  # homing method: the index, turning forward
-_SEARCH_RPM = 60
 _TURN = 360.0
 
 
@@ -50,18 +46,15 @@ class SpindleC:
         self._axes, self._spindle, self._drive = axes, spindle, spindle.drive
         self._number = axes.axes.index(name)
         config = axes.config.axes[self._number]
-        self._per_turn = spindle.counts_per_rev
-        count = _TURN / self._per_turn
-        self._axis = DrivenAxis(
-            replace(config, count=count, counts_per_rev=self._per_turn), spindle.drive, homed=True
-        )
+        per_turn = spindle.counts_per_rev
+        config = replace(config, count=_TURN / per_turn, counts_per_rev=per_turn)
+        self._axis = DrivenAxis(config, spindle.drive, homed=True)
         self.step = Step.FREE
         self.trouble = ""
         self._wanted = self._orient = False
         self._since = 0.0
-        self._told = False  # the drive was told to begin its homing
-        self._phase: int | None = None  # counts from the index, within a turn; None: it was never looked for
-        self._last = 0
+        self._homing = Referencing(spindle.drive)
+        self._phase = Phase(spindle.counts_per_rev)
         self._off = 0.0  # degrees that it has to turn to its place
         self._goal: float | None = None  # what C shall count when it is held, through broken off tries
 
@@ -87,9 +80,9 @@ class SpindleC:
 
     def tick(self, now: float) -> None:
         """Go on with whatever is under way."""
-        self._follow_phase()
+        self._phase.follow(self._drive.position, leaps=self.step in {Step.INDEX, Step.HERE})
         if self._drive.rebooted:
-            self._phase = None
+            self._phase.counts = None
         if self.step is not Step.FREE and (self._drive.trouble or not self._axes.sample().enabled):
             self._want(False)  # power is gone, or will be: C ends with it
         steps: dict[Step, Callable[[float], None]] = {
@@ -124,32 +117,41 @@ class SpindleC:
             self._enter(Step.BACK, now)
         elif not self._axes.follower_rests(now):
             self._since = now
-        elif self._orient and self._phase is None:
-            self._begin_homing(_INDEX, 0, now)
+        elif self._orient and self._phase.counts is None:
+            self._spindle.blind = True
+            self._homing.index(now)
             self._enter(Step.INDEX, now)
         else:
             self._tell_place(now)
 
     def _search(self, now: float) -> None:
-        if self._homed(now, _SEARCH, "no index was found within a turn"):
-            self._phase, self._last = self._drive.position % self._per_turn, self._drive.position
+        if self._referenced(now):
+            self._phase.found(self._drive.position)
             self._tell_place(now)
 
     def _tell_place(self, now: float) -> None:
         """Its counter begins anew, so that it counts as C does: the drive stays where it is."""
         self._off = self._beside()
         place = self._place() - self._off
-        self._begin_homing(_HERE[0], round(place / self._axis.config.count), now)
+        self._spindle.blind = True
+        self._homing.here(round(place / self._axis.config.count), now)
         self._enter(Step.HERE, now)
 
     def _here(self, now: float) -> None:
-        if self._homed(now, _CHANGE, "it does not take its position"):
-            self._last = self._drive.position  # the counter has leapt, the spindle has not
+        if self._referenced(now):
             self._spindle.leapt()
             self._drive.mode = IP
             for clear in (0, 1):
                 self._drive.setup.write(od.BUFFER, 6, clear)
             self._enter(Step.POWER, now)
+
+    def _referenced(self, now: float) -> bool:
+        """Whether its homing is done; a wish that has gone breaks it off. Raises DriverError."""
+        if self._wanted:
+            return self._homing.done(now)
+        self._drive.extra = 0
+        self._enter(Step.BACK, now)
+        return False
 
     def _power(self, now: float) -> None:
         if self._drive.enabled and self._drive.shown_mode == IP:
@@ -190,41 +192,6 @@ class SpindleC:
 
     # --- inside ------------------------------------------------------------------------------------------
 
-    def _begin_homing(self, method: int, place: int, now: float) -> None:
-        write, drive = self._drive.setup.write, self._drive
-        try:
-            write(od.HOME_METHOD, 0, method)
-        except DriverError:
-            if method != _HERE[0]:
-                raise
-            write(od.HOME_METHOD, 0, _HERE[1])
-        write(od.HOME_SPEEDS, 1, _SEARCH_RPM)
-        write(od.HOME_SPEEDS, 2, _SEARCH_RPM // 10)
-        write(od.HOME_OFFSET, 0, place)
-        drive.mode, drive.goal, drive.extra, drive.target = HM, DriveState.ENABLED, 0, 0
-        self._told, self._since = False, now
-        self._spindle.blind = True
-
-    def _homed(self, now: float, limit: float, why: str) -> bool:
-        """Whether the drive's homing is done. Raises DriverError."""
-        drive = self._drive
-        if not self._wanted:
-            drive.extra = 0
-            self._enter(Step.BACK, now)
-            return False
-        if not self._told:
-            if drive.enabled and drive.shown_mode == HM:
-                drive.extra, self._told, self._since = NEW, True, now
-            elif now - self._since > _CHANGE:
-                raise DriverError(f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}")
-            return False
-        if drive.status & BIT_13 or now - self._since > limit:
-            raise DriverError(f"C: {why}")
-        done = now - self._since > _FIRST and drive.status & BIT_12 and drive.status & REACHED
-        if done:
-            drive.extra = 0
-        return bool(done)
-
     def _demand(self) -> float:
         return self._axes.queue.demand_at(self._axes.now())[0][self._number]
 
@@ -233,9 +200,9 @@ class SpindleC:
 
     def _beside(self) -> float:
         """How far the spindle must still turn to its place, degrees, by the short way."""
-        if not self._orient or self._phase is None:
+        if not self._orient or self._phase.counts is None:
             return 0.0
-        off = self._place() - self._phase * self._axis.config.count
+        off = self._place() - self._phase.counts * self._axis.config.count
         return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
 
     def _join(self) -> None:
@@ -257,20 +224,13 @@ class SpindleC:
         off = self._off
         if abs(off) > config.count:
             rest, _ = axes.queue.demand_at(axes.now())
-            speed = min(config.vmax, _SEARCH_RPM * 6.0)
+            speed = min(config.vmax, SEARCH_RPM * 6.0)
             start = axes.now() + axes.commit
             axes.splice(
                 straight(
                     start, rest, self._number, to=rest[self._number] + off, speed=speed, accel=config.amax
                 )
             )
-
-    def _follow_phase(self) -> None:
-        """How far it is from its index, through all that it turns as the spindle."""
-        moved = (self._drive.position - self._last + 2**31) % 2**32 - 2**31
-        self._last = self._drive.position
-        if self._phase is not None and self.step not in {Step.INDEX, Step.HERE}:
-            self._phase = (self._phase + moved) % self._per_turn
 
     def _want(self, on: bool) -> None:
         self._wanted = self._spindle.kept = on
