@@ -10,8 +10,8 @@ RAPID_100, RAPID_50, RAPID_25 = 0x95, 0x96, 0x97
 SPINDLE_100, SPINDLE_UP_10, SPINDLE_DOWN_10, SPINDLE_UP_1, SPINDLE_DOWN_1 = range(0x99, 0x9E)
 SPINDLE_PAUSE = 0x9E  # in a feed hold only: stops the spindle, and starts it when it comes again
 
-# Radius for ever: no reset may change what X means. G97, or S would be a surface speed.
 OFF = ("M5", "M9")  # spindle and coolant
+# Radius for ever: no reset may change what X means. G97, or S would be a surface speed.
 MODES = ("G8", "G18", "G21", "G90", "G94", "G97", "G54")
 SILENT = frozenset(("G97",))  # modes that a controller without a variable spindle does not tell
 # What another host may have left behind, by how ``$G`` tells it, and the line that ends it.

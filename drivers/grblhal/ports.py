@@ -10,6 +10,7 @@ from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.controller import Controller
 
 _REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
+_STEPS = 100  # setting, steps in a millimetre
 
 
 class GrblAxes:
@@ -108,5 +109,10 @@ class GrblAxes:
         rest = self._blocks.rest
         if rest is not None:
             for i, exact in enumerate(rest):
-                places[i] = exact if abs(places[i] - exact) <= _REPORTED else places[i]
+                places[i] = exact if abs(places[i] - exact) <= self._grain(self.axes[i]) else places[i]
         return tuple(places)
+
+    def _grain(self, name: str) -> float:
+        """mm: half a step of the controller, and its rounding."""
+        steps = self._c.figure(_STEPS, name)
+        return max(_REPORTED, 0.5 / steps + 0.001) if steps else _REPORTED

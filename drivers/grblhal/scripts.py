@@ -16,6 +16,7 @@ from drivers.grblhal.settings import settings
 
 _BOOT = 6.0  # s; some boards start when their port is opened
 _HOMING = 120.0
+_COASTING, _LOOK = 20.0, 0.1  # s a spindle may take to stand, between two looks at it
 _ALONE = 2  # of $22: one axis may be homed without the others
 
 
@@ -41,9 +42,19 @@ def connect(c: Controller) -> Script:
         if number != codes.HOMING_REQUIRED:
             c.fail(codes.alarm_text(number))
         return
-    for code in codes.OFF:  # a control that was killed has left them as they were
-        yield from asked(c, code)
+    yield from _quiet(c)
     yield from verify(c)
+
+
+def _quiet(c: Controller) -> Script:
+    """Spindle and coolant off: a control that was killed has left them as they were."""
+    for code in codes.OFF:
+        yield from asked(c, code)
+    by = c.clock.now() + _COASTING
+    while c.clock.now() < by and c.report is not None and abs((c.report.speeds or (0.0,))[-1]) > 0.0:
+        later = c.clock.now() + _LOOK
+        yield lambda later=later: c.clock.now() >= later, 2.0 * _LOOK, ""
+        yield from full_report(c)
 
 
 def verify(c: Controller) -> Script:

@@ -13,18 +13,19 @@ from drivers.grblhal.scripting import Script, ScriptError
 _REPORTS = 0x7F | 0x400
 _PARSER = 0x200  # parser state unasked, which would look like an answer to $G
 _RESTORE = 0x2  # of the feed hold: the spindle starts by itself when it ends
+_LISTED = 6.0  # s for all of them: some hundred lines at whatever speed the line has
 _MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
 def settings(c: Controller) -> Script:
     """Write what is not as it must be, and read it back."""
-    there = c.settings = _values((yield from asked(c, "$$")))
+    there = c.settings = _values((yield from asked(c, "$$", _LISTED)))
     wrong = {n: value for n, value in _wanted(c, there).items() if not same(there.get(n), value)}
     if not wrong:
         return
     for n, value in wrong.items():
         yield from asked(c, f"${n}={written(value)}")
-    there = c.settings = _values((yield from asked(c, "$$")))
+    there = c.settings = _values((yield from asked(c, "$$", _LISTED)))
     for n, value in wrong.items():
         if not same(there.get(n), value):
             raise ScriptError(

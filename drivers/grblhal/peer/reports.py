@@ -48,9 +48,16 @@ class Reports:
         return offsets, overrides
 
 
+def _stepped(place: float, steps: float) -> float:
+    """It counts whole steps."""
+    return round(place * steps) / steps
+
+
 def _motion(m: Firmware) -> str:
     scale = 2.0 if m.program.modes.radius == "G7" else 1.0
-    x, z = m.slides.place
+    x, z = (
+        _stepped(place, m.registers[number]) for place, number in zip(m.slides.place, (100, 102), strict=True)
+    )
     text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.slides.free},{m.rx_free}"
     if m.slides.queue and m.slides.queue[0].number:
         text += f"|Ln:{m.slides.queue[0].number}"

@@ -54,6 +54,14 @@ def test_offsets_of_another_host_are_taken_out() -> None:
     assert firmware.slides.place == (1.0, 2.0)
 
 
+def test_what_a_killed_control_has_left_on_is_switched_off() -> None:
+    firmware, clock = left_behind(b"G8G18G21G90G97\nM3S800\nM8\n")
+    assert firmware.rpm == 800.0
+    connect(firmware, clock)
+    assert firmware.rpm == 0.0
+    assert not firmware.outputs["flood"]
+
+
 def test_half_a_line_of_another_host_is_no_part_of_ours() -> None:
     firmware, clock = left_behind(b"G1X5")
     made = connect(firmware, clock)

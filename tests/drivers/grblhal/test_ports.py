@@ -7,7 +7,7 @@ import pytest
 
 from core.block_port import LineOp
 from core.ports import DriverError, Segments, Stop
-from tests.drivers.grblhal.bench import GrblBench
+from tests.drivers.grblhal.bench import GrblBench, quirky
 
 
 def powered() -> GrblBench:
@@ -32,6 +32,17 @@ def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
     bench.alone(1.0)
     assert bench.machine.blocks.state().done == 1
     assert bench.machine.axes.sample().actual[:2] == (3.14159, -2.71828)
+
+
+def test_a_controller_of_coarse_steps_rests_where_the_block_has_ended() -> None:
+    """100 steps in a millimetre: reports are up to 5 µm off; the next block begins where this one ended."""
+    bench = GrblBench(quirks=quirky(settings={100: 100.0, 102: 100.0}))
+    bench.machine.axes.enable(True)
+    bench.alone(0.3)
+    bench.machine.blocks.submit(LineOp(3.1451, -2.7151, 20.0))
+    bench.alone(1.0)
+    assert bench.machine.controller.position["X"] == pytest.approx(3.15)
+    assert bench.machine.axes.sample().actual[:2] == (3.1451, -2.7151)
 
 
 @pytest.mark.parametrize("how", [Stop.OFF, Stop.RAMP_OFF, Stop.RAMP_HOLD])

@@ -60,6 +60,8 @@ def test_the_handshake_byte_for_byte() -> None:
         (b"$10=1535\n", b"ok\r\n"),
         (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=2\r\nok\r\n"),
         (b"\x87", FULL),
+        (b"M5\n", b"ok\r\n"),
+        (b"M9\n", b"ok\r\n"),
         (b"\n", b"ok\r\n"),
         (b"$G\n", MODES),
         (b"G8G18G21G90G94G97G54\n", b"ok\r\n"),
