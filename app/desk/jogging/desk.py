@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from app.desk.desk import Desk
 from app.desk.jogging import notices
 from app.desk.jogging.asked import TOOL
+from app.desk.jogging.choices import Choices
 from app.desk.jogging.directions import Direction, directions_of
 from app.desk.jogging.hold import JogHold
 from app.desk.jogging.home import HomeAsk
@@ -35,18 +36,15 @@ LETTERS = {
 
 
 @dataclass(slots=True)
-class JogDesk:
+class JogDesk(Choices):
     """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
 
     desk: Desk
     machine: Machine
-    speeds: Speeds = field(init=False)
-    hold: JogHold = field(init=False)
     wheel: WheelHold = field(init=False)
     home: HomeAsk = field(init=False)
     tool: ToolSetting = field(init=False)
     directions: tuple[Direction, ...] = ()
-    armed: bool = False  # the next finger that holds goes rapid
 
     def __post_init__(self) -> None:
         desk = self.desk
@@ -114,31 +112,6 @@ class JogDesk:
         self.hold.other_key()
         self.tool.master()
 
-    def next_step(self) -> None:
-        """F2: another increment ends what is held."""
-        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
-        self.speeds.next_step()
-
-    def choose_step(self, step: int) -> None:
-        """A finger on one of the steps."""
-        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
-        self.speeds.step, self.armed = step, False
-
-    def next_speed(self) -> None:
-        """F3: another speed ends what is held."""
-        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
-        self.speeds.next_speed()
-
-    def choose_speed(self, speed: int) -> None:
-        """A finger on one of the speeds."""
-        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
-        self.speeds.speed, self.armed = speed, False
-
-    def arm(self) -> None:
-        """A finger on RAPID: the next hold goes rapid, and only that one."""
-        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
-        self.armed = not self.armed
-
     @property
     def wheel_drawn(self) -> bool:
         """Whether the screen's own wheel moves something now: its station is the screen's."""
@@ -148,11 +121,6 @@ class JogDesk:
         """The wheel on the screen is turned."""
         if self.wheel_drawn and self.desk.hands.station is not None:
             self.desk.hands.station.turn_handwheel(clicks * self.wheel.counts)
-
-    def finger(self, source: str, axis: str, sign: int) -> None:
-        """A finger or the mouse goes down on a direction."""
-        rapid, self.armed = self.armed, False
-        self.hold.press(source, axis, sign, rapid=rapid)
 
     def home_key(self) -> None:
         """Home asks; home again homes all in their order."""

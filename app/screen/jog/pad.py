@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.jogging.desk import JogDesk
@@ -17,6 +17,7 @@ from app.desk.offsets.figures import Mode
 from app.desk.words import tr
 from app.screen.fingers import Control, FingerPanel
 from app.screen.jog.dial import Dial
+from app.screen.jog.signs import draw_arrow, draw_middle
 from app.screen.jog.tiles import Tiles, draw_tiles
 from app.screen.look import CENTRE, LEFT, Look, put
 from core.executor.snapshot import Snapshot
@@ -148,7 +149,7 @@ class JogPad(FingerPanel):
         painter.drawRect(box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u))
         ink = look.colour("on_state" if moving else "text")
         if arrow != (0, 0):
-            self._arrow(painter, box, arrow, "on_state" if moving else "accent")
+            draw_arrow(painter, look, box, arrow, "on_state" if moving else "accent")
         painter.setPen(ink)
         painter.setFont(look.font(3.4, bold=True))
         offset = QRectF(box)
@@ -161,14 +162,6 @@ class JogPad(FingerPanel):
         painter.setFont(look.font(1.5, bold=True))
         put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, way.label)
         self.controls.append(self._holder(box, axis, sign))
-
-    def _arrow(self, painter: QPainter, box: QRectF, to: tuple[int, int], colour: str) -> None:
-        size = 0.16 * min(box.width(), box.height())
-        centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
-        forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(self.look.colour(colour))
-        painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
 
     def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
         """Held from the touch until the finger comes up, or leaves the target."""
@@ -185,7 +178,7 @@ class JogPad(FingerPanel):
 
     def _middle(self, painter: QPainter, box: QRectF) -> None:
         """What an arrow does now, in figures."""
-        look, u, model = self.look, self.look.u, self._model
+        look, model = self.look, self._model
         mode: Mode = model.hold.mode
         step = model.speeds.step
         words = (
@@ -198,21 +191,8 @@ class JogPad(FingerPanel):
             self._dial.draw(painter, look, box, words[1])
             self.controls.append(self._dial.control(box))
             return
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6, bold=True))
-        put(painter, QRectF(box.x(), box.y() + 0.1 * box.height(), box.width(), 2.2 * u), CENTRE, words[0])
-        painter.setPen(look.colour("text"))
-        painter.setFont(look.fit(words[1], 3.2, box.width() - u, bold=True))
-        put(painter, box, CENTRE, words[1])
-        painter.setPen(look.colour("soft"))
-        painter.setFont(look.font(1.6, bold=True))
         unit = tr("mm") if mode.metric else tr("in")
-        put(
-            painter,
-            QRectF(box.x(), box.bottom() - 0.1 * box.height() - 2.2 * u, box.width(), 2.2 * u),
-            CENTRE,
-            unit if step != CONTINUOUS else f"{unit}/min",
-        )
+        draw_middle(painter, look, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
 
     def _speed(self, mode: Mode) -> str:
         model = self._model
