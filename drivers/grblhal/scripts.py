@@ -5,6 +5,8 @@ Each is a generator that the controller's pump carries on; what goes wrong is ra
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from core.ports import DriverError
 from drivers.grblhal import codes
 from drivers.grblhal.asking import ANSWER, asked, demand_axes, fresh, full_report, modes
@@ -16,7 +18,8 @@ from drivers.grblhal.settings import settings
 
 _BOOT = 6.0  # s; some boards start when their port is opened
 _HOMING = 120.0
-_COASTING, _LOOK = 20.0, 0.1  # s a spindle may take to stand, between two looks at it
+_COASTING, _LOOK = 8.0, 0.1  # s a spindle is given to stand, between two looks at it
+_STANDS = 5.0  # rpm
 _ALONE = 2  # of $22: one axis may be homed without the others
 
 
@@ -51,10 +54,19 @@ def _quiet(c: Controller) -> Script:
     for code in codes.OFF:
         yield from asked(c, code)
     by = c.clock.now() + _COASTING
-    while c.clock.now() < by and c.report is not None and abs((c.report.speeds or (0.0,))[-1]) > 0.0:
-        later = c.clock.now() + _LOOK
-        yield lambda later=later: c.clock.now() >= later, 2.0 * _LOOK, ""
+    while _turns(c) and c.clock.now() < by:
+        yield _past(c, c.clock.now() + _LOOK), 2.0 * _LOOK, ""
         yield from full_report(c)
+
+
+def _turns(c: Controller) -> bool:
+    """The controller's own spindle, as its encoder tells it."""
+    measured = c.report.measured if c.report is not None else None
+    return c.config.own_spindle and (measured or 0.0) > _STANDS
+
+
+def _past(c: Controller, t: float) -> Callable[[], bool]:
+    return lambda: c.clock.now() >= t
 
 
 def verify(c: Controller) -> Script:
