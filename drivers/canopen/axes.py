@@ -163,6 +163,7 @@ class CanopenAxes:
             self._trip(trouble)
         elif self._on and not self._powered() and not trouble:
             self._off(DriveState.OFF)  # power was taken away: E-stop, safe torque off
+            self.drives.lose_home()
 
     def _trip(self, fault: str) -> None:
         """No axis is kept alive without the others."""

@@ -124,6 +124,11 @@ class DriveSet:
             names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULTS]
             raise DriverError(f"{', '.join(names)}: the drive keeps its fault; look at its display")
 
+    def lose_home(self) -> None:
+        """Behind an E-stop only encoders that are absolute are believed."""
+        for axis in self.axes:
+            axis.homed = axis.config.absolute
+
     def look(self) -> str:
         """Supervise; the first thing that is wrong, or nothing."""
         trouble = ""

@@ -136,6 +136,7 @@ class Grblhal(Rig):
     missing: ClassVar[Mapping[str, str]] = {
         "bus-off": "a serial line and a TCP connection have no such state",
         "dead reader": "there is no reading thread: the executor's look reads the wire",
+        "home in E-stop": "the controller's own word counts: it knows whether it has lost steps",
         "station": "its buttons are on the screen of this program: there is no wire",
         "setpoints": "the controller plans by itself and takes blocks",
     }
