@@ -50,11 +50,14 @@ def _wanted(config: CanopenConfig) -> Iterator[tuple[str, int, int]]:
     yield from ((axis.name, axis.node, 402) for axis in config.axes if axis.node)
     if config.spindle is not None:
         yield "spindle", config.spindle.node, 402
+    if config.encoder is not None and config.encoder.node:
+        yield config.encoder.name, config.encoder.node, 406
     yield from ((module.name, module.node, 401) for module in config.modules)
 
 
 def _asked(bus: Bus, name: str, number: int, profile: int) -> Answer:
-    node = Node(number, od.drive_objects() if profile == 402 else od.module_objects())
+    objects = {402: od.drive_objects, 406: od.encoder_objects}.get(profile, od.module_objects)
+    node = Node(number, objects())
     bus.add_node(node)
     node.sdo.RESPONSE_TIMEOUT = _PATIENCE
     setup = Setup(bus, node, name)

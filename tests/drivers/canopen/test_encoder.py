@@ -7,9 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
+from app.compose.canopen import canopen_config, canopen_peers
 from core.machine.model import Machine
 from core.ports import DriverError
 from drivers.canopen.encoder import CanEncoder
+from drivers.canopen.survey import survey
+from drivers.simulated import StepClock
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 OWN = (
@@ -182,3 +185,12 @@ def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:
     own.peers.nodes["turns"].emergency(0x5000)
     own.run(0.05)
     assert "EMCY 5000" in own.machine.ports.spindle.fault()
+
+
+def test_the_survey_of_a_bus_asks_the_encoder_too() -> None:
+    clock, machine = StepClock(), can_machine(*OWN)
+    peers = canopen_peers(machine, clock)
+    found = {one.name: one for one in survey(canopen_config(machine), clock, peers.pump)}
+    peers.close()
+    assert (found["turns"].node, found["turns"].trouble) == (20, "")
+    assert "CiA 406" in found["turns"].detail
