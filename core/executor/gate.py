@@ -5,6 +5,7 @@ from __future__ import annotations
 from core.executor.bench import Bench
 from core.executor.job import Job, Proof
 from core.executor.snapshot import State
+from core.interpreter.needs import THREAD
 
 _BUSY = {
     State.ESTOP: "E-stop is pressed: release it",
@@ -42,12 +43,13 @@ def refusal(bench: Bench, state: State, job: Job | None, proof: Proof | None) ->
 
 
 def beyond(bench: Bench, proof: Proof | None) -> str:
-    """What the program asks for and a controller that plans by itself cannot do; empty when nothing."""
-    if bench.ports.blocks is None or proof is None:
-        return ""
-    for need in proof.needs:
-        if need.what not in bench.ports.blocks.caps:
+    """What the program asks for and this machine cannot do; empty when nothing."""
+    blocks = bench.ports.blocks
+    for need in proof.needs if proof is not None else ():
+        if blocks is not None and need.what not in blocks.caps:
             return f"line {need.line}: this controller cannot do {need.words}"
+        if blocks is None and need.what == THREAD and bench.ports.spindle.angle() is None:
+            return f"line {need.line}: a thread needs an encoder on the spindle, and there is none"
     return ""
 
 

@@ -20,6 +20,8 @@ from core.executor.commands import (
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
 from core.executor.states import TRANSITIONS, TransitionError, demand_allowed
+from core.interpreter.needs import THREAD, Need
+from core.interpreter.setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 from tests.executor.rig import Rig, unhomed_machine
@@ -286,3 +288,13 @@ def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPat
     assert rig.shot.alarms[0].code == "internal"
     rig.run(0.5)
     assert not rig.sim.ports.axes.sample().enabled
+
+
+def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = Rig()
+    rig.ready()
+    text = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
+    job = make_job(Source("thread.nc", text), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
+    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
+    rig.post(LoadJob(job, Proof(job.digest, (), tools=(1,), needs=(Need(THREAD, 5),))))
+    assert refused(rig) == "line 5: a thread needs an encoder on the spindle, and there is none"
