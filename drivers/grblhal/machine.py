@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from core.ports import Clock, DriverError, MachinePorts, Stop
 from drivers.grblhal import scripts
@@ -124,10 +124,22 @@ class GrblMachine:
         ]
 
     def _warnings(self) -> list[str]:
-        lacking = {name: self.io.lacking(name) for name in self.controller.config.outputs}
-        told = [f"output {name}: {why}" for name, why in lacking.items() if why]
-        told += [f"input {name}: {why}" for name, why in self.inputs.lacking().items()]
+        outputs = {name: self.io.lacking(name) for name in self.controller.config.outputs}
+        told = _grouped("output", {name: why for name, why in outputs.items() if why})
+        told += _grouped("input", self.inputs.lacking())
         told += self._unlike() + self._homes()
         if "thread" not in self.blocks.caps:
             told.append("the controller reports no spindle encoder: threads are refused")
         return told
+
+
+def _grouped(what: str, lacking: Mapping[str, str]) -> list[str]:
+    """One sentence for all with the same reason, which is told behind the terminal."""
+    reasons: dict[str, list[str]] = {}
+    for name, why in lacking.items():
+        terminal, _, reason = why.partition(" ")
+        reasons.setdefault(reason, []).append(f"{name} ({terminal})")
+    return [
+        f"{what} {names[0]} {reason}" if len(names) == 1 else f"{what}s {', '.join(names)}: each {reason}"
+        for reason, names in reasons.items()
+    ]

@@ -41,12 +41,15 @@ def machine_file(tmp_path: Path) -> Iterator[Path]:
 
 
 def test_what_it_lacks_is_told() -> None:
-    told = "\n".join(GrblBench(quirks=quirky(**AS_IT_COMES)).machine.ports.warnings)
+    warnings = GrblBench(quirks=quirky(**AS_IT_COMES)).machine.ports.warnings
+    told = "\n".join(warnings)
     assert "X: the controller allows 500 mm/min of 7620" in told
     assert "Z: the controller brakes with 10 mm/s², not 3048" in told
     assert "$30 allows 1000 rpm, the machine file 3500" in told
     assert "no spindle encoder: threads are refused" in told
-    assert "out.0 is not among the controller's 0 auxiliary outputs" in told
+    (outputs,) = [line for line in warnings if line.startswith("outputs ")]
+    assert "collet (out.0), catcher (out.1), live1 (out.2)" in outputs
+    assert outputs.endswith("each is not among the controller's 0 auxiliary outputs")
 
 
 def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None:
