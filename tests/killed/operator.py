@@ -80,6 +80,7 @@ class Operator:
         now: dict[str, object] = {
             "state": shot.state.value,
             "parts": shot.parts,
+            "x": round(shot.actual[0]),  # mm
             "prompt": self._frame.prompt.text,
             "alarms": [f"{alarm.text}: {alarm.cause}" for alarm in shot.alarms],
         }
