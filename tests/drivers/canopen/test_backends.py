@@ -21,7 +21,7 @@ def without_station() -> Machine:
     """A machine whose file has no buttons, only the E-stop's contact."""
     return can_machine(
         ('start = { at = "401.6000.1.1" }', ""),
-        ('hold  = { at = "401.6000.1.2" }', ""),
+        ('hold  = { at = "401.6000.1.2", active = "low" }', ""),
         ("two_hand_start = true", "two_hand_start = false"),
     )
 
