@@ -210,7 +210,7 @@ class SpindleC:
         drives = self._axes.drives
         drives.axes.append(self._axis)
         drives.indices.append(self._number)
-        self._axis.last = self._drive.position
+        self._axis.last, self._axis.homed = self._drive.position, True
         self._axes.rest_here()
 
     def _part(self) -> None:
