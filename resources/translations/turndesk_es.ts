@@ -620,6 +620,11 @@
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
+      <source>%1: the control ended in the middle of its last run</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
       <source>ALARM %1</source>
       <translation>ALARMA %1</translation>
     </message>
@@ -627,6 +632,11 @@
       <location filename="app/desk/files/record.py" />
       <source>COMPLETE</source>
       <translation>COMPLETO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/record.py" />
+      <source>CUT OFF</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
@@ -1069,6 +1079,16 @@
       <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
     </message>
     <message>
+      <location filename="app/desk/jogging/choices.py" />
+      <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/choices.py" />
+      <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
+      <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
+    </message>
+    <message>
       <location filename="app/desk/jogging/desk.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
       <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
@@ -1082,16 +1102,6 @@
       <location filename="app/desk/jogging/desk.py" />
       <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
       <translation>HAY UNA ENTRADA ABIERTA: EL VOLANTE ESTÁ DESCONECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
-      <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/jogging/desk.py" />
-      <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
-      <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/desk.py" />
@@ -3634,6 +3644,21 @@
       <translation>AVISO</translation>
     </message>
     <message>
+      <location filename="app/screen/editor/heading.py" />
+      <source>KEYBOARD</source>
+      <translation>TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/letters.py" />
+      <source>DEL</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/editor/letters.py" />
+      <source>SPACE</source>
+      <translation>ESPACIO</translation>
+    </message>
+    <message>
       <location filename="app/screen/editor/page.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
@@ -3684,27 +3709,27 @@
       <translation>%1 PARA SEGUIR</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/frame_parts.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/frame_parts.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/frame_parts.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/frame_parts.py" />
       <source>PARTS  ·  TIME</source>
       <translation>PIEZAS  ·  TIEMPO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/frame_parts.py" />
       <source>TOOL  ·  OFFSET</source>
       <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
     </message>
@@ -3902,11 +3927,6 @@
       <location filename="app/screen/offsets/history.py" />
       <source>No offset was changed yet.</source>
       <translation>Todavía no se cambia ninguna compensación.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/offsets/keypad.py" />
-      <source>DEL</source>
-      <translation>BORRAR</translation>
     </message>
     <message>
       <location filename="app/screen/offsets/seccmp.py" />
@@ -4152,11 +4172,6 @@
       <location filename="app/screen/searchto/starts.py" />
       <source>WILL START</source>
       <translation>ARRANCARÁ</translation>
-    </message>
-    <message>
-      <location filename="app/screen/special/letters.py" />
-      <source>SPACE</source>
-      <translation>ESPACIO</translation>
     </message>
     <message>
       <location filename="app/screen/swivel/view.py" />
@@ -4597,6 +4612,11 @@
       <location filename="core/executor/gate.py" />
       <source>feed hold is pressed</source>
       <translation>la retención de avance está oprimida</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>line %1: a thread needs an encoder on the spindle, and there is none</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/executor/gate.py" />
@@ -6305,8 +6325,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/run.py" />
-      <source>The program makes more than %1 blocks or %2 executed lines.</source>
-      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
+      <source>Lower the counts of the repeats.</source>
+      <translation>Baje los números de las repeticiones.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tools.py" />
@@ -8027,6 +8047,11 @@
       <location filename="core/interpreter/threads.py" />
       <source>The thread takes %1 passes.</source>
       <translation>La rosca hace %1 pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/told.py" />
+      <source>The program makes more than %1 blocks or %2 executed lines.</source>
+      <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
 from PySide6.QtWidgets import QWidget
 
+from app.desk.words import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
+
+KEYS = 14.0  # units: width of the place that shows the keyboard
 
 
 class Heading(NamedTuple):
@@ -25,8 +29,10 @@ class HeadLine(Panel):
 
     ground = "panel"
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, look: Look, keys: Callable[[], None], parent: QWidget) -> None:
+        """``keys`` shows the drawn keyboard, or takes it away."""
         super().__init__(look, parent)
+        self._keys = keys
         self.heading = Heading()
 
     def show_heading(self, heading: Heading) -> None:
@@ -45,10 +51,16 @@ class HeadLine(Panel):
         if now.mark:
             painter.setFont(look.font(1.7, bold=True))
             wide = QFontMetricsF(painter.font()).horizontalAdvance(now.mark) + 1.6 * u
-            box = QRectF(left, 0.4 * u, wide, high - 0.8 * u)
+            box = QRectF(left, high / 2 - 1.4 * u, wide, 2.8 * u)
             painter.fillRect(box, look.colour("mark"))
             painter.setPen(look.colour("on_mark"))
             put(painter, box, CENTRE, now.mark)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.9))
-        put(painter, QRectF(self.width() - 46 * u, 0, 44.6 * u, high), RIGHT, now.place)
+        put(painter, QRectF(self.width() - (46 + KEYS) * u, 0, 44.6 * u, high), RIGHT, now.place)
+        key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
+        painter.fillRect(key, look.colour("key"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.fit(tr("KEYBOARD"), 1.9, key.width() - u, bold=True))
+        put(painter, key, CENTRE, tr("KEYBOARD"))
+        self.place(key, self._keys)

@@ -197,8 +197,10 @@ class EditorPage(EditorParts):
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
-    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Keys in the line that asks."""
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Keys in the line that asks; the field that has the keyboard has the drawn one too."""
+        if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
+            self.letters.write_into(watched)
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return self._key(event)
         return False

@@ -19,6 +19,7 @@ from app.screen.editor.findings import FindingList
 from app.screen.editor.heading import Heading, HeadLine
 from app.screen.editor.keyboard import ASKING
 from app.screen.editor.layout import editor_places
+from app.screen.editor.letters import HIGH, LetterPad, strike
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
 from app.screen.pages import Host, Page
@@ -35,7 +36,9 @@ class EditorParts(Page):
         super().__init__(host, parent)
         look, self.editor = host.look, editor
         self._mode = Mode.TEXT
-        self.head = HeadLine(look, self)
+        self.head = HeadLine(look, self.turn_letters, self)
+        self.letters = LetterPad(look, self._strike, self)
+        self._with_letters = False
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self)
         self.space = SwivelView(look, self)  # takes the path's place where the program is for a mill
@@ -71,7 +74,7 @@ class EditorParts(Page):
         """The path up to the line of the cursor; on a mill the plane of that line in space."""
         scene = picture.scene if picture is not None else None
         self.space.show_scene(scene)
-        self.space.setVisible(scene is not None and self._mode is not Mode.OFFER)
+        self.space.setVisible(scene is not None and self._mode is not Mode.OFFER and not self.lettered)
         self.path.show_picture(picture if scene is None else None)
         if scene is not None:
             here = at_line(scene, line)
@@ -84,10 +87,27 @@ class EditorParts(Page):
         """The parts that this mode has."""
         self.path.measure(on=self._mode is Mode.LOOK)
         self.versions.setVisible(self._mode is Mode.HISTORY)
-        for part in (self.field, self.path, self.findings):
-            # what was edited last is not the file that is offered
-            part.setVisible(self._mode is not Mode.OFFER)
+        self.field.setVisible(self._mode is not Mode.OFFER)  # what was edited last is not what is offered
+        for part in (self.path, self.findings):
+            part.setVisible(self._mode is not Mode.OFFER and not self.lettered)
+        self.letters.setVisible(self.lettered)
+        self.letters.write_into(self.ask.first if self._mode in ASKING else self.field)
         self._lay_out()
+
+    # --- the drawn keyboard --------------------------------------------------------------------------
+
+    @property
+    def lettered(self) -> bool:
+        """Whether the keyboard is drawn: where something is written, if a finger has asked for it."""
+        return self._with_letters and self._mode in ASKING | {Mode.TEXT}
+
+    def turn_letters(self) -> None:
+        """Show the keyboard, or take it away."""
+        self._with_letters = not self._with_letters
+        self.show_mode()
+
+    def _strike(self, key: str) -> None:
+        strike(key, self.letters.focusProxy() or self.field)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Everything again, in the new unit."""
@@ -95,7 +115,9 @@ class EditorParts(Page):
         self.dress()
 
     def _lay_out(self) -> None:
-        at = editor_places(self.width(), self.height(), self.look.u, asking=self._mode in ASKING)
+        keys = HIGH if self.lettered else 0.0
+        asking = self._mode in ASKING
+        at = editor_places(self.width(), self.height(), self.look.u, asking=asking, keys=keys)
         for part, rect in (
             (self.head, at.head),
             (self.field, at.text),
@@ -104,6 +126,7 @@ class EditorParts(Page):
             (self.findings, at.findings),
             (self.versions, at.body),
             (self.ask, at.ask),
+            (self.letters, at.keys),
         ):
             part.setGeometry(*rect)
             part.update()

@@ -1,0 +1,123 @@
+"""Programs written by a finger alone: the drawn keyboard, where it writes and how large its keys are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.desk import pages
+from app.screen.editor.letters import ROWS
+from app.screen.layout import FINGER
+from app.screen.panel import Panel
+from tests.screen.editor.writer import Writer
+from tests.screen.hands import Key
+
+KEYS = [key for row in ROWS for key in row]
+
+
+def touch(writer: Writer, panel: Panel, place: int) -> None:
+    """A finger in the middle of a place."""
+    writer.window.grab()
+    box, _press = panel._places[place]
+    assert min(box.width(), box.height()) >= FINGER
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
+
+
+def strike(writer: Writer, *keys: str) -> None:
+    for key in keys:
+        touch(writer, writer.editor.letters, KEYS.index(key))
+
+
+def shown(writer: Writer) -> None:
+    """KEYBOARD, at the right of the line over the text."""
+    touch(writer, writer.editor.head, 0)
+    assert writer.editor.letters.isVisible()
+
+
+@pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
+def test_a_program_is_written_and_saved_by_a_finger(
+    writer: Writer, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    writer.window.resize(*size)
+    writer.new("touched")
+    shown(writer)
+    strike(
+        writer,
+        *"G90G94F300",
+        "Enter",
+        *"(A",
+        "Space",
+        *"B)",
+        "Back",
+        *")",
+        "Enter",
+        *"X-.5Z+1",
+        "Enter",
+        *"M30",
+    )
+    assert writer.text() == "G90G94F300\n(A B)\nX-.5Z+1\nM30"
+    strike(writer, "Up", "Left", "Left", "Down", "Right", "Back", *"0")
+    assert writer.text().endswith("\nM00")
+    writer.window.press("F2")
+    writer.sees((tmp_path / "touched.nc").exists)
+
+
+def test_every_key_writes_what_it_shows(writer: Writer) -> None:
+    writer.new("touched")
+    shown(writer)
+    signs = [key for key in KEYS if len(key) == 1]
+    strike(writer, *signs)
+    assert writer.text() == "".join(signs)
+    assert set("GMXYZIJKRFSTDCPULAHNVBEOQW0123456789.-+/()}=~") <= set(signs)
+
+
+def test_what_is_asked_takes_the_keys(writer: Writer) -> None:
+    writer.new("touched")
+    shown(writer)
+    strike(writer, *"X1", "Enter", *"X2")
+    writer.key(Key.Key_F5)
+    assert writer.editor.letters.isVisible()
+    strike(writer, "1", "Enter")
+    assert writer.editor.field.line == 1
+    assert writer.text() == "X1\nX2"
+
+
+def test_it_goes_away_and_the_path_is_seen_again(writer: Writer) -> None:
+    writer.new("touched")
+    shown(writer)
+    assert not writer.editor.path.isVisible()
+    touch(writer, writer.editor.head, 0)
+    assert not writer.editor.letters.isVisible()
+    assert writer.editor.path.isVisible()
+    shown(writer)
+    writer.key(Key.Key_F7)  # the history writes nothing
+    assert not writer.editor.letters.isVisible()
+    writer.key(Key.Key_Escape)
+    assert writer.editor.letters.isVisible()
+    assert writer.front == pages.EDITOR
+
+
+def test_the_text_keeps_room_over_it(writer: Writer) -> None:
+    writer.new("touched")
+    shown(writer)
+    writer.window.grab()
+    assert writer.editor.field.height() >= 3 * writer.editor.field.fontMetrics().height()
+    assert writer.editor.field.geometry().bottom() < writer.editor.letters.geometry().top()
+
+
+def test_a_finger_on_a_key_leaves_the_keyboard_where_it_is(writer: Writer) -> None:
+    writer.new("touched")
+    shown(writer)
+    strike(writer, "X")
+    assert writer.editor.field.hasFocus()
+    writer.type("1")
+    writer.key(Key.Key_F4)
+    strike(writer, "X")
+    writer.key(Key.Key_Tab)
+    strike(writer, "Z")
+    assert writer.editor.ask.second.hasFocus()
+    assert (writer.editor.ask.first.text(), writer.editor.ask.second.text()) == ("X", "Z")
+    assert writer.text() == "X1"
