@@ -334,3 +334,24 @@ def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
     assert 2.0 < rig.shot.demand[2] < 20.0
     rig.run(0.3)
     assert degrees(rig) == pytest.approx(rig.shot.demand[2], abs=0.1)
+
+
+def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(rig: BusRig) -> None:
+    rig.start("G90G94F300\nM19\nG04F60\nM05\nM30")
+    c = rig.bench.machine.c
+    assert c is not None
+    rig.until_true(lambda _: c.held(), limit=30.0)
+    rig.bench.peers.nodes["spindle"].boot()
+    rig.until(State.FAULT, limit=0.5)
+    assert "spindle: the drive has restarted" in rig.shot.alarms[-1].cause
+    rig.run(3.0)
+    rig.post(Reset())
+    rig.until(State.DISABLED, limit=5.0)
+    rig.run(1.0)
+    assert c.step is Step.FREE
+    seen: list[Step] = []
+    rig.watch.append(lambda _shot: seen.append(c.step))
+    rig.start("G90G94F300\nM03S600\nG04F1\nM05\nM19\nG04F1\nM05\nM30")
+    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    assert rig.shot.alarms == ()
+    assert Step.INDEX in seen
