@@ -11,6 +11,7 @@ from app.compose.grblhal import grblhal_config
 from core.block_port import LineOp
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
+from core.ports import DriverError
 from drivers.grblhal.machine import GrblMachine
 from drivers.grblhal.peer.firmware import Firmware
 from drivers.grblhal.wire import TcpWire
@@ -177,3 +178,19 @@ def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None
     listener.close()
     assert not end.is_alive()
     assert not broken
+
+
+def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None:
+    bench = GrblBench(quirks=quirky(diameter=True))
+    assert bench.peer.program.modes.radius == "G8"
+    assert bench.machine.controller.diameter is False
+
+
+def test_a_controller_that_is_no_lathe_is_refused() -> None:
+    with pytest.raises(DriverError, match=r"G8.*error:20"):
+        GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0 }")), quirky(lathe=False))
+
+
+def test_settings_are_written_once_and_read_back() -> None:
+    bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
+    assert bench.peer.registers[110] == 7620.0

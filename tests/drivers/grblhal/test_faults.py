@@ -147,37 +147,6 @@ def test_estop_at_the_controller() -> None:
     assert bench.peer.rpm == 0.0
 
 
-def test_a_thread_is_the_controllers_own() -> None:
-    bench = GrblBench()
-    bench.start(THREAD)
-    bench.until(State.IDLE)
-    threads = [line for line in bench.wire.lines() if "G33" in line]
-    assert len(threads) >= 2
-    assert all(line.endswith("Z-12.7K1.27") for line in threads)
-    assert bench.peer.slides.place[1] == pytest.approx(25.4)
-    assert "G95" not in "".join(bench.wire.lines())
-    assert not bench.said("alarm")
-
-
-def test_a_thread_without_an_index_is_waited_for_and_then_an_alarm() -> None:
-    bench = GrblBench(quirks=quirky(index_missing=True))
-    bench.start(THREAD)
-    bench.until(State.FAULT, limit=20.0)
-    assert "ALARM:14" in bench.alarms()
-    clear(bench)
-    assert bench.state is State.IDLE  # the block that stood in the planner is gone
-    assert not bench.peer.slides.queue
-    bench.run(2.0)
-    assert bench.state is State.IDLE
-
-
-def test_without_an_encoder_threads_are_refused_before_the_start() -> None:
-    bench = GrblBench(quirks=quirky(encoder=False))
-    bench.start(THREAD)
-    assert bench.state is State.IDLE
-    assert "threads" in bench.shot.start_refused
-
-
 def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_reset() -> None:
     """The look-alike's own habit, and that the recovery gets rid of it."""
     bench = GrblBench()
@@ -191,22 +160,6 @@ def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_re
     assert bench.peer.alarm == 0
     assert not bench.peer.slides.queue
     assert bench.peer.program.modes.feed_mode == "G94"
-
-
-def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None:
-    bench = GrblBench(quirks=quirky(diameter=True))
-    assert bench.peer.program.modes.radius == "G8"
-    assert bench.machine.controller.diameter is False
-
-
-def test_a_controller_that_is_no_lathe_is_refused() -> None:
-    with pytest.raises(DriverError, match=r"G8.*error:20"):
-        GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0 }")), quirky(lathe=False))
-
-
-def test_settings_are_written_once_and_read_back() -> None:
-    bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
-    assert bench.peer.registers[110] == 7620.0
 
 
 def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import FeedHold, FeedOverride, Reset, SetSwitch
+from core.executor.commands import FeedOverride, SetSwitch
 from core.executor.snapshot import State
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 
@@ -81,73 +81,6 @@ def _speed_of(bench: GrblBench) -> float:
     return bench.peer.slides.v
 
 
-def test_hold_and_on() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(FeedHold())
-    assert bench.until(State.HOLD) < 0.3
-    at = bench.peer.slides.place
-    bench.run(3.0)
-    assert bench.peer.slides.place == at
-    assert bench.state is State.HOLD
-    bench.press()
-    assert bench.state is State.RUN
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
-
-
-def test_reset_out_of_a_hold_keeps_the_position_and_the_modes() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(FeedHold())
-    bench.until(State.HOLD)
-    at = bench.peer.slides.place
-    bench.post(Reset())
-    bench.until(State.IDLE)
-    bench.run(0.5)
-    assert bench.peer.slides.place == at
-    assert bench.peer.program.modes.plane == "G18"
-    assert bench.peer.rpm == 0.0
-    bench.start("G90G94F300\nX.3Z.3\nM30\n")
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((7.62, 7.62))
-
-
-def test_reset_in_motion_brakes_and_starts_nothing() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(Reset())
-    bench.until(State.IDLE, limit=3.0)
-    assert not bench.shot.alarms
-    bench.run(0.5)
-    bench.wire.sent.clear()
-    bench.run(2.0)
-    assert bench.wire.lines() == []
-    assert not bench.peer.slides.queue
-
-
-def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
-    bench = GrblBench(quirks=quirky(hold_broken=True))
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(FeedOverride(0.1))
-    bench.run(0.5)
-    bench.wire.sent.clear()
-    bench.post(Reset())
-    bench.until(State.FAULT, limit=8.0)
-    sent = bytes(bench.wire.sent)
-    assert sent.index(0x82) < sent.index(0x18)
-    assert "ALARM:3" in bench.alarms()
-    assert not all(bench.shot.homed)
-
-
 def test_single_block_stops_behind_each_block() -> None:
     bench = GrblBench()
     bench.ready()
@@ -174,23 +107,6 @@ def test_overrides_are_reset_and_steps_and_read_back(fraction: float) -> None:
     bench.run(1.0)
     assert bench.peer.feed_percent == round(100 * fraction)
     assert not bench.shot.alarms
-
-
-def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(FeedOverride(0.0))
-    bench.until(State.WAIT, limit=1.0)
-    assert bench.shot.waiting_for == "FEED OVERRIDE AT 0"
-    at = bench.peer.slides.place
-    bench.run(1.0)
-    assert bench.peer.slides.place == at
-    bench.post(FeedOverride(0.5))
-    bench.until(State.RUN, limit=1.0)
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
 
 
 @pytest.mark.parametrize(
@@ -240,51 +156,3 @@ def test_outputs_are_switched_and_inputs_are_waited_for() -> None:
     bench.until(State.IDLE, limit=3.0)
     assert not bench.peer.outputs["out.1"]
     assert bench.shot.parts == 1
-
-
-def test_pins_of_the_controller_hold_and_start() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.peer.pins = "H"
-    bench.until(State.HOLD, limit=0.5)
-    bench.press()
-    assert bench.state is State.HOLD
-    bench.peer.pins = ""
-    bench.run(0.5)
-    bench.peer.pins = "S"
-    bench.until(State.RUN, limit=0.5)
-    bench.peer.pins = ""
-    bench.until(State.IDLE)
-    assert bench.shot.parts == 1
-
-
-def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.peer.feed(b"\x82")  # a button at the controller, pressed between two reports
-    bench.until(State.HOLD, limit=0.5)
-    assert bench.shot.waiting_for == "THE CONTROLLER HOLDS"
-    bench.run(1.0)
-    assert bench.state is State.HOLD
-    bench.press()
-    bench.until(State.IDLE)
-    assert bench.shot.parts == 1
-
-
-def test_a_button_at_the_controller_ends_no_hold_of_ours() -> None:
-    """Its own cycle start moves the slides at once; the screen says FEED HOLD, so they stand again."""
-    bench = GrblBench()
-    bench.start(LONG)
-    bench.until_true(lambda shot: shot.line == 4)
-    bench.run(0.5)
-    bench.post(FeedHold())
-    bench.until(State.HOLD)
-    bench.peer.feed(b"\x81")
-    bench.run(1.0)
-    assert bench.state is State.HOLD
-    assert bench.peer.state == "Hold:0"
-    bench.press()
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))

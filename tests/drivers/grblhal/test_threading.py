@@ -10,10 +10,41 @@ from core.block_port import ArcOp
 from core.executor.commands import FeedHold, FeedOverride, Reset
 from core.executor.snapshot import State
 from drivers.grblhal.gcode import line_of
-from tests.drivers.grblhal.bench import GrblBench
-from tests.drivers.grblhal.test_faults import THREAD
+from tests.drivers.grblhal.bench import GrblBench, quirky
+from tests.drivers.grblhal.test_faults import THREAD, clear
 
 TAPERED = THREAD.replace("K.05", "K.05A.07")
+
+
+def test_a_thread_is_the_controllers_own() -> None:
+    bench = GrblBench()
+    bench.start(THREAD)
+    bench.until(State.IDLE)
+    threads = [line for line in bench.wire.lines() if "G33" in line]
+    assert len(threads) >= 2
+    assert all(line.endswith("Z-12.7K1.27") for line in threads)
+    assert bench.peer.slides.place[1] == pytest.approx(25.4)
+    assert "G95" not in "".join(bench.wire.lines())
+    assert not bench.said("alarm")
+
+
+def test_a_thread_without_an_index_is_waited_for_and_then_an_alarm() -> None:
+    bench = GrblBench(quirks=quirky(index_missing=True))
+    bench.start(THREAD)
+    bench.until(State.FAULT, limit=20.0)
+    assert "ALARM:14" in bench.alarms()
+    clear(bench)
+    assert bench.state is State.IDLE  # the block that stood in the planner is gone
+    assert not bench.peer.slides.queue
+    bench.run(2.0)
+    assert bench.state is State.IDLE
+
+
+def test_without_an_encoder_threads_are_refused_before_the_start() -> None:
+    bench = GrblBench(quirks=quirky(encoder=False))
+    bench.start(THREAD)
+    assert bench.state is State.IDLE
+    assert "threads" in bench.shot.start_refused
 
 
 def test_a_pass_is_cut_at_full_override_and_what_was_asked_comes_back_behind_it() -> None:
