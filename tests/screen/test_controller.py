@@ -1,0 +1,122 @@
+"""The window on a grblHAL controller over TCP, in real time: start, hold, reset, cable out."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+import resources
+from app.compose.screen import build_desk
+from app.desk.desk import Desk
+from app.screen.look import Look
+from app.screen.theme import DARK
+from app.screen.window import MainWindow
+from core.executor.snapshot import State
+from drivers.grblhal.peer.firmware import Firmware
+from drivers.grblhal.peer.serve import TcpEnd, serve
+from drivers.simulated import RealClock
+from tests.screen.hands import Key
+
+LIMIT = 30_000  # ms of a loaded computer
+PROGRAM = "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"
+
+
+class Controller:
+    """The look-alike in a thread; ``pull`` takes the cable out."""
+
+    def __init__(self) -> None:
+        self.end = TcpEnd("127.0.0.1", 0)
+        self._going = threading.Event()
+        self._going.set()
+        self._thread = threading.Thread(target=self._serve, name="controller")
+        self._thread.start()
+
+    def _serve(self) -> None:
+        serve(self.end, Firmware(RealClock()), self._going.is_set)
+
+    def pull(self) -> None:
+        self._going.clear()
+        self._thread.join(LIMIT / 1000.0)
+
+
+@pytest.fixture
+def controller() -> Iterator[Controller]:
+    made = Controller()
+    yield made
+    made.pull()
+
+
+CHANGES = (("two_hand_start = true", "two_hand_start = false"),)
+
+
+@pytest.fixture
+def desk(
+    controller: Controller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qapp: object
+) -> Iterator[Desk]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    text = resources.machine_file("gt75-grblhal.toml")
+    for old, new in (("/dev/ttyACM0", controller.end.name), *CHANGES):
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    (tmp_path / "grbl.toml").write_text(text)
+    (tmp_path / "part.nc").write_text(PROGRAM)
+    made = build_desk(str(tmp_path / "grbl.toml"))
+    made.choose(str(tmp_path / "part.nc"))
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def window(desk: Desk) -> Iterator[MainWindow]:
+    window = MainWindow(Look(DARK))
+    window.resize(1024, 600)
+    window.open_desk(desk)
+    window.show()
+    yield window
+    window.put_away()
+
+
+def test_a_part_a_hold_a_reset_and_the_cable_out(
+    window: MainWindow, desk: Desk, controller: Controller, qtbot: QtBot
+) -> None:
+    frame = window.frame
+    assert frame is not None
+
+    def sees(state: State) -> None:
+        def so() -> None:
+            assert frame is not None
+            assert frame.title.state == state.value, (frame.prompt.text, desk.snapshot().alarms)
+
+        qtbot.waitUntil(so, timeout=LIMIT)
+
+    def start() -> None:
+        qtbot.waitUntil(lambda: frame.prompt.text.startswith("TO START"), timeout=LIMIT)
+        QTest.keyClick(window, Key.Key_F12)
+
+    sees(State.DISABLED)
+    QTest.keyClick(window, Key.Key_D)
+    start()
+    qtbot.waitUntil(lambda: desk.snapshot().actual[0] > 1.0, timeout=LIMIT)
+    QTest.keyClick(window, Key.Key_H)
+    sees(State.HOLD)
+    held = desk.snapshot().actual
+    assert 1.0 < held[0] < 10.16
+    QTest.keyClick(window, Key.Key_F12)
+    qtbot.waitUntil(lambda: desk.snapshot().parts == 1, timeout=LIMIT)
+    sees(State.IDLE)
+    assert desk.snapshot().actual[:2] == pytest.approx((0.0, 0.0), abs=0.01)
+    start()
+    qtbot.waitUntil(lambda: desk.snapshot().actual[0] > 1.0, timeout=LIMIT)
+    QTest.keyClick(window, Key.Key_H)
+    sees(State.HOLD)
+    for _ in range(2):  # the second is the answer to the first's question
+        QTest.keyClick(window, Key.Key_R)
+    sees(State.IDLE)
+    controller.pull()
+    sees(State.FAULT)
+    assert "connection" in str(desk.snapshot().alarms[-1]).lower(), desk.snapshot().alarms
