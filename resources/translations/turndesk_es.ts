@@ -4806,7 +4806,7 @@
     <message>
       <location filename="core/executor/jog.py" />
       <source>the spindle's drive becomes C: let go, and begin again in two seconds</source>
-      <translation type="unfinished" />
+      <translation>el accionamiento del husillo pasa a ser C: suelte y empiece de nuevo en dos segundos</translation>
     </message>
     <message>
       <location filename="core/executor/jog.py" />
