@@ -48,7 +48,7 @@ _ALARMS = {
 _ERRORS = {
     2: "bad number",
     3: "it does not know this line",
-    5: "this kind of homing is disabled in the controller ($22)",
+    5: "this kind of homing is off in the controller: set $22 to 3, or give the axis home method 37",
     8: "only possible in Idle",
     9: "locked by an alarm or a jog",
     10: "soft limits need homing",

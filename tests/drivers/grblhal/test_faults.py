@@ -188,6 +188,7 @@ def test_homing_that_the_controller_does_not_know_is_told() -> None:
     bench.machine.axes.home("X")
     bench.until(State.FAULT, limit=2.0)
     assert "$22" in bench.alarms()
+    assert "method 37" in bench.alarms()
     assert not bench.shot.homed[0]
 
 
