@@ -18,4 +18,4 @@ def test_a_single_palm_button_is_refused(name: str) -> None:
 
 def test_the_relays_output_and_other_names_are_not() -> None:
     more = '[io.in]\npalm_rest = { at = "401.6000.5.0" }\nstarted = { at = "401.6000.5.1" }'
-    assert "start" in parse_machine(CAN.replace("[io.in]", more), "can").inputs
+    assert "start" in parse_machine(CAN.replace("\n[io.in]", "\n" + more), "can").inputs
