@@ -39,7 +39,10 @@ class Found(NamedTuple):
 
 def found_ports() -> list[Found]:
     """The serial ports of this computer, by name."""
-    return sorted(Found(port.device, port.description or "") for port in comports())
+    return sorted(
+        Found(port.device, "" if port.description in {None, "n/a"} else port.description)
+        for port in comports()
+    )
 
 
 class SerialWire:

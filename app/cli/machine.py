@@ -16,8 +16,14 @@ def add_parser(subparsers: SubParsers) -> None:
     check = actions.add_parser("check", help="validate a machine file, connect, report each drive and input")
     check.add_argument("file", metavar="FILE", nargs="?", help="default: the shipped simulated lathe")
     check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
-    peer = actions.add_parser("peer", help="play the drives and terminals of a CANopen machine file")
-    peer.add_argument("file", metavar="FILE")
+    peer = actions.add_parser(
+        "peer",
+        help="play what a CANopen or grblHAL machine file connects to, for trying it without hardware",
+        description="Plays simulated drives and terminals on the bus of a CANopen machine file, or a grblHAL"
+        " controller on its TCP port or on a pseudo terminal, whose name is printed. It goes on until Ctrl-C;"
+        " start the control beside it: turndesk --machine FILE",
+    )
+    peer.add_argument("file", metavar="FILE", help="such as gt75-bench.toml")
     accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
     accept.add_argument("file", metavar="FILE")
     model = actions.add_parser(

@@ -18,39 +18,77 @@ if TYPE_CHECKING:
 _EOL = {"crlf": "\r\n", "lf": "\n", "cr": "\r"}
 
 
+_ABOUT = """\
+Programs over a serial line (RS-232), between % lines as other controls and DNC programs send them.
+A program that is received is checked to its last character, proved, and stored as a new file: it
+never takes the place of another, and nothing starts. Ctrl-C gives a transfer up, and nothing is kept.
+
+  turndesk serial ports
+  turndesk serial send PIN.nc --port /dev/ttyUSB0 --baud 4800 --bits 7 --parity E
+  turndesk serial receive --port /dev/ttyUSB0 --out NEW.nc
+
+Settings that are not given are those of [dnc] in the machine file, else 9600 8N1, xonxoff, % and crlf.
+Both sides have to be set alike. Receive first, then send from the other side.
+"""
+
+
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("serial", help="send and receive programs over RS-232")
+    raw = argparse.RawDescriptionHelpFormatter
+    parser = subparsers.add_parser(
+        "serial", help="send and receive programs over RS-232", description=_ABOUT, formatter_class=raw
+    )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     actions.add_parser("ports", help="the serial ports of this computer")
-    send = actions.add_parser("send", help="send a program")
-    send.add_argument("file", metavar="FILE")
+    send = actions.add_parser("send", help="send a program", description=_ABOUT, formatter_class=raw)
+    send.add_argument("file", metavar="FILE", help="program; a %% around it is added where it has none")
     receive = actions.add_parser(
-        "receive", help="receive a program; it is stored as a new one, never started"
+        "receive",
+        help="receive a program; it is stored as a new one, never started",
+        description=_ABOUT,
+        formatter_class=raw,
     )
     receive.add_argument(
-        "--out", metavar="NAME", help="file for it; default: its own name, with the programs"
+        "--out",
+        metavar="NAME",
+        help="file for it, which must not exist; default: its own name, with the programs",
     )
     for each in (send, receive):
         _add_line(each)
+    _add_sending(send)
 
 
 def _add_line(parser: argparse.ArgumentParser) -> None:
-    """What is not said is that of the machine file's [dnc], else 9600 8N1, XON/XOFF, % and CR LF."""
+    """What both directions have; not said, it is that of the machine file's [dnc]."""
     parser.add_argument("--machine", metavar="FILE", help="machine file whose [dnc] gives the settings")
-    parser.add_argument("--port", metavar="DEVICE")
-    parser.add_argument("--baud", type=int)
-    parser.add_argument("--bits", type=int, choices=(7, 8))
-    parser.add_argument("--parity", choices=("N", "E", "O"))
-    parser.add_argument("--stop", type=int, choices=(1, 2))
-    parser.add_argument("--flow", choices=("xonxoff", "rtscts", "none"))
-    parser.add_argument("--wrap", choices=("%", ""), help="the line around a program; '' for none")
-    parser.add_argument("--eol", choices=tuple(_EOL))
+    parser.add_argument("--port", metavar="DEVICE", help="/dev/ttyUSB0, COM3; see: turndesk serial ports")
+    parser.add_argument("--baud", type=int, metavar="RATE", help="bits per second, 110 to 115200")
+    parser.add_argument("--bits", type=int, choices=(7, 8), help="data bits; older controls: 7, --parity E")
+    parser.add_argument("--parity", choices=("N", "E", "O"), help="none, even or odd")
+    parser.add_argument("--stop", type=int, choices=(1, 2), help="stop bits")
     parser.add_argument(
-        "--dc-codes", action="store_true", default=None, help="DC2 and DC4 around what is sent"
+        "--flow", choices=("xonxoff", "rtscts", "none"), help="how a side that is not ready holds the other"
     )
-    parser.add_argument("--wait", action="store_true", default=None, help="send when DC1 has come")
-    parser.add_argument("--leader", type=int, metavar="COUNT", help="NULs before and behind what is sent")
+    parser.add_argument(
+        "--wrap", choices=("%", ""), metavar="SIGN", help="line around a program: %% or '' for none"
+    )
+    parser.add_argument(
+        "--dc-codes",
+        action="store_true",
+        default=None,
+        help="tape codes: DC2 and DC4 around what is sent, DC1 and DC3 around what is received",
+    )
+
+
+def _add_sending(parser: argparse.ArgumentParser) -> None:
+    """What concerns only what is sent."""
+    parser.add_argument("--eol", choices=tuple(_EOL), help="line end of what is sent")
+    parser.add_argument(
+        "--wait", action="store_true", default=None, help="send when the other side asks for it (DC1)"
+    )
+    parser.add_argument(
+        "--leader", type=int, metavar="COUNT", help="so many NULs before and behind what is sent"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -85,8 +123,8 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
 
     model = machine.hardware.dnc or PLAIN
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")
-    said = {name: value for name in names if (value := getattr(args, name)) is not None}
-    if args.eol:
+    said = {name: value for name in names if (value := getattr(args, name, None)) is not None}
+    if getattr(args, "eol", None):
         said["eol"] = _EOL[args.eol]
     model = replace(model, **said)
     if not model.port:
@@ -144,5 +182,6 @@ def _store(args: argparse.Namespace, received: Received) -> int:
 
 def _found(received: Received) -> str:
     if received.findings:
-        return f"{len(received.findings)} errors; it is stored to be mended"
+        count = len(received.findings)
+        return f"{count} error{'s' * (count != 1)}; it is stored to be mended"
     return f"proved without an error, cycle {received.cycle:.1f} s; nothing was started"
