@@ -81,6 +81,12 @@ class Control:
         self.tick()
         return math.dist(self.world.place(), before) < STILL
 
+    def nothing_moves(self) -> bool:
+        """Neither slides nor spindle, for a second."""
+        before = self.world.place()
+        self.run(1.0)
+        return math.dist(self.world.place(), before) < STILL and self.world.rpm() == 0.0
+
     def ready(self) -> None:
         self.post(EnableDrives())
         self.until(State.IDLE, limit=0.5)

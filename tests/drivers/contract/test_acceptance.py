@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Callable
 
 import pytest
 
@@ -12,35 +10,18 @@ from core.executor.commands import CycleStart, EnableDrives, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
 from core.language.source import Source
-from tests.drivers.contract.can import Canopen
 from tests.drivers.contract.conftest import need
-from tests.drivers.contract.control import INCH, Control
-from tests.drivers.contract.grbl import Grblhal
-from tests.drivers.contract.rig import STILL, TICK, Rig
-from tests.drivers.contract.simulated import Fed, Simulated
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import STILL, TICK
 from tests.drivers.contract.test_cycle import PART, off_line
 from tests.drivers.contract.test_stopped import cutting
 
 AMAX = 3000.0  # mm/s², the least of all drivers here
-THREAD = "G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-1I.025K.05\nG00Z1\nM30\n"
-STILL_G95 = "G90G94F300\nG95F.01Z-1\nM30\n"
-THREADING: dict[str, Callable[[], Rig]] = {
-    "simulated": Simulated,
-    "fed": Fed,
-    "canopen": lambda: Canopen(turns=True),
-    "grblhal": Grblhal,
-}
 
 
 def on(control: Control) -> set[str]:
     """The outputs that are."""
     return {name for name, state in control.world.outputs().items() if state}
-
-
-def nothing_moved(control: Control) -> bool:
-    """Neither slides nor spindle, for a second."""
-    control.run(1.0)
-    return math.dist(control.world.place(), (0.0, 0.0)) < STILL and control.world.rpm() == 0.0
 
 
 @pytest.mark.parametrize("stall", [0.5, 5.0])
@@ -98,72 +79,6 @@ def test_a_slide_that_does_not_follow_brakes_all_axes(control: Control) -> None:
     assert not control.rig.ports.axes.sample().enabled
 
 
-def test_a_feed_per_turn_with_a_still_spindle_moves_nothing(control: Control) -> None:
-    """Proving refuses it; should a proof ever let it pass, the executor or the controller does."""
-    with pytest.raises(AssertionError, match="spindle-stopped"):
-        control.load(STILL_G95)
-    control.ready()
-    control.load(STILL_G95, proved=False)
-    control.press()
-    assert nothing_moved(control)
-    assert control.state is State.FAULT
-    assert control.shot.parts == 0
-
-
-@pytest.mark.parametrize("name", THREADING)
-def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) -> None:
-    rig = THREADING[name]()
-    control = Control(rig)
-    control.start(THREAD)
-    groove = -0.2 * INCH
-    control.until_true(lambda _: control.world.place()[1] < groove)  # the first pass
-    control.until_true(lambda _: control.world.place()[1] > 0.0)
-    control.until_true(lambda _: control.world.place()[1] < groove)  # the second
-    assert control.world.place()[0] < 0.245 * INCH
-    control.world.spindle_dies()
-    control.until(State.FAULT, limit=5.0)
-    control.rest(1.0)
-    assert control.shot.alarms[0].code == "thread-lost"
-    x, z = control.world.place()
-    assert x == pytest.approx(0.325 * INCH, abs=0.01)  # where its passes come out
-    assert -1.0 * INCH < z < -0.2 * INCH
-    control.run(3.0)
-    assert control.world.place() == pytest.approx((x, z), abs=STILL)
-    assert control.world.rpm() == 0.0
-    rig.close()
-
-
-def test_without_an_encoder_a_thread_is_refused_before_it_cuts(control: Control) -> None:
-    if control.rig.ports.spindle.angle() is not None or control.rig.blocks is not None:
-        pytest.skip("it has an encoder: its threads are cut, and tried above")
-    control.start(THREAD)
-    control.until(State.FAULT, State.IDLE, limit=5.0)
-    assert "encoder" in control.shot.start_refused + "".join(a.cause for a in control.shot.alarms)
-    assert control.world.place()[1] > 0.2 * INCH - 0.01
-
-
-def test_the_collet_stays_closed_until_the_spindle_stands(shipped: Rig) -> None:
-    """Where the machine file says so."""
-    locks = dataclasses.replace(shipped.machine.interlocks, unclamp_while_turning=False)
-    control = Control(shipped, dataclasses.replace(shipped.machine, interlocks=locks))
-    control.start("G90G94F300\nM03S1000\nG04F1\nM05\nM13\nM12\nM30\n")
-    control.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
-    assert abs(control.world.rpm()) > 300.0
-    assert control.world.outputs()["collet"]
-    control.until_true(lambda _: not control.world.outputs()["collet"])
-    assert abs(control.world.rpm()) < 5.0
-    control.until(State.IDLE)
-
-
-def test_no_spindle_start_with_the_collet_open(control: Control) -> None:
-    control.world.open_collet()
-    control.run(0.5)
-    control.start("G90G94F300\nM03S1000\nG04F1\nM30\n")
-    control.until(State.FAULT, limit=3.0)
-    assert control.shot.alarms[0].code == "collet-open"
-    assert nothing_moved(control)
-
-
 def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(control: Control) -> None:
     for after in (0.3, 1.0, 2.0):
         control.start(PART)
@@ -205,19 +120,6 @@ def test_a_silent_station_keeps_its_pots_and_holds(control: Control) -> None:
     assert control.shot.waiting_for == "OPERATOR STATION SILENT"
 
 
-def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_the_estop(
-    control: Control,
-) -> None:
-    control.start("G90G94F300\nM03S1800\nG04F3\nM05\nG04F9\nM30\n")
-    control.until_true(lambda _: control.world.rpm() > 1700.0)
-    control.world.spindle_ignores_stop()
-    control.until_true(lambda shot: shot.rpm_command == 0.0)
-    assert control.until(State.FAULT, limit=3.0) <= 1.7
-    alarm = control.shot.alarms[0]
-    assert alarm.code in {"spindle", "ignores-stop"}
-    assert "PRESS E-STOP" in alarm.cause + alarm.remedy
-
-
 def test_two_starts_within_a_bounce_are_one_cycle(control: Control) -> None:
     control.ready()
     control.load("G90G94F300\nX.01\nM30\n")
@@ -238,4 +140,4 @@ def test_a_program_that_has_changed_since_its_proof_is_refused(control: Control)
     control.press()
     assert control.state is State.IDLE
     assert "another program" in control.shot.start_refused
-    assert nothing_moved(control)
+    assert control.nothing_moves()

@@ -1,0 +1,103 @@
+"""Acceptance tests of spindle, threads and collet: each on every driver, with its bound."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import pytest
+
+from core.executor.snapshot import State
+from tests.drivers.contract.can import Canopen
+from tests.drivers.contract.control import INCH, Control
+from tests.drivers.contract.grbl import Grblhal
+from tests.drivers.contract.rig import STILL, Rig
+from tests.drivers.contract.simulated import Fed, Simulated
+
+THREAD = "G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-1I.025K.05\nG00Z1\nM30\n"
+STILL_G95 = "G90G94F300\nG95F.01Z-1\nM30\n"
+THREADING: dict[str, Callable[[], Rig]] = {
+    "simulated": Simulated,
+    "fed": Fed,
+    "canopen": lambda: Canopen(turns=True),
+    "grblhal": Grblhal,
+}
+
+
+def test_a_feed_per_turn_with_a_still_spindle_moves_nothing(control: Control) -> None:
+    """Proving refuses it; should a proof ever let it pass, the executor or the controller does."""
+    with pytest.raises(AssertionError, match="spindle-stopped"):
+        control.load(STILL_G95)
+    control.ready()
+    control.load(STILL_G95, proved=False)
+    control.press()
+    assert control.nothing_moves()
+    assert control.state is State.FAULT
+    assert control.shot.parts == 0
+
+
+@pytest.mark.parametrize("name", THREADING)
+def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) -> None:
+    rig = THREADING[name]()
+    control = Control(rig)
+    control.start(THREAD)
+    groove = -0.2 * INCH
+    control.until_true(lambda _: control.world.place()[1] < groove)  # the first pass
+    control.until_true(lambda _: control.world.place()[1] > 0.0)
+    control.until_true(lambda _: control.world.place()[1] < groove)  # the second
+    assert control.world.place()[0] < 0.245 * INCH
+    control.world.spindle_dies()
+    control.until(State.FAULT, limit=5.0)
+    control.rest(1.0)
+    assert control.shot.alarms[0].code == "thread-lost"
+    x, z = control.world.place()
+    assert x == pytest.approx(0.325 * INCH, abs=0.01)  # where its passes come out
+    assert -1.0 * INCH < z < -0.2 * INCH
+    control.run(3.0)
+    assert control.world.place() == pytest.approx((x, z), abs=STILL)
+    assert control.world.rpm() == 0.0
+    rig.close()
+
+
+def test_without_an_encoder_a_thread_is_refused_before_it_cuts(control: Control) -> None:
+    if control.rig.ports.spindle.angle() is not None or control.rig.blocks is not None:
+        pytest.skip("it has an encoder: its threads are cut, and tried above")
+    control.start(THREAD)
+    control.until(State.FAULT, State.IDLE, limit=5.0)
+    assert "encoder" in control.shot.start_refused + "".join(a.cause for a in control.shot.alarms)
+    assert control.world.place()[1] > 0.2 * INCH - 0.01
+
+
+def test_the_collet_stays_closed_until_the_spindle_stands(shipped: Rig) -> None:
+    """Where the machine file says so."""
+    locks = dataclasses.replace(shipped.machine.interlocks, unclamp_while_turning=False)
+    control = Control(shipped, dataclasses.replace(shipped.machine, interlocks=locks))
+    control.start("G90G94F300\nM03S1000\nG04F1\nM05\nM13\nM12\nM30\n")
+    control.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    assert abs(control.world.rpm()) > 300.0
+    assert control.world.outputs()["collet"]
+    control.until_true(lambda _: not control.world.outputs()["collet"])
+    assert abs(control.world.rpm()) < 5.0
+    control.until(State.IDLE)
+
+
+def test_no_spindle_start_with_the_collet_open(control: Control) -> None:
+    control.world.open_collet()
+    control.run(0.5)
+    control.start("G90G94F300\nM03S1000\nG04F1\nM30\n")
+    control.until(State.FAULT, limit=3.0)
+    assert control.shot.alarms[0].code == "collet-open"
+    assert control.nothing_moves()
+
+
+def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_the_estop(
+    control: Control,
+) -> None:
+    control.start("G90G94F300\nM03S1800\nG04F3\nM05\nG04F9\nM30\n")
+    control.until_true(lambda _: control.world.rpm() > 1700.0)
+    control.world.spindle_ignores_stop()
+    control.until_true(lambda shot: shot.rpm_command == 0.0)
+    assert control.until(State.FAULT, limit=3.0) <= 1.7
+    alarm = control.shot.alarms[0]
+    assert alarm.code in {"spindle", "ignores-stop"}
+    assert "PRESS E-STOP" in alarm.cause + alarm.remedy
