@@ -174,6 +174,18 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
         ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "rust" }]\n', "sim.faults.1.what", "encoder_stuck"),
         ("[sim]\n", "[sim]\nfaults = 3\n", "sim.faults", "a list of tables"),
         ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { 13 = 1 }\n[sim]\n', "grblhal.settings.13", "mm"),
+        (
+            "[sim]\n",
+            '[grblhal]\nport = "p"\nsettings = { 32 = 0 }\n[sim]\n',
+            "grblhal.settings.32",
+            "lathe mode",
+        ),
+        (
+            "[sim]\n",
+            '[grblhal]\nport = "p"\nx_mode = "G7"\n[sim]\n',
+            "grblhal.x_mode",
+            "a reset would change",
+        ),
         ("[sim]\n", '[grblhal]\nport = "p"\nsettings = { a = 1 }\n[sim]\n', "grblhal.settings.a", "$13"),
         # travel 8 in = 203.2 mm, 300 in/min = 7620 mm/min, 120 in/s² = 3048 mm/s²
         (

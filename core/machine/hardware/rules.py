@@ -44,9 +44,18 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: Mapping[str
     if _is(reading.values, "machine.backend", "canopen") and "canopen" in reading.tables:
         yield from _drives(reading, axes)
         yield from on_the_bus(reading, signals)
-    if reading.settings.get(13, 0) != 0:
-        expected = "expected 0: reports in mm; in inches they have too few decimals"
-        yield Finding("grblhal.settings.13", written(reading.settings[13]), expected)
+    yield from _controller(reading)
+
+
+def _controller(reading: HardwareReading) -> Iterator[Finding]:
+    """What a controller on a lathe has to be told, and nothing else."""
+    needed = ((13, 0, "reports in mm; in inches they have too few decimals"), (32, 2, "lathe mode"))
+    for number, value, why in needed:
+        if reading.settings.get(number, value) != value:
+            place = f"grblhal.settings.{number}"
+            yield Finding(place, written(reading.settings[number]), f"expected {value}: {why}")
+    if _is(reading.values, "grblhal.x_mode", "G7"):
+        yield Finding("grblhal.x_mode", '"G7"', 'expected "G8": a reset would change what X means')
 
 
 def _ports(values: Values) -> Iterator[Finding]:
