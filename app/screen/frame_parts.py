@@ -1,4 +1,4 @@
-"""What is always visible of the main window, and its places: title, readouts, lamps, station, prompt, keys."""
+"""What is always visible of the main window, in its place: title, readouts, lamps, station, prompt, keys."""
 
 from __future__ import annotations
 

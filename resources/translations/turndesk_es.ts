@@ -3649,16 +3649,6 @@
       <translation>TECLADO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/letters.py" />
-      <source>DEL</source>
-      <translation>BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/letters.py" />
-      <source>SPACE</source>
-      <translation>ESPACIO</translation>
-    </message>
-    <message>
       <location filename="app/screen/editor/page.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
@@ -3852,6 +3842,16 @@
       <location filename="app/screen/language.py" />
       <source>there is no catalogue turndesk_%1.qm in %2</source>
       <translation>no hay catálogo turndesk_%1.qm en %2</translation>
+    </message>
+    <message>
+      <location filename="app/screen/letters.py" />
+      <source>DEL</source>
+      <translation>BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/letters.py" />
+      <source>SPACE</source>
+      <translation>ESPACIO</translation>
     </message>
     <message>
       <location filename="app/screen/listing.py" />

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from app.screen.layout import Rect
 
+KEYS = 29.0  # units: height of the drawn keyboard, four rows of a finger's height
 NOWHERE = Rect(0, 0, 0, 0)
 HEAD = 6.8  # units: a finger's height, for the place that shows the keyboard
 

@@ -18,10 +18,10 @@ from app.screen.editor.finder import Finder
 from app.screen.editor.findings import FindingList
 from app.screen.editor.heading import Heading, HeadLine
 from app.screen.editor.keyboard import ASKING
-from app.screen.editor.layout import editor_places
-from app.screen.editor.letters import HIGH, LetterPad, strike
+from app.screen.editor.layout import KEYS, editor_places
 from app.screen.editor.textfield import TextField
 from app.screen.editor.versions import VersionList
+from app.screen.letters import PROGRAMS, LetterPad, strike
 from app.screen.pages import Host, Page
 from app.screen.swivel.view import SwivelView
 
@@ -37,7 +37,7 @@ class EditorParts(Page):
         look, self.editor = host.look, editor
         self._mode = Mode.TEXT
         self.head = HeadLine(look, self.turn_letters, self)
-        self.letters = LetterPad(look, self._strike, self)
+        self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self._with_letters = False
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self)
@@ -115,7 +115,7 @@ class EditorParts(Page):
         self.dress()
 
     def _lay_out(self) -> None:
-        keys = HIGH if self.lettered else 0.0
+        keys = KEYS if self.lettered else 0.0
         asking = self._mode in ASKING
         at = editor_places(self.width(), self.height(), self.look.u, asking=asking, keys=keys)
         for part, rect in (

@@ -14,9 +14,9 @@ from app.desk.session import Loaded
 from app.desk.swivel.telling import at_line
 from app.desk.view import View
 from app.screen.files.record import RecordPanel
+from app.screen.letters import LetterPad
 from app.screen.pages import Doings, Host
 from app.screen.pathview import PathView
-from app.screen.special.letters import LetterPad
 from app.screen.special.listpage import ListPage
 from app.screen.special.table import SheetPanel
 from app.screen.swivel.view import SwivelView

@@ -10,11 +10,11 @@ from app.desk.inforce import rows_of
 from app.desk.mdi.mdi import MdiDesk
 from app.desk.session import Loaded
 from app.desk.view import View
+from app.screen.letters import LetterPad
 from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel
 from app.screen.pages import Doings, Host, Page
-from app.screen.special.letters import LetterPad
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.interpreter.begin import Checkpoint

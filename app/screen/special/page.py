@@ -11,10 +11,10 @@ from app.desk import pages
 from app.desk.session import Loaded
 from app.desk.special.special import SpecialDesk
 from app.desk.view import View
+from app.screen.letters import LetterPad
 from app.screen.offsets.keypad import KeyPad
 from app.screen.pages import Doings, Host
 from app.screen.special.items import ItemList
-from app.screen.special.letters import LetterPad
 from app.screen.special.listpage import ListPage
 from app.screen.special.table import SheetPanel
 from core.executor.snapshot import Snapshot

@@ -9,13 +9,13 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.desk import pages
-from app.screen.editor.letters import ROWS
 from app.screen.layout import FINGER
+from app.screen.letters import PROGRAMS
 from app.screen.panel import Panel
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 
-KEYS = [key for row in ROWS for key in row]
+KEYS = [key for row in PROGRAMS for key in row]
 
 
 def touch(writer: Writer, panel: Panel, place: int) -> None:
@@ -49,7 +49,7 @@ def test_a_program_is_written_and_saved_by_a_finger(
         *"G90G94F300",
         "Enter",
         *"(A",
-        "Space",
+        " ",
         *"B)",
         "Back",
         *")",
