@@ -11,7 +11,7 @@ from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.rigs import RIGS, make
 
 Broken = tuple[Rig, str]
-# The bus without and with the feeder before it: its ports are tried without, a machine under the executor with.
+# The bus: its ports are tried by the loop that owns it, a machine under the executor by the feeder.
 AT_PORTS = [name for name in RIGS if name != "fed canopen"]
 SHIPPED = [name for name in RIGS if name != "canopen"]
 _FAULTS = [(name, fault) for name, kind in RIGS.items() for fault in kind.faults]
