@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -15,8 +15,15 @@ from core.ports import Clock, DriverError, MachinePorts, StationState
 from drivers.inverter.spindle import InverterSpindle
 from drivers.simulated import RealClock, StepClock
 
-FAILED = ("fault", "no answer", "wrong")  # states that are trouble; an E-stop that is pressed is none
+MISSING = "missing"
+FAILED = (
+    "fault",
+    "no answer",
+    "wrong",
+    MISSING,
+)  # states that are trouble; an E-stop that is pressed is none
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
+_LONGEST = 3.0  # s for inputs that are read in turns
 _LOOK = 0.02  # s
 
 
@@ -88,7 +95,7 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     connected = connect(machine, clock)
     try:
         if real_time(machine):
-            _settle(clock, connected.ports)
+            _settle(clock, connected.ports, machine)
         rows = list(_rows(machine, connected.ports))
         answers.warnings += connected.ports.warnings
     finally:
@@ -99,11 +106,13 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     ]
 
 
-def _settle(clock: Clock, ports: MachinePorts) -> None:
-    """Look on like a control that is awake."""
-    end = clock.now() + _SETTLED
-    while clock.now() < end:
+def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
+    """Look on like a control that is awake; a controller reads its auxiliary inputs one after the other."""
+    began = clock.now()
+    while (waited := clock.now() - began) < _LONGEST:
         ports.axes.sample()
+        if waited >= _SETTLED and machine.inputs.keys() <= ports.io.inputs().keys():
+            return
         clock.sleep_until(clock.now() + _LOOK)
 
 
@@ -124,7 +133,9 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
     yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
         for name, on in states.items():
-            yield Row(f"{kind} {name}", terminals.get(f"{kind} {name}", ""), "on" if on else "off", "")
+            yield Row(f"{kind} {name}", terminals.pop(f"{kind} {name}", ""), "on" if on else "off", "")
+    for name, terminal in terminals.items():
+        yield Row(name, terminal, MISSING, "the machine has no such terminal")
 
 
 def _spindle(machine: Machine, ports: MachinePorts) -> Row:
@@ -154,6 +165,6 @@ def _node(machine: Machine, name: str) -> str:
     return next((f"node {node.id}" for node in hardware.canopen.nodes if node.name == name), "")
 
 
-def _terminals(machine: Machine) -> Mapping[str, str]:
+def _terminals(machine: Machine) -> dict[str, str]:
     wired = {f"input {name}": each.terminal for name, each in machine.inputs.items()}
     return wired | {f"output {name}": each.terminal for name, each in machine.outputs.items()}

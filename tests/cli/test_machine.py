@@ -10,6 +10,7 @@ import pytest
 import resources
 from app.cli.machine_check import table
 from app.cli.main import main
+from drivers.simulated.ports import SimIO
 
 Captured = pytest.CaptureFixture[str]
 
@@ -88,3 +89,17 @@ def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: P
     report = json.loads(capsys.readouterr().out)
     assert [(port["name"], port["state"]) for port in report["ports"]] == [("spindle", "no answer")]
     assert "cannot be opened" in report["trouble"][0]
+
+
+def test_an_input_that_the_machine_does_not_have_is_trouble(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = SimIO.inputs
+    monkeypatch.setattr(
+        SimIO, "inputs", lambda io: {name: on for name, on in there(io).items() if name != "guard"}
+    )
+    assert main(["machine", "check"]) == 1
+    told = capsys.readouterr()
+    assert "turndesk: gt75.toml: input guard: missing the machine has no such terminal" in told.err
+    lines = [line.split() for line in told.out.splitlines()]
+    assert ["input", "guard", "IN-4", "missing", "the", "machine", "has", "no", "such", "terminal"] in lines
