@@ -1361,7 +1361,7 @@
     <message>
       <location filename="app/desk/lamps.py" />
       <source>BLOCK DELETE</source>
-      <translation>SALTO DE BLOQUE</translation>
+      <translation>SALTO BLOQUE</translation>
     </message>
     <message>
       <location filename="app/desk/lamps.py" />
@@ -2631,7 +2631,7 @@
     <message>
       <location filename="app/desk/special/parts.py" />
       <source>NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.</source>
-      <translation>SIN CONT: lo que corre es una prueba en vacío y no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
+      <translation>SIN CONT: prueba en vacío, no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -2831,7 +2831,7 @@
     <message>
       <location filename="app/desk/special/signals.py" />
       <source>DRIVES ON</source>
-      <translation>SERVOS ENCENDIDOS</translation>
+      <translation>SERVOS ACTIVOS</translation>
     </message>
     <message>
       <location filename="app/desk/special/signals.py" />
