@@ -154,7 +154,9 @@ class SpindleC:
         return False
 
     def _power(self, now: float) -> None:
-        if self._drive.enabled and self._drive.shown_mode == IP:
+        if not self._wanted:
+            self._enter(Step.BACK, now)
+        elif self._drive.enabled and self._drive.shown_mode == IP:
             self._join()
             self._begin_turn()
             self._enter(Step.TURN, now)

@@ -12,6 +12,7 @@ from drivers.canopen.coupling import SpindleC
 from drivers.canopen.drive import Drive402
 from drivers.canopen.encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.spindle import CanopenSpindle, NoSpindle
+from drivers.canopen.states import DriveState
 from drivers.canopen.terminals import CanopenIO
 
 _FIRST = 0.5  # s in which everything must have answered a first SYNC
@@ -102,6 +103,8 @@ class CanopenMachine:
             self.io.safe()
             if self.spindle is not None:
                 self.spindle.coast()
+                if self.spindle.drive not in self.axes.drives.drives:
+                    self.spindle.drive.goal = DriveState.OFF  # also on its way to C
                 self._exchange()
         self.bus.close()
 

@@ -140,6 +140,19 @@ def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
     assert not stand.peers.plant.spindle_drive.power.powered
 
 
+@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.HELD])
+def test_closing_leaves_it_without_power_wherever_it_is(stand: CBench, step: Step) -> None:
+    drive = stand.peers.plant.spindle_drive
+    assert drive is not None
+    stand.c.hold(True, True)
+    stand.until(lambda: stand.c.step is step, 20.0)
+    stand.machine.close()
+    for _ in range(200):
+        stand.clock.advance(0.005)
+        stand.peers.pump()
+    assert not drive.power.powered
+
+
 def test_a_drive_without_those_modes_is_refused_at_the_start() -> None:
     stand = CBench(c_machine())
     assert stand.peers.plant.spindle_drive is not None
@@ -355,3 +368,29 @@ def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(ri
     rig.until(State.IDLE, State.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
     assert Step.INDEX in seen
+
+
+@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.POWER, Step.TURN, Step.HELD])
+def test_estop_in_every_step_of_the_change_over(rig: BusRig, step: Step) -> None:
+    c, drive = rig.bench.machine.c, rig.bench.peers.plant.spindle_drive
+    assert c is not None
+    assert drive is not None
+    rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nG04F60\nM05\nM30")
+    rig.watch.append(lambda _shot: None)
+    rig.until_true(lambda _: c.step is step, limit=60.0)
+    rig.bench.peers.machine.press_estop()
+    rig.until(State.ESTOP, limit=0.2)
+    rig.run(3.0)
+    assert not drive.power.powered
+    assert c.step is Step.FREE
+    rig.bench.peers.machine.release_estop()
+    rig.run(1.0)
+    rig.post(EnableDrives())
+    rig.until(State.IDLE, limit=2.0)
+    at = degrees(rig)
+    rig.run(2.0)
+    assert degrees(rig) == at
+    assert not drive.power.powered
+    rig.start("G90G94F300\nM03S600\nG04F1\nM05\nM30")
+    rig.until(State.IDLE, State.FAULT, limit=30.0)
+    assert rig.shot.alarms == ()
