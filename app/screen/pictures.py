@@ -32,6 +32,7 @@ AT_Z = -0.3 * 25.4
 MILL, TILTED = "ac-table-mill", "roof"
 TILTED_BLOCK = 29  # the way back along the rear slope
 TICK = 0.01
+HEARD = 0.2  # seconds in which the executor obeys whatever was posted
 LOADING = 60.0  # seconds after which loading has failed
 
 
@@ -109,6 +110,8 @@ class Stage:
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
+        heard = self.clock.now() + HEARD
+        self.tick(lambda: self.clock.now() > heard)  # what all the scenes have posted without a tick between
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
