@@ -33,7 +33,8 @@ def machine_file(tmp_path: Path) -> Iterator[Path]:
     peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
     peer.start()
     file = tmp_path / "simulator.toml"
-    file.write_text(SHIPPED.replace("/dev/ttyACM0", end.name.replace("tcp", "socket")), encoding="utf-8")
+    text = SHIPPED.replace("/dev/ttyACM0", end.name.replace("tcp", "socket"))
+    file.write_text(text, encoding="utf-8")
     yield file
     over.set()
     peer.join(5.0)
@@ -87,10 +88,19 @@ def test_reset_at_its_slow_ramp_waits_for_it_and_loses_nothing() -> None:
     assert not bench.shot.alarms
 
 
-def test_check_and_run(
+def test_inputs_that_it_has_not_are_trouble_in_a_check(machine_file: Path, capsys: Captured) -> None:
+    assert main(["machine", "check", str(machine_file)]) == 1
+    assert "collet_closed" in capsys.readouterr().err
+
+
+def test_check_and_run_without_them(
     machine_file: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    lines = machine_file.read_text(encoding="utf-8").splitlines(keepends=True)
+    text = "".join(line for line in lines if 'at = "in.' not in line)
+    text = text.replace("spindle_with_collet_open = false", "spindle_with_collet_open = true")
+    machine_file.write_text(text, encoding="utf-8")
     assert main(["machine", "check", str(machine_file)]) == 0
     assert "threads are refused" in capsys.readouterr().err
     program = tmp_path / "part.nc"
