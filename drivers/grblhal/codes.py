@@ -22,6 +22,7 @@ ESTOP, HOMING_REQUIRED = 10, 11
 LOCKED = 255  # ours: it is locked and tells no number
 LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
 CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before
+ENDED = CRITICAL | {HOMING_REQUIRED}  # alarms behind which nothing turns or runs any more
 _ALARMS = {
     1: "hard limit: a slide has hit its switch",
     2: "soft limit: a block leaves the controller's travel",

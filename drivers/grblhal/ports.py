@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.ports import AxisSample, DriverError, Segments, Stop
-from drivers.grblhal import scripts
+from drivers.grblhal import codes, scripts
 from drivers.grblhal.blocks import GrblBlocks
 from drivers.grblhal.controller import Controller
 
@@ -72,7 +72,7 @@ class GrblAxes:
     def stop(self, how: Stop) -> None:
         """The controller's own stop; without power it takes nothing more."""
         self._blocks.powered = self._blocks.powered and how is Stop.RAMP_HOLD
-        if self._c.alarm == 0:
+        if self._c.alarm not in codes.ENDED:
             self._blocks.abort()
 
     def home(self, axis: str) -> None:

@@ -92,6 +92,9 @@ def abort(c: Controller) -> Script:
     """To rest, the queue void, the modes verified; the position is kept where the controller allows that."""
     waits = c.index_wait
     c.void()
+    if c.alarm:
+        yield from reset(c)  # an alarm has stopped the slides alone: spindle and coolant end with a reset
+        return
     if _alarm_of(c):
         return
     yield from stop(c, waits=waits)

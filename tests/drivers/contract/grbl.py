@@ -126,6 +126,7 @@ class Grblhal(Rig):
 
     faults: ClassVar[Mapping[str, Fault]] = {
         "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault"),
+        "alarm": Fault(told=0.02, rests=0.02, says="ALARM:14"),
         "cable out": Fault(0.02, 0.9, "the connection to the controller is lost", True, _ALONE, _ALONE),
         "silence": Fault(told=1.4, rests=2.2, says="does not answer"),
         "garbage": Fault(told=0.15, rests=0.3, says="disturbed"),
@@ -165,6 +166,7 @@ class Grblhal(Rig):
         """What wire and controller can do."""
         return {
             "drive fault": self._motor_fault,
+            "alarm": lambda: self.peer.raise_alarm(14),
             "cable out": lambda: setattr(self.wire, "cut", True),
             "silence": lambda: setattr(self.peer.quirks, "deaf", True),
             "garbage": lambda: self.peer.say("o*\\xffk\r\n"),

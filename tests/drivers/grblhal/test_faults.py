@@ -152,7 +152,8 @@ def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_re
     bench = GrblBench()
     bench.ready()
     bench.peer.feed(b"G95\nG1X5F.1\n")
-    bench.run(0.3)
+    bench.clock.advance(0.3)  # before anybody looks
+    bench.peer.advance()
     assert bench.peer.alarm == 14
     assert bench.peer.slides.queue
     bench.until(State.FAULT, limit=1.0)
