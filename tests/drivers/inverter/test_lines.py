@@ -155,7 +155,7 @@ def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
     answers = check_ports(load_machine(path))
     assert [(row.name, row.state) for row in answers.rows] == [("spindle", "no answer")]
     (told,) = answers.trouble
-    assert "huanyang on /dev/ttyNONE7: /dev/ttyNONE7 cannot be opened: No such" in told
+    assert "huanyang on /dev/ttyNONE7: /dev/ttyNONE7 cannot be opened: there is no such port" in told
 
 
 def test_a_clock_moved_by_hand_is_refused(tmp_path: Path) -> None:
