@@ -167,7 +167,7 @@ class SpindleC:
         if not self._wanted:
             self._axes.stop(Stop.RAMP_HOLD)
             self._enter(Step.LEAVE, now)
-        elif self._axes.horizon() <= now and not self._axes.drives.moving:
+        elif self._axes.queue.horizon(now) <= now and not self._axes.drives.moving:
             self._goal = None
             self._enter(Step.HELD, now)
 

@@ -79,6 +79,19 @@ def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
     assert stand.machine.axes.sample().actual[2] == pytest.approx(0.0, abs=0.1)
 
 
+def test_on_a_clock_that_goes_on_with_every_look(stand: CBench, monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = StepClock.now
+
+    def creeping(clock: StepClock) -> float:
+        clock.advance(2e-6)
+        return plain(clock)
+
+    monkeypatch.setattr(StepClock, "now", creeping)
+    stopped_somewhere(stand)
+    stand.hold(orient=True)
+    assert (stand.degrees() + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.1)
+
+
 def test_the_index_is_looked_for_once(stand: CBench) -> None:
     stand.hold(orient=True)
     stand.c.hold(False)
