@@ -10,7 +10,7 @@ from core.executor.feed import BlockFeed, Pass, needs_speed
 from core.executor.limits import check_block
 from core.executor.moving import Moving, Progress
 from core.executor.snapshot import State
-from core.executor.waits import Wait, at_speed, carry_out, in_position
+from core.executor.standstill import Next, Standstill
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
@@ -43,9 +43,7 @@ class Cycle:
         self._needs_end = source.left is None
         self._feed = BlockFeed(source, lambda block: check_block(block, bench.machine))
         self._state = State.RUN
-        self._wait: Wait | None = None
-        self._settled = True  # in position since the last motion
-        self._block_done = False  # for single block: something was executed since the last stop
+        self._still = Standstill(bench, self._feed)
         self._held_at = 0.0
         self._retreating = False
         self._reason = ""  # why the cycle was held, when not by the button
@@ -58,8 +56,8 @@ class Cycle:
         """In words, what the cycle waits for."""
         if self._state is State.HOLD:
             return self._reason
-        if self._wait is not None:
-            return self._wait.label()
+        if self._still.label is not None:
+            return self._still.label
         return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
 
     @property
@@ -95,8 +93,7 @@ class Cycle:
 
     def wait_for(self, label: str) -> None:
         """Its program is over; stand still until another cycle takes its place."""
-        if self._wait is None:
-            self._wait = Wait(lambda: label, lambda _: False, self._bench.now)
+        self._still.wait_for(label)
 
     def abandon(self) -> None:
         """Come to rest and be given up; the caller waits for ``at_rest``."""
@@ -118,13 +115,13 @@ class Cycle:
         """Cycle Start after hold, single block, M00, M01."""
         stopped = self._state
         self._reason = self.message = ""
-        self._block_done = self._mover.active and not self._mover.complete
+        within = self._mover.active and not self._mover.complete
+        self._still.done = within
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
-        if self._wait is not None:
-            self._wait.shift(self._bench.now - self._held_at)
+        self._still.held(self._bench.now - self._held_at)
         self._change(State.RUN)
-        if self._block_done:
+        if within:
             self._mover.go_on(self.current if stopped is State.BLOCK_END else None)
 
     # --- every tick ---------------------------------------------------------------------------------------
@@ -169,55 +166,39 @@ class Cycle:
     def _stand(self) -> None:
         """At rest: wait, act, begin the next stretch, as far as this tick's budget goes."""
         for _ in range(_ACTIONS):
-            if self._wait is not None:
-                if not self._wait.over(self._bench.now):
-                    self._change(State.WAIT if self._wait.label() else State.RUN)
+            match self._still.next():
+                case Next.GO_ON:
+                    self._change(State.RUN)
+                case Next.ACTION if self._feed.stop is not None:
+                    if not self._act(self._feed.stop):
+                        return
+                case done:
+                    self._rest(done)
                     return
-                self._wait = None
+
+    def _rest(self, what: Next) -> None:
+        """What this tick ends with."""
+        match what:
+            case Next.WAIT:
+                self._change(State.WAIT if self._still.label else State.RUN)
+            case Next.BLOCK_END:
+                self._change(State.BLOCK_END)
+            case Next.MOTION:
                 self._change(State.RUN)
-                self._waited()
-            elif not self._do_next():
-                return
-
-    def _do_next(self) -> bool:
-        """One thing; False when this tick has no more to do."""
-        feed, bench = self._feed, self._bench
-        if not self._settled:
-            self._wait = in_position(bench)
-            return True
-        if self._block_done and bench.switches.single_block:
-            self._change(State.BLOCK_END)
-        elif feed.pending:
-            self._settled, self._block_done = False, True
-            self._change(State.RUN)
-            self._read()
-            self._mover.begin(feed.take())
-        elif feed.stop is not None:
-            return self._act(feed.stop)
-        elif feed.trouble is not None:
-            raise feed.trouble
-        elif feed.ended and not self._needs_end:
-            self._ended(None)
-        elif feed.ended:
-            raise TroubleError("program", "the program ends without M30 or M02")
-        return False
-
-    def _waited(self) -> None:
-        if not self._settled:
-            self._settled = True
-        elif self._feed.stop is not None:
-            self._block_done = self._feed.stop.action is not None
-            self._feed.pass_stop()
+                self._read()
+                self._mover.begin(self._feed.take())
+            case Next.END if self._needs_end:
+                raise TroubleError("program", "the program ends without M30 or M02")
+            case Next.END:
+                self._ended(None)
+            case _:
+                pass
 
     def _act(self, block: Block) -> bool:
         """The block that needed the standstill. False when the cycle stops or ends with it."""
         bench, action = self._bench, block.action
-        if action is None:
-            self._wait = at_speed(bench) if needs_speed(block) else None
-            if self._wait is None:
-                self._waited()
-            return True
-        self._show(block)
+        if action is not None:
+            self._show(block)
         if isinstance(action, ProgramEnd):
             self._feed.pass_stop()
             self._ended(action)
@@ -227,9 +208,7 @@ class Cycle:
             bench.say("stop", action.message or ("optional stop" if action.optional else "program stop"))
             self._change(State.PROGRAM_STOP)
             return False
-        self._wait = carry_out(block, bench)
-        if self._wait is None:
-            self._waited()
+        self._still.carry_out(block)
         return True
 
     def _watch_spindle(self, block: Block) -> None:
