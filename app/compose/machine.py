@@ -57,7 +57,7 @@ def setup_for(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Circumstances of one pass after power-up, from the machine's home; inputs that nobody names are open."""
+    """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
     from app.compose.kinematics import kinematics_of
 
     states = dict(inputs or {})

@@ -66,8 +66,9 @@ class Setup:
     """One set of circumstances for one pass through a program.
 
     ``start`` is the machine position of all axes (on a lathe x, z, c) before the first block; ``metric`` and
-    ``last_rapid`` what the job before has left, or power-up; ``inputs`` answers for a terminal such as ``"TB2-5"`` or a
-    PLC input ``"10"``. ``begin`` is there where a pass does not begin with the first line of a program.
+    ``last_rapid`` what the job before has left, or power-up; ``inputs`` answers for a terminal such as
+    ``"TB2-5"`` or a PLC input ``"10"``. ``begin`` is there where a pass does not begin with the first line
+    of a program.
     """
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
