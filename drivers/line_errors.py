@@ -17,7 +17,15 @@ _TO_DO = {
 
 def why(error: Exception) -> str:
     """What to do about it, else the operating system's word for it, where there is one."""
-    number = error.errno if isinstance(error, OSError) else error.args[0] if error.args else None
-    if isinstance(number, int):
+    number = _number(error)
+    if number is None and error.__context__ is not None:  # the library puts its cause into its own words
+        number = _number(error.__context__)
+    if number is not None:
         return _TO_DO.get(number) or os.strerror(number)
     return str(error).splitlines()[0] if str(error) else type(error).__name__
+
+
+def _number(error: BaseException) -> int | None:
+    """The operating system's; that of termios stands in its first word."""
+    number = error.errno if isinstance(error, OSError) else error.args[0] if error.args else None
+    return number if isinstance(number, int) else None

@@ -62,7 +62,7 @@ def _add_line(parser: argparse.ArgumentParser) -> None:
     """What both directions have; not said, it is that of the machine file's [dnc]."""
     parser.add_argument("--machine", metavar="FILE", help="machine file whose [dnc] gives the settings")
     parser.add_argument("--port", metavar="DEVICE", help="/dev/ttyUSB0, COM3; see: turndesk serial ports")
-    parser.add_argument("--baud", type=int, metavar="RATE", help="bits per second, 110 to 115200")
+    parser.add_argument("--baud", type=int, metavar="RATE", help="bits per second, usually 110 to 115200")
     parser.add_argument("--bits", type=int, choices=(7, 8), help="data bits; older controls: 7, --parity E")
     parser.add_argument("--parity", choices=("N", "E", "O"), help="none, even or odd")
     parser.add_argument("--stop", type=int, choices=(1, 2), help="stop bits")
@@ -129,8 +129,10 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     model = replace(model, **said)
     if not model.port:
         raise CommandError("no port: say --port, or give the machine file a [dnc] table")
-    if model.baud < 1 or model.leader < 0:
-        raise CommandError("--baud and --leader: expected a number that a line can have")
+    if not 110 <= model.baud <= 1_000_000:
+        raise CommandError(f"--baud {model.baud}: expected 110 to 1000000")
+    if not 0 <= model.leader <= 2000:
+        raise CommandError(f"--leader {model.leader}: expected 0 to 2000")
     return model
 
 

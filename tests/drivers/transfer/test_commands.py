@@ -95,8 +95,23 @@ def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[s
     program.write_text("M30\n")
     assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7"]) == 1
     assert "/dev/ttyNONE7 cannot be opened: there is no such port" in capsys.readouterr().err
+    assert main(["serial", "send", str(program), "--port", str(program)]) == 1
+    assert "p.nc cannot be opened: that is no serial port" in capsys.readouterr().err
+    for option, said in (("--baud", "12"), ("--baud", "1000001"), ("--leader", "-1"), ("--leader", "2001")):
+        assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7", option, said]) == 2
+        assert f"{option} {said}: expected " in capsys.readouterr().err
     assert main(["serial", "send", str(program)]) == 2
     assert "no port: say --port" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("action", ["send", "receive"])
+def test_the_help_is_readable(action: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["serial", action, "--help"])
+    told = capsys.readouterr().out
+    assert "metavar" not in told  # a bare % would show argparse's own workings
+    assert ("--wait" in told) == (action == "send")
+    assert "turndesk serial ports" in told
 
 
 def test_ports_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
