@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import Enum, auto
 
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, needs_speed
@@ -13,13 +13,13 @@ from core.interpreter.blocks import Block
 class Next(Enum):
     """What the cycle has to do now."""
 
-    WAIT = "nothing: something is waited for"
-    GO_ON = "ask again: a wait is over, or has been begun"
-    BLOCK_END = "stop: single block"
-    MOTION = "begin the blocks that are pending"
-    ACTION = "carry out the block that needed the standstill"
-    END = "nothing comes any more"
-    NOTHING = "nothing in this tick"
+    WAIT = auto()  # nothing: something is waited for
+    GO_ON = auto()  # ask again: a wait is over, or has been begun
+    BLOCK_END = auto()  # stop for single block
+    MOTION = auto()  # begin the blocks that are pending
+    ACTION = auto()  # carry out the block that needed the standstill
+    END = auto()  # nothing comes any more
+    NOTHING = auto()  # not in this tick
 
 
 class Standstill:
