@@ -71,7 +71,7 @@
     <message>
       <location filename="app/compose/screen.py" />
       <source>machine file: %1</source>
-      <translation type="unfinished" />
+      <translation>archivo de máquina: %1</translation>
     </message>
     <message>
       <location filename="app/desk/answers.py" />
@@ -151,7 +151,7 @@
     <message>
       <location filename="app/desk/changes.py" />
       <source>THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT</source>
-      <translation type="unfinished" />
+      <translation>EL ARCHIVO DE MÁQUINA HA CAMBIADO ({count}): F10, ARCHIVO DE MÁQUINA LO MUESTRA Y LO ACEPTA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -621,7 +621,7 @@
     <message>
       <location filename="app/desk/files/record.py" />
       <source>%1: the control ended in the middle of its last run</source>
-      <translation type="unfinished" />
+      <translation>%1: el control terminó en medio de su última ejecución</translation>
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
@@ -636,7 +636,7 @@
     <message>
       <location filename="app/desk/files/record.py" />
       <source>CUT OFF</source>
-      <translation type="unfinished" />
+      <translation>CORTADO</translation>
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
@@ -2566,52 +2566,52 @@
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF</source>
-      <translation type="unfinished" />
+      <translation>UN ARCHIVO DE MÁQUINA CAMBIADO SE ACEPTA CON LOS SERVOS APAGADOS</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>ACCEPT</source>
-      <translation type="unfinished" />
+      <translation>ACEPTAR</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>ACCEPTED: THE DRIVES CAN BE SWITCHED ON</source>
-      <translation type="unfinished" />
+      <translation>ACEPTADO: SE PUEDEN ENCENDER LOS SERVOS</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST</source>
-      <translation type="unfinished" />
+      <translation>LAS FLECHAS RECORREN LOS CAMBIOS, F2 LOS ACEPTA TODOS; ESC VUELVE A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>F2 accepts; the drives stay off until then.</source>
-      <translation type="unfinished" />
+      <translation>F2 acepta; hasta entonces los servos siguen apagados.</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>It is as it was accepted.</source>
-      <translation type="unfinished" />
+      <translation>Está como fue aceptado.</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>MACHINE FILE</source>
-      <translation type="unfinished" />
+      <translation>ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>MACHINE FILE  ·  %1</source>
-      <translation type="unfinished" />
+      <translation>ARCHIVO DE MÁQUINA  ·  %1</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
       <source>PRESS F2 ONCE MORE TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
-      <translation type="unfinished" />
+      <translation>OPRIMA F2 OTRA VEZ PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ AHORA, ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
-      <source>what has changed in it, to be accepted</source>
-      <translation type="unfinished" />
+      <source>what has changed in it</source>
+      <translation>lo que ha cambiado en él</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -4616,7 +4616,7 @@
     <message>
       <location filename="core/executor/gate.py" />
       <source>line %1: a thread needs an encoder on the spindle, and there is none</source>
-      <translation type="unfinished" />
+      <translation>línea %1: una rosca necesita un encoder en el husillo, y no lo hay</translation>
     </message>
     <message>
       <location filename="core/executor/gate.py" />
@@ -5881,7 +5881,7 @@
     <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A %1 program begins with its first block.</source>
-      <translation type="unfinished" />
+      <translation>Un programa %1 empieza por su primer bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/dialects.py" />

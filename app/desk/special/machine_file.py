@@ -18,7 +18,7 @@ class MachineFileSection(Section):
     """F2 accepts, after asking once; until then the drives cannot be switched on."""
 
     name = "MACHINE FILE"
-    use = "what has changed in it, to be accepted"
+    use = "what has changed in it"
 
     def __init__(self, desk: Desk, changes: FileChanges) -> None:
         super().__init__(desk)
