@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import deque
 from collections.abc import Callable
@@ -12,6 +13,9 @@ from drivers.grblhal.peer.registers import Registers
 Place = tuple[float, float]  # X as a radius, Z; mm
 Shape = tuple[float, Callable[[float], Place]]  # length, and distance to place
 _NOTHING = 5e-7  # radians
+_CREEP = 1e-3  # mm/s: nothing stops a hair before its place
+_NEAR = 1e-3  # mm, over which a direction is taken
+_STRAIGHT = 0.999999  # cosine of a corner that is none, or that turns back
 
 
 @dataclass(slots=True)
@@ -26,6 +30,13 @@ class PeerBlock:
     per_rev: bool = False
     thread: bool = False
     jog: bool = False
+
+    def heading(self, at: float) -> Place:
+        """Direction of the way (unit length) close to a distance."""
+        first = min(max(at - _NEAR, 0.0), max(self.length - _NEAR, 0.0))
+        (x0, z0), (x1, z1) = self.way(first), self.way(min(first + _NEAR, self.length))
+        way = math.hypot(x1 - x0, z1 - z0) or 1.0
+        return (x1 - x0) / way, (z1 - z0) / way
 
 
 def straight(start: Place, end: Place) -> Shape:
@@ -106,12 +117,10 @@ class Slides:
         if not self.queue:
             self.v = 0.0
             return
-        left = sum(block.length for block in self.queue) - self._s
         goal = 0.0 if self.held else self._speed(self.queue[0], turns_per_s)
-        accel = min(self._registers[120], self._registers[122])
-        change = accel * dt
+        change = self._accel * dt
         self.v = min(self.v + change, goal) if self.v < goal else max(self.v - change, goal)
-        self.v = min(self.v, math.sqrt(2.0 * accel * max(left, 0.0)) + 1e-3)
+        self.v = min(self.v, self._allowed(turns_per_s))
         if self.held and self.v < 1.5 * change:
             self.v = 0.0
         self._go(self.v * dt)
@@ -123,6 +132,31 @@ class Slides:
         if block.rapid:
             return speed * self.rapid
         return speed if block.jog else min(speed * self.feed, most)
+
+    @property
+    def _accel(self) -> float:
+        return min(self._registers[120], self._registers[122])
+
+    def _allowed(self, turns_per_s: float) -> float:
+        """Speed from which every corner ahead, and the end, can still be taken as slowly as it has to be."""
+        accel, before = self._accel, self.queue[0]
+        most, left = math.inf, before.length - self._s
+        for block in itertools.islice(self.queue, 1, None):
+            corner = min(self._corner(before, block), self._speed(block, turns_per_s))
+            most = min(most, math.sqrt(corner**2 + 2.0 * accel * max(left, 0.0)))
+            if 2.0 * accel * left > self.v**2:
+                return most + _CREEP
+            before, left = block, left + block.length
+        return min(most, math.sqrt(2.0 * accel * max(left, 0.0))) + _CREEP
+
+    def _corner(self, before: PeerBlock, block: PeerBlock) -> float:
+        """The fastest through the joint of two blocks, by the deviation of ``$11``; turning back stops."""
+        (x0, z0), (x1, z1) = before.heading(before.length), block.heading(0.0)
+        cosine = x0 * x1 + z0 * z1
+        if abs(cosine) > _STRAIGHT:
+            return math.inf if cosine > 0.0 else 0.0
+        half = math.sqrt(0.5 * (1.0 + cosine))  # sine of half the angle between the two ways
+        return math.sqrt(self._accel * self._registers[11] * half / (1.0 - half))
 
     def _go(self, way: float) -> None:
         self._s, self.travelled = self._s + way, self.travelled + way

@@ -66,7 +66,7 @@ def test_no_more_than_its_share_of_motion_is_ahead() -> None:
 
 def test_many_short_blocks_neither_starve_nor_overflow() -> None:
     bench = GrblBench()
-    steps = "".join(f"X{0.5 + 0.0005 * (i % 2):.4f}Z{-0.001 * i:.3f}\n" for i in range(1, 1500))
+    steps = "".join(f"X{0.5 + 0.0001 * (i % 2):.4f}Z{-0.001 * i:.3f}\n" for i in range(1, 1500))
     bench.start(f"G90G94F300\nX.5Z0\nG01F100\n{steps}M30\n")
     bench.until_true(lambda shot: shot.line > 50)
     slowest = min(_speed_of(bench) for _ in range(60))

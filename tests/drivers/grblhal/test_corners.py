@@ -1,0 +1,65 @@
+"""The look-alike's planner: it comes down for what lies ahead, as a controller with ``$11`` does."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from drivers.grblhal.peer.quirks import Quirks
+from drivers.grblhal.peer.registers import Registers
+from drivers.grblhal.peer.slides import PeerBlock, Place, Slides, straight
+
+STEP = 0.001
+ACCEL = 3000.0  # $120 and $122 of the look-alike, mm/s²
+SPEED = 100.0  # mm/s
+
+
+def way(*places: Place, speed: float = SPEED) -> Slides:
+    """Slides that are to go through these places from (0, 0)."""
+    slides = Slides(Registers(Quirks()), 100)
+    for start, end in zip(((0.0, 0.0), *places), places, strict=False):
+        length, shape = straight(start, end)
+        slides.queue.append(PeerBlock(0, length, speed, shape))
+    return slides
+
+
+def run(slides: Slides) -> list[tuple[Place, float]]:
+    """Place and speed after each step, to the end."""
+    seen = []
+    while slides.queue:
+        slides.step(STEP, 0.0)
+        seen.append((slides.place, slides.v))
+    return seen
+
+
+def test_turning_back_is_a_stop_between() -> None:
+    seen = run(way((0.0, 20.0), (0.0, 0.0)))
+    fastest_near_the_end = max(v for (_, z), v in seen if z > 19.9)
+    assert fastest_near_the_end <= math.sqrt(2.0 * ACCEL * 0.1) + 2.0 * ACCEL * STEP
+    # Each leg from rest to rest: length / speed + speed / acceleration.
+    assert len(seen) * STEP == pytest.approx(2 * (20.0 / SPEED + SPEED / ACCEL), rel=0.02)
+
+
+def test_a_straight_joint_is_none() -> None:
+    whole, pieces = run(way((0.0, 20.0))), run(way((0.0, 7.0), (0.0, 13.0), (0.0, 20.0)))
+    assert len(whole) == len(pieces)
+
+
+def test_a_right_angle_is_taken_by_the_deviation() -> None:
+    seen = run(way((0.0, 20.0), (20.0, 20.0)))
+    # Grbl's junction: v² = a · δ · sin(θ/2) / (1 − sin(θ/2)), δ = .01 mm, θ = 90°.
+    half = math.sqrt(0.5)
+    corner = math.sqrt(ACCEL * 0.01 * half / (1.0 - half))
+    near = [v for (x, z), v in seen if z > 19.99 and x < 0.01]
+    assert near
+    assert max(near) <= corner + 2.0 * ACCEL * STEP
+
+
+def test_a_slower_block_begins_at_its_own_speed() -> None:
+    slides = way((0.0, 20.0))
+    length, shape = straight((0.0, 20.0), (0.0, 30.0))
+    slides.queue.append(PeerBlock(0, length, 5.0, shape))
+    seen = run(slides)
+    assert max(v for (_, z), v in seen if z > 20.0) <= 5.0 + 2.0 * ACCEL * STEP
+    assert max(v for (_, z), v in seen if z > 20.5) <= 5.0 + 1e-6
