@@ -279,6 +279,11 @@
       <translation>NO SE ESCRIBIÓ NOMBRE: UN PROGRAMA NECESITA UNO</translation>
     </message>
     <message>
+      <location filename="app/desk/editing/drafts.py" />
+      <source>typed and not saved</source>
+      <translation>escrito y no guardado</translation>
+    </message>
+    <message>
       <location filename="app/desk/editing/editor.py" />
       <source>%1 IS SAVED</source>
       <translation>%1 QUEDÓ GUARDADO</translation>
@@ -447,6 +452,16 @@
       <location filename="app/desk/editing/words.py" />
       <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
       <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
+      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>no history is kept here</source>
+      <translation>aquí no se guarda historial</translation>
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />

@@ -15,6 +15,7 @@ from app.desk.editing import saving, words
 from app.desk.editing.bench import Bench
 from app.desk.editing.checking import Checker
 from app.desk.editing.document import Document, NameRefusedError, created, ended, opened
+from app.desk.editing.drafts import Drafts
 from app.desk.editing.worker import Worker
 
 
@@ -48,6 +49,7 @@ class Editor:
     restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
     checker: Checker = field(init=False)
+    drafts: Drafts = field(init=False)
     worker: Worker = field(default_factory=Worker)
     _offered: str = ""
     _leaving: bool = False
@@ -57,23 +59,28 @@ class Editor:
 
     def __post_init__(self) -> None:
         self.checker = Checker(self.bench.workshop)
+        self.drafts = Drafts(self.bench.programs.parent / "drafts", self.bench.archive)
 
     def poll(self) -> None:
         """Once a frame: take up what the worker has finished."""
         self.worker.poll()
+        self.drafts.poll()
+        if self.drafts.trouble and not self.notice:
+            self.notice = self.drafts.trouble
 
     def close(self) -> None:
         """End the workers."""
         self.checker.close()
         self.worker.close()
+        self.drafts.close()
 
     # --- coming in -----------------------------------------------------------------------------------
 
     def open(self, path: Path, block_delete: bool = False) -> None:
         """Read a program into the editor."""
         self.clear()
-        self.stage, self.block_delete = Stage.READING, block_delete
-        self.worker.ask(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
+        self.block_delete = block_delete
+        self._read(lambda: opened(path, self.bench.samples))
 
     def offer(self, typed: str) -> None:
         """A name that no program has: ask whether it shall be a new one."""
@@ -94,7 +101,7 @@ class Editor:
             self.notice = words.THERE_ALREADY.format(document.name)
             return
         self.clear()
-        self._opened(document)
+        self._read(lambda: document)
 
     def abort(self) -> None:
         """Esc: back to where one came from."""
@@ -102,9 +109,14 @@ class Editor:
             self.clear()
             self._shut()
 
-    def _opened(self, document: Document) -> None:
-        self.document, self.stage = document, Stage.OPEN
-        self._put(document.text)
+    def _read(self, document: Callable[[], Document]) -> None:
+        self.stage = Stage.READING
+        self.worker.ask(lambda: self.drafts.recovered(document()), self._opened, self._not_opened)
+
+    def _opened(self, found: tuple[Document, str]) -> None:
+        self.document, self.notice = found
+        self.stage = Stage.OPEN
+        self._put(self.document.text)
 
     def _not_opened(self, why: str) -> None:
         self._shut()
@@ -124,6 +136,8 @@ class Editor:
     def changed(self, text: str) -> None:
         """This is in the field now: have it proved."""
         self.checker.submit(self.name, ended(text), self.block_delete)
+        if self.document is not None:
+            self.drafts.look(self.document, text)
 
     def is_dirty(self, text: str) -> bool:
         """Whether leaving now would have something to save."""
@@ -214,6 +228,8 @@ class Editor:
             self._replace = True
             self._not_saved(words.CHANGED_OUTSIDE.format(document.name))
             return
+        for each in (document, self.document or document):  # under its new name, and its old one
+            self.drafts.forget(each)
         self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
         self.notice = words.NOT_KEPT.format(trouble) if trouble else ""
         if self._leaving:
@@ -229,6 +245,8 @@ class Editor:
         self.left(document.path)
 
     def _shut(self) -> None:
+        if self.document is not None:
+            self.drafts.forget(self.document)
         self.stage, self.document, self._leaving = Stage.CLOSED, None, False
         self._offered = ""
         self._abandoning = self._replace = False

@@ -71,5 +71,5 @@ def workshop() -> Workshop:
 
 def bench_in(folder: Path, archive: Memory | None = None) -> Bench:
     """The operator's programs and the samples, both empty at first."""
-    (folder / "samples").mkdir()
+    (folder / "samples").mkdir(exist_ok=True)
     return Bench(workshop(), archive or Memory(), folder / "programs", folder / "samples")
