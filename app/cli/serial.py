@@ -152,8 +152,8 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:
     from app.cli.carrying import carry
     from app.compose.offsets import chosen_offsets
-    from app.compose.screen import workshop
     from app.compose.transfer import SerialLines, proving
+    from app.compose.workshop import workshop
 
     lines = SerialLines(proving(workshop(machine, chosen_offsets(None))))
     received = carry(lines.receive(settings), f"receiving from {settings.port}")

@@ -5,11 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
-from importlib.resources import files
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
 from app.compose.accepted import file_changes, guarded
@@ -18,12 +14,13 @@ from app.compose.effect import drawer
 from app.compose.inverter import has_inverter
 from app.compose.journal import Journal
 from app.compose.logs import Log
-from app.compose.machine import read_machine, setup_for
+from app.compose.machine import read_machine
 from app.compose.mdi import give_mdi
 from app.compose.offsets import Offsets, book_of, stored_offsets
 from app.compose.searchto import give_searchto
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special import furnish
+from app.compose.workshop import samples, workshop
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.desk import Desk
 from app.desk.editing.bench import Bench, NoArchive
@@ -31,30 +28,18 @@ from app.desk.editing.editor import Editor
 from app.desk.home import home
 from app.desk.keep import NothingKept
 from app.desk.offsets.effect import Effect
-from app.desk.session import Proved, Session, Watch, Workshop
+from app.desk.session import Session, Workshop
 from app.desk.shelf import Shelf
 from app.desk.words import tr
 from core.executor.executor import Executor
-from core.executor.job import Job, make_job
 from core.executor.snapshot import Event, Snapshot
 from core.executor.thread import ExecutorThread
 from core.interpreter.modal import Modal
-from core.language.dialect import Dialect
-from core.language.source import Source, SourceError, load_source
 from core.machine.model import Machine
 from core.ports import Clock, DriverError
 from drivers.simulated import RealClock, StepClock
 
-if TYPE_CHECKING:
-    from app.desk.picture import Picture
-
-
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
-
-
-def samples() -> Path:
-    """The folder of the sample programs and their tool offsets."""
-    return Path(str(files("resources"))) / "programs"
 
 
 def build_desk(
@@ -195,60 +180,3 @@ def _editor(work: Workshop, journal: Journal | None) -> Editor:
 def step_clock() -> StepClock:
     """A clock for scripts that move time themselves."""
     return StepClock()
-
-
-def workshop(
-    machine: Machine,
-    offsets: Callable[[], Offsets],
-    journal: Journal | None = None,
-    *,
-    zero: Callable[[], Zero] = stored_zero,
-    left: Callable[[], Modal] | None = None,
-) -> Workshop:
-    """What loading needs; offsets, and unit and rapid rate that the job before has ``left``, are those of
-    the moment of loading."""
-
-    def new_job(source: Source, block_delete: bool) -> Job:
-        if journal is not None:
-            journal.keep(source)
-        tools, secondary = offsets()
-        setup = setup_for(machine, tools=tools, secondary=secondary, zero=zero(), block_delete=block_delete)
-        if left is not None:
-            modal = left()
-            setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
-        return make_job(_whole(source), setup)
-
-    def prove_job(job: Job, watch: Watch) -> Proved:
-        from app.compose.proof import proof_of
-        from core.proving.prove import prove
-
-        report = prove(job.reading, job.setup, machine, watch)
-        return Proved(proof_of(job, report), report.diagnostics)
-
-    def draw(job: Job, watch: Watch) -> Picture:
-        from app.desk.picture import sketched
-        from core.proving.timeline import Timeline, timed_series
-
-        return sketched(timed_series(Timeline.of(job.reading, job.setup, machine)), watch)
-
-    def renewed(job: Job) -> Job:
-        tools, secondary = offsets()
-        return make_job(job.source, replace(job.setup, tools=tools, secondary=secondary, zero=zero()))
-
-    return Workshop(_read, new_job, prove_job, draw, renewed)
-
-
-def _read(path: Path) -> Source:
-    try:
-        return _whole(load_source(path), path.parent)
-    except SourceError as error:
-        raise ValueError(str(error)) from error
-
-
-def _whole(source: Source, *folders: Path) -> Source:
-    """With the subprograms that it calls: from beside it, or from where programs are kept."""
-    if source.dialect is not Dialect.SINUMERIK or source.subprograms:
-        return source
-    from core.language.sinumerik.sections import with_subprograms
-
-    return with_subprograms(source, [*folders, home() / "programs", samples()])

@@ -41,7 +41,8 @@ class Stage:
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
         from app.cli.offset_file import read_offsets
-        from app.compose.screen import desk_and_executor, samples, step_clock
+        from app.compose.screen import desk_and_executor, step_clock
+        from app.compose.workshop import samples
         from app.desk.offsets.book import OffsetBook
         from core.store.store import Store
 
@@ -62,7 +63,7 @@ class Stage:
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
         from app.cli.offset_file import read_offsets
-        from app.compose.screen import samples
+        from app.compose.workshop import samples
 
         for number, tool in read_offsets(samples() / "offsets.toml")[0].items():
             store.set_tool(number, "touched off", x=tool.x, z=tool.z, nose_radius=tool.nose_radius)

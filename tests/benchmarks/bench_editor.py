@@ -22,7 +22,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.cli.offset_file import read_offsets
-from app.compose.screen import build_desk, samples
+from app.compose.screen import build_desk
+from app.compose.workshop import samples
 from app.screen.editor.page import EditorPage
 from app.screen.look import Look, dress, load_fonts
 from app.screen.theme import DARK

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.cli.offset_file import read_offsets
-from app.compose.screen import desk_and_executor, samples, step_clock
+from app.compose.screen import desk_and_executor, step_clock
+from app.compose.workshop import samples
 from app.desk.offsets.book import OffsetBook
 from app.screen.editor.page import EditorPage
 from app.screen.look import Look
