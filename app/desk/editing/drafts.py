@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -35,32 +36,38 @@ class Drafts:
         self._wanted[document.name] = None
         self._go_on()
 
-    def recovered(self, document: Document) -> tuple[Document, str]:
-        """On the editor's worker: a draft that was left goes into the history; what is to be said of it."""
+    def recover(self, document: Document, say: Callable[[str], None]) -> None:
+        """A draft that was left for it goes into the history, before anything is written for it now."""
+        self._worker.ask(lambda: self._recovered(document), say, say)
+
+    def _recovered(self, document: Document) -> str:
         place = self._place(document.name)
         try:
             text = place.read_text("utf-8")
         except OSError:
-            return document, ""  # none was left
+            return ""  # none was left
         if text == document.text:
             place.unlink(missing_ok=True)
-            return document, ""
+            return ""
         why = words.NO_STORE
         try:
             if self.archive.keep_version(document.name, document.encoded(text), WHY):
                 place.unlink(missing_ok=True)
-                return document, words.DRAFT
+                return words.DRAFT
         except StoreError as error:
             why = str(error)
         aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
-        return document, words.DRAFT_STAYS.format(aside, why)
+        return words.DRAFT_STAYS.format(aside, why)
 
     def poll(self) -> None:
         """Once a frame."""
         self._worker.poll()
+        self._go_on()
 
     def settle(self, timeout: float) -> None:
         """Wait until all is written; for scripts and tests, never for the screen."""
+        self._worker.settle(timeout)
+        self._go_on()
         self._worker.settle(timeout)
 
     def close(self) -> None:

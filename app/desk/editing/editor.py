@@ -59,7 +59,7 @@ class Editor:
 
     def __post_init__(self) -> None:
         self.checker = Checker(self.bench.workshop)
-        self.drafts = Drafts(self.bench.programs.parent / "drafts", self.bench.archive)
+        self.drafts = Drafts(self.bench.programs / ".drafts", self.bench.archive)
 
     def poll(self) -> None:
         """Once a frame: take up what the worker has finished."""
@@ -80,7 +80,8 @@ class Editor:
         """Read a program into the editor."""
         self.clear()
         self.block_delete = block_delete
-        self._read(lambda: opened(path, self.bench.samples))
+        self.stage = Stage.READING
+        self.worker.ask(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
 
     def offer(self, typed: str) -> None:
         """A name that no program has: ask whether it shall be a new one."""
@@ -101,7 +102,7 @@ class Editor:
             self.notice = words.THERE_ALREADY.format(document.name)
             return
         self.clear()
-        self._read(lambda: document)
+        self._opened(document)
 
     def abort(self) -> None:
         """Esc: back to where one came from."""
@@ -109,14 +110,13 @@ class Editor:
             self.clear()
             self._shut()
 
-    def _read(self, document: Callable[[], Document]) -> None:
-        self.stage = Stage.READING
-        self.worker.ask(lambda: self.drafts.recovered(document()), self._opened, self._not_opened)
+    def _opened(self, document: Document) -> None:
+        self.document, self.stage = document, Stage.OPEN
+        self._put(document.text)
+        self.drafts.recover(document, self._recovered)
 
-    def _opened(self, found: tuple[Document, str]) -> None:
-        self.document, self.notice = found
-        self.stage = Stage.OPEN
-        self._put(self.document.text)
+    def _recovered(self, said: str) -> None:
+        self.notice = said or self.notice
 
     def _not_opened(self, why: str) -> None:
         self._shut()
