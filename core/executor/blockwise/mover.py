@@ -17,6 +17,7 @@ from core.interpreter.blocks import Block, Kind
 
 _CUT = 1.0  # s of motion that lie ready in pieces
 _SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
+_AWAY = 1.0  # s; setpoints would have run out too
 _NEAR = 0.01  # mm; the controller reports thousandths
 
 
@@ -45,6 +46,8 @@ class BlockMover:
         self._still = False  # held because an override is 0
         self._lost: tuple[Block, float] | None = None  # thread without its spindle, and where X goes
         self._active = False
+        self._seen = bench.now  # when it was last followed
+        self._dry = False  # it was followed too late
 
     # --- how it stands ------------------------------------------------------------------------------------
 
@@ -80,15 +83,15 @@ class BlockMover:
 
     @property
     def starving(self) -> float:
-        """Never: without blocks the controller comes to rest by itself."""
-        return math.inf
+        """A controller comes to rest by itself; only one that was left alone for long shall not go on."""
+        return -math.inf if self._dry else math.inf
 
     # --- what is asked ------------------------------------------------------------------------------------
 
     def begin(self, blocks: list[Block]) -> None:
         """A new stretch, from rest. Raises TroubleError, DriverError."""
         self.forget()
-        self._active, self._shown = True, blocks[0]
+        self._active, self._shown, self._seen = True, blocks[0], self._bench.now
         self._thread = blocks[0].kind is Kind.THREAD
         self._waiting.extend(blocks)
         self._override()
@@ -96,7 +99,7 @@ class BlockMover:
 
     def go_on(self, behind: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
         """From rest within the stretch: the controller goes on, or gets the next block."""
-        self._last = None
+        self._last, self._dry, self._seen = None, False, self._bench.now
         if not self._still:
             self._sink.resume()
         self._hand_over()
@@ -107,6 +110,7 @@ class BlockMover:
             return Progress.DONE
         self._override()
         state = self._look()
+        self._left_alone()
         if not self._thread and feed.pending and self._ready() < _CUT:
             self._waiting.extend(feed.take())
         self._hand_over()
@@ -166,7 +170,7 @@ class BlockMover:
         self._waiting.clear()
         self._pieces.clear()
         self._sent.clear()
-        self._seconds, self._still = 0.0, False
+        self._seconds, self._still, self._dry = 0.0, False, False
 
     def _look(self) -> BlockState:
         """How the controller stands; what is done is forgotten."""
@@ -181,6 +185,11 @@ class BlockMover:
     def _moves(self, state: BlockState) -> bool:
         """A controller that is held rests, with all that it still has to move."""
         return not state.held and (bool(self._sent) or not state.resting)
+
+    def _left_alone(self) -> None:
+        """A control that was away for longer than its blocks last does not go on: nobody expects it."""
+        away, self._seen = self._bench.now - self._seen, self._bench.now
+        self._dry = self._dry or (away > _AWAY and bool(self._pieces or self._waiting))
 
     def _resting(self) -> Progress:
         if self._still:
@@ -219,7 +228,7 @@ class BlockMover:
 
     def _may(self, piece: Piece) -> bool:
         """Whether the controller gets this one now: by single block, and by how far it could run on alone."""
-        if self._still or not self._single(piece.block):
+        if self._still or self._dry or not self._single(piece.block):
             return False
         if self._thread or not self._sent:
             return True
