@@ -44,17 +44,16 @@ class Drafts:
         place = self._place(document.name)
         try:
             text = place.read_text("utf-8")
-        except OSError:
-            return ""  # none was left
-        if text == document.text:
-            place.unlink(missing_ok=True)
-            return ""
-        why = words.NO_STORE
-        try:
+            if text == document.text:
+                place.unlink(missing_ok=True)
+                return ""
             if self.archive.keep_version(document.name, document.encoded(text), WHY):
                 place.unlink(missing_ok=True)
                 return words.DRAFT
-        except StoreError as error:
+            why = words.NO_STORE
+        except (FileNotFoundError, NotADirectoryError):
+            return ""  # none was left
+        except (OSError, UnicodeDecodeError, StoreError) as error:
             why = str(error)
         aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
         return words.DRAFT_STAYS.format(aside, why)

@@ -138,6 +138,16 @@ def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memor
     assert (after.drafts.folder / "part.nc.left").read_text() == TYPED
 
 
+def test_a_damaged_draft_is_set_aside_and_told(start: Start) -> None:
+    editor = start()
+    path = program(editor)
+    editor.drafts.folder.mkdir()
+    (editor.drafts.folder / "part.nc.draft").write_bytes(b"G90\xff\n")
+    type_in(editor, path, GOOD)
+    assert "part.nc.left" in editor.notice
+    assert (editor.drafts.folder / "part.nc.left").read_bytes() == b"G90\xff\n"
+
+
 def test_a_folder_that_cannot_be_written_is_told_and_typing_goes_on(start: Start) -> None:
     editor = start()
     path = program(editor)
