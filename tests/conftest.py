@@ -1,14 +1,54 @@
 """The whole suite: the same examples at every run, so that a failure is a change and not a throw of dice.
 
-``HYPOTHESIS_PROFILE=search pytest …`` looks for new ones.
+``HYPOTHESIS_PROFILE=search pytest …`` looks for new ones. A run of the whole suite fails when a test that
+``docs/safety.md`` names did not run: a rule whose test was skipped is not shown.
 """
 
 from __future__ import annotations
 
 import os
 
+import pytest
 from hypothesis import settings
+
+from tests.named import SAFETY, not_run
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
+
+
+class SafetyRan:
+    """Collects what has passed and holds it against the document when all is over."""
+
+    def __init__(self) -> None:
+        self._passed: set[str] = set()
+        self._missing: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Also of the workers: their reports come here."""
+        if report.when == "call" and report.passed:
+            self._passed.add(report.nodeid.partition("[")[0])
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
+        """Only what would have passed otherwise is judged."""
+        if exitstatus == pytest.ExitCode.OK:
+            self._missing = not_run(SAFETY.read_text(encoding="utf-8"), self._passed)
+        if self._missing:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Names them."""
+        for name in self._missing:
+            terminalreporter.write_line(f"NOT RUN, but named in docs/safety.md: {name}")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """For whole runs alone, and where the reports of all workers come together."""
+    options = config.option
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not (
+        options.keyword or options.markexpr or options.lf or options.collectonly or options.maxfail
+    )
+    if whole and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(SafetyRan(), "safety-ran")

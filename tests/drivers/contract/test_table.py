@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import ast
 import re
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[3]
-NAMED = re.compile(r"`([\w/]+\.py)::(\w+)`")
+from tests.named import NAMED, ROOT, file_of, functions_of, named_in
 
 
 def table() -> str:
@@ -18,19 +15,11 @@ def table() -> str:
     return text.partition("## Fault → reaction → bound → test")[2].partition("\n## ")[0]
 
 
-def named() -> list[tuple[str, str]]:
-    """(file, test) of every reference."""
-    return sorted(set(NAMED.findall(table())))
-
-
-@pytest.mark.parametrize(("file", "test"), named(), ids="::".join)
+@pytest.mark.parametrize(("file", "test"), named_in(table()))
 def test_what_the_table_names_exists(file: str, test: str) -> None:
-    found = [
-        folder / file for folder in (ROOT / "tests", ROOT / "tests" / "drivers") if (folder / file).is_file()
-    ]
-    assert found, f"no file {file} below tests or tests/drivers"
-    tree = ast.parse(found[0].read_text(encoding="utf-8"))
-    assert test in {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+    found = file_of(file)
+    assert found is not None, f"no file {file} below tests or tests/drivers"
+    assert test in functions_of(found)
 
 
 def test_every_acceptance_row_has_a_test() -> None:

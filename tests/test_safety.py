@@ -1,0 +1,49 @@
+"""docs/safety.md tells the truth: each rule has a module and a test, and both exist.
+
+That the tests also ran is looked at when the whole suite is over: ``tests/conftest.py``.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.named import NAMED, ROOT, SAFETY, file_of, functions_of, named_in, not_run
+
+MODULE = re.compile(r"`((?:app|core|drivers)/[\w/]+(?:\.py)?)`")
+
+
+def rows() -> list[list[str]]:
+    """The cells of every hazard: number, what can happen, rule, where, shown by, hardware."""
+    text = SAFETY.read_text(encoding="utf-8")
+    found = [line.strip().strip("|").split("|") for line in text.splitlines()]
+    return [[cell.strip() for cell in cells] for cells in found if re.fullmatch(r"\s*[A-Z]\d+\s*", cells[0])]
+
+
+def test_each_hazard_has_its_own_number() -> None:
+    numbers = [row[0] for row in rows()]
+    assert len(numbers) == len(set(numbers)) >= 40
+
+
+@pytest.mark.parametrize("row", rows(), ids=lambda row: str(row[0]))
+def test_a_hazard_has_a_rule_a_place_a_test_and_a_word_on_hardware(row: list[str]) -> None:
+    assert len(row) == 6
+    assert all(row)
+    places = MODULE.findall(row[3])
+    assert places, "no module is named"
+    assert [place for place in places if not (ROOT / place).exists()] == []
+    assert NAMED.search(row[4]), "no test is named"
+
+
+@pytest.mark.parametrize(("file", "test"), named_in(SAFETY.read_text(encoding="utf-8")), ids=str)
+def test_what_is_named_exists(file: str, test: str) -> None:
+    found = file_of(file)
+    assert found is not None, f"no file {file} below tests or tests/drivers"
+    assert test in functions_of(found)
+
+
+def test_a_test_that_did_not_run_is_found() -> None:
+    text = "`test_safety.py::test_what_is_named_exists` `test_safety.py::test_nobody` `nowhere.py::test_x`"
+    ran = {"tests/test_safety.py::test_what_is_named_exists", "tests/elsewhere.py::test_nobody"}
+    assert not_run(text, ran) == ["nowhere.py::test_x", "test_safety.py::test_nobody"]
