@@ -5,7 +5,7 @@ set -eu
 . "$(dirname -- "$0")/../resources/setup/environment.sh"
 
 # shellcheck disable=SC2086
-system_packages ca-certificates $QT_LIBRARIES
+system_packages ca-certificates $QT_LIBRARIES $WINDOW_LIBRARIES $STORY_PACKAGES
 find_python
 python_environment "[dev]"
 

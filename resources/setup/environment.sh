@@ -9,6 +9,8 @@ PYTHON_ENV=${TURNDESK_VENV:-$ROOT/.venv}
 QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1"
 # … and these for a window on an X11 display.
 WINDOW_LIBRARIES="libxcb-cursor0 libxkbcommon-x11-0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0"
+# What the stories of tests/stories need besides: a server without a screen, a window manager, hands.
+STORY_PACKAGES="xvfb openbox xdotool x11-utils x11-xkb-utils libxtst6"
 
 say() { printf '%s\n' "$*" >&2; }
 

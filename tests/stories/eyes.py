@@ -1,0 +1,213 @@
+"""The real ``turndesk`` with somebody behind its eyes: ``python -m tests.stories.eyes ARGUMENTS``.
+
+A thread tells every change of the machine as a line of JSON. What is asked on standard input is answered by
+Qt's own thread, as it shows things: ``{"ask": "screen"}``; and what a hand cannot do from outside is done
+there: ``{"ask": "freeze", "seconds": 2}``, and touches: ``{"ask": "touch", "fingers": [[1, "press", 9, 8]]}``.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QObject, QPoint, QRectF, Qt, Signal, Slot
+from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+
+from app.cli.main import console
+from app.desk.desk import Desk
+from app.screen.panel import Panel
+from app.screen.window import MainWindow
+from drivers.simulated.machine import SimMachine
+
+LOOK = 0.01  # s
+Told = dict[str, Any]
+_telling = threading.Lock()
+
+
+def tell(line: Told) -> None:
+    """A line of JSON to whoever listens."""
+    with _telling:
+        sys.stdout.write(json.dumps(line) + "\n")
+        sys.stdout.flush()
+
+
+class Painted:
+    """Which text stands where, by the widget on which it was drawn last."""
+
+    def __init__(self) -> None:
+        self.texts: dict[QWidget, list[tuple[str, QRectF]]] = {}
+        self._draw, self._paint = QPainter.drawText, Panel.paintEvent
+
+    def attend(self) -> None:
+        """From now on every drawn text is noted."""
+        draw, paint, texts = self._draw, self._paint, self.texts
+
+        def drawing(painter: QPainter, *what: Any) -> Any:
+            device = painter.device()
+            if isinstance(device, QWidget):
+                texts.setdefault(device, []).append((str(what[-1]), _box(painter, what)))
+            return draw(painter, *what)
+
+        def painting(panel: Panel, event: QPaintEvent) -> None:
+            texts[panel] = []
+            paint(panel, event)
+
+        setattr(QPainter, "drawText", drawing)  # noqa: B010 - Qt's own method, for this process alone
+        setattr(Panel, "paintEvent", painting)  # noqa: B010
+
+
+def _box(painter: QPainter, what: tuple[Any, ...]) -> QRectF:
+    first, text = what[0], str(what[-1])
+    if isinstance(first, int | float):
+        metrics = QFontMetricsF(painter.font())
+        wide = metrics.horizontalAdvance(text)
+        box = QRectF(float(first), float(what[1]) - metrics.capHeight(), wide, metrics.capHeight())
+    else:
+        box = QRectF(first)
+    return painter.worldTransform().mapRect(box)
+
+
+class Eyes(QObject):
+    """Looks, and tells."""
+
+    asked = Signal(dict)
+
+    def __init__(self, painted: Painted) -> None:
+        super().__init__()
+        self._painted = painted
+        self._touch = QTest.createTouchDevice()
+        self.asked.connect(self.answer, Qt.ConnectionType.QueuedConnection)
+
+    # --- threads of their own --------------------------------------------------------------------------
+
+    def watch(self) -> None:
+        """Tell what the machine does, also while the screen is frozen."""
+        before: Told = {}
+        while True:
+            desk = _desk()
+            now = _machine(desk) if desk is not None else {}
+            if now and now != before:
+                before = now
+                tell({"machine": now, "at": time.monotonic()})
+            time.sleep(LOOK)
+
+    def listen(self) -> None:
+        """Hand on what is asked."""
+        for line in sys.stdin:
+            self.asked.emit(json.loads(line))
+
+    # --- in Qt's thread --------------------------------------------------------------------------------
+
+    @Slot(dict)
+    def answer(self, asked: Told) -> None:
+        """What is asked for, done or seen."""
+        doing: dict[str, Callable[[Told], object]] = {
+            "screen": lambda _asked: self._screen(),
+            "freeze": lambda told: time.sleep(told["seconds"]),
+            "touch": self._finger,
+        }
+        tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
+
+    def _screen(self) -> Told:
+        window = _window()
+        if window is None or window.frame is None:
+            return {}
+        frame, focus = window.frame, QApplication.focusWidget()
+        return {
+            "page": frame.page.NAME,
+            "state": frame.title.state,
+            "prompt": frame.prompt.text,
+            "active": window.isActiveWindow(),
+            "minimised": window.isMinimized(),
+            "field": _field(focus),
+            "texts": [each for widget in window.findChildren(QWidget) for each in self._texts(widget)],
+        }
+
+    def _texts(self, widget: QWidget) -> list[tuple[str, float, float, str]]:
+        """Text, the middle of its place on the screen, and on what kind of widget."""
+        if not widget.isVisible():
+            return []
+        corner, kind = widget.mapToGlobal(QPoint(0, 0)), type(widget).__name__
+        texts = [(text, box.center()) for text, box in self._painted.texts.get(widget, [])]
+        if _field(widget):
+            texts.append((_field(widget), QRectF(widget.rect()).center()))
+        return [(text, corner.x() + at.x(), corner.y() + at.y(), kind) for text, at in texts]
+
+    def _finger(self, told: Told) -> None:
+        """XTEST has no touch: the fingers are put into Qt where its platform would put them."""
+        window = _window()
+        assert window is not None
+        event = QTest.touchEvent(window, self._touch, False)
+        for finger, do, x, y in told["fingers"]:
+            at = window.mapFromGlobal(QPoint(round(x), round(y)))
+            getattr(event, do)(finger, at, window)
+        event.commit()
+
+
+def _field(widget: QWidget | None) -> str:
+    if isinstance(widget, QLineEdit):
+        return widget.text()
+    return widget.toPlainText() if isinstance(widget, QPlainTextEdit) else ""
+
+
+def _window() -> MainWindow | None:
+    found = [each for each in QApplication.topLevelWidgets() if isinstance(each, MainWindow)]
+    return found[0] if found else None
+
+
+def _desk() -> Desk | None:
+    window = _WINDOW[0] if _WINDOW else None
+    return window.frame.desk if window is not None and window.frame is not None else None
+
+
+_WINDOW: list[MainWindow] = []
+
+
+def _machine(desk: Desk) -> Told:
+    """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
+    shot = desk.snapshot()
+    station = desk.station
+    true = station.true_position() if isinstance(station, SimMachine) else shot.actual
+    return {
+        "state": shot.state.value,
+        "line": shot.line,
+        "parts": shot.parts,
+        "actual": [round(each, 4) for each in shot.actual],
+        "slides": [round(each, 4) for each in true],
+        "rpm": round(shot.rpm_actual),
+        "outputs": sorted(shot.outputs),
+        "feed_override": round(shot.feed_override, 3),
+        "single_block": shot.single_block,
+        "alarms": [[alarm.number, alarm.text] for alarm in shot.alarms],
+        "refused": shot.start_refused,
+        "homed": list(shot.homed),
+    }
+
+
+def main() -> int:
+    app = QApplication(["turndesk"])
+    painted = Painted()
+    painted.attend()
+    eyes = Eyes(painted)
+    made = MainWindow.__init__
+
+    def making(window: MainWindow, *what: Any) -> None:
+        made(window, *what)
+        _WINDOW.append(window)
+
+    setattr(MainWindow, "__init__", making)  # noqa: B010
+    for each in (eyes.watch, eyes.listen):
+        threading.Thread(target=each, daemon=True).start()
+    status = console()
+    del app
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

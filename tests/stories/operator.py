@@ -1,0 +1,318 @@
+"""An operator in front of the real window: real keys, a real pointer, and eyes."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from core.store.store import Store
+from tests.stories.patience import PATIENCE, throughout, until
+from tests.stories.x11 import MODIFIERS, Server
+
+INCH = 25.4  # mm
+NEAR = 0.01  # mm: what a slide at rest may tremble
+Told = dict[str, Any]
+
+
+class Operator:
+    """What he does goes through the X server; what he sees comes from the process, the store and its files.
+
+    Keys are called as X calls them (``F11``, ``Pause``, ``Return``, ``h``); modifiers are ``shift``,
+    ``ctrl``, ``alt``, ``meta`` and ``altgr``.
+    """
+
+    def __init__(self, server: Server, home: Path, *arguments: str) -> None:
+        self.server, self.home = server, home
+        self.seen: list[Told] = []  # every change of the machine since the start
+        self._answers: dict[int, Any] = {}
+        self._asked = 0
+        self._told = threading.Condition()
+        environment = server.environment | {"TURNDESK_HOME": str(home)}
+        self._errors = (home.parent / "stderr.txt").open("wb")
+        self.popen = subprocess.Popen(
+            [sys.executable, "-m", "tests.stories.eyes", *arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+            env=environment,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.popen.stdout is not None
+        for line in self.popen.stdout:
+            told = json.loads(line)
+            with self._told:
+                if "machine" in told:
+                    self.seen.append(told["machine"])
+                else:
+                    self._answers[told["answer"]] = told["is"]
+                self._told.notify_all()
+
+    # --- eyes ------------------------------------------------------------------------------------------
+
+    def ask(self, what: str, **more: object) -> Any:
+        """Ask the process, and wait for its answer."""
+        number = self.post(what, **more)
+        with self._told:
+            there = self._told.wait_for(lambda: number in self._answers or self._ended, PATIENCE)
+            assert there, f"no answer to {what}"
+            assert number in self._answers, f"the process has ended with {self.popen.poll()}: {self.errors}"
+            return self._answers.pop(number)
+
+    def post(self, what: str, **more: object) -> int:
+        """Ask, and do not wait; the number of the answer."""
+        self._asked += 1
+        assert self.popen.stdin is not None
+        self.popen.stdin.write(json.dumps({"ask": what, "number": self._asked, **more}).encode() + b"\n")
+        self.popen.stdin.flush()
+        return self._asked
+
+    def answered(self, number: int) -> bool:
+        """Whether what was asked is done."""
+        return number in self._answers
+
+    @property
+    def _ended(self) -> bool:
+        return self.popen.poll() is not None
+
+    @property
+    def errors(self) -> str:
+        """What the process said on standard error."""
+        return (self.home.parent / "stderr.txt").read_text()
+
+    @property
+    def screen(self) -> Told:
+        """Page, state, prompt, the field with the keyboard, and every text with its place."""
+        return dict(self.ask("screen"))
+
+    @property
+    def prompt(self) -> str:
+        """The prompt line."""
+        return str(self.screen.get("prompt", ""))
+
+    @property
+    def page(self) -> str:
+        """The page in front."""
+        return str(self.screen.get("page", ""))
+
+    @property
+    def machine(self) -> Told:
+        """The machine of now; ``slides``: where they really stand, mm from home."""
+        return self.seen[-1] if self.seen else {}
+
+    @property
+    def state(self) -> str:
+        """The state of the machine, as the control has it."""
+        return str(self.machine.get("state", ""))
+
+    @property
+    def slides(self) -> list[float]:
+        """Where the slides really stand, mm from home."""
+        return list(self.machine["slides"])
+
+    @property
+    def status(self) -> Told:
+        """``status.json``."""
+        path = self.home / "status.json"
+        return dict(json.loads(path.read_text())) if path.exists() else {}
+
+    @contextmanager
+    def store(self) -> Iterator[Store]:
+        """What is kept."""
+        with Store.open(self.home, read_only=True) as store:
+            yield store
+
+    def events(self, *kinds: str) -> list[str]:
+        """The texts of the event log, the oldest first."""
+        with self.store() as store:
+            return [event.text for event in reversed(store.events(limit=1000, kinds=kinds))]
+
+    def shows(self, text: str) -> bool:
+        """Whether this stands somewhere on the screen."""
+        screen = self.screen
+        return any(text in each for each, *_place in screen.get("texts", ())) or text in screen.get(
+            "prompt", ""
+        )
+
+    # --- waiting ---------------------------------------------------------------------------------------
+
+    def until(self, true: Callable[[], bool], what: object = "") -> None:
+        """Wait for it."""
+        until(true, lambda: f"{what} is not so: {self.machine}, {self.last_words}")
+
+    def keeps(self, true: Callable[[], bool], seconds: float, what: object = "") -> None:
+        """It stays so for as long."""
+
+        def look() -> None:
+            assert true(), f"{what} has not stayed so: {self.machine}, {self.last_words}"
+
+        throughout(seconds, look)
+
+    def during(self, seconds: float) -> None:
+        """A hand does what it does for as long."""
+        throughout(seconds, lambda: None)
+
+    def sees(self, text: str) -> None:
+        """Wait for a text on the screen."""
+        self.until(lambda: self.shows(text), f"{text!r} on the screen")
+
+    def reaches(self, *states: str) -> None:
+        """Wait for a state of the machine."""
+        self.until(lambda: self.state in states, states)
+
+    def opens(self, page: str) -> None:
+        """Wait for a page."""
+        self.until(lambda: self.page == page, f"page {page}")
+
+    def rests(self, seconds: float = 0.5) -> list[float]:
+        """Wait until the slides stand, and stay; where."""
+        at = [self.slides]
+
+        def still() -> bool:
+            before, at[0] = at[0], self.slides
+            self.during(0.1)
+            return max(abs(a - b) for a, b in zip(before, self.slides, strict=True)) < NEAR
+
+        self.until(still, "rest")
+        stands = self.slides
+        self.keeps(lambda: self.is_at(stands), seconds, f"rest at {stands}")
+        return stands
+
+    def is_at(self, place: Sequence[float]) -> bool:
+        """Whether the slides are there."""
+        return all(abs(a - b) < NEAR for a, b in zip(place, self.slides, strict=False))
+
+    @property
+    def last_words(self) -> Told:
+        """What to know when something has gone wrong."""
+        if self._ended:
+            return {"ended": self.popen.poll(), "stderr": self.errors}
+        screen = self.screen
+        return {key: screen.get(key) for key in ("page", "state", "prompt", "field", "active")}
+
+    # --- hands -----------------------------------------------------------------------------------------
+
+    def key(self, key: str | int, *modifiers: str) -> None:
+        """A key goes down and comes up; modifiers before and after it."""
+        held = [MODIFIERS[each] for each in modifiers]
+        self.server.down(*held, key)
+        self.server.up(key, *reversed(held))
+
+    def keys(self, *keys: str | int) -> None:
+        """One after the other."""
+        for key in keys:
+            self.key(key)
+
+    def down(self, *keys: str | int) -> None:
+        """Keys go down and stay; the server repeats the last one."""
+        self.server.down(*keys)
+
+    def up(self, *keys: str | int) -> None:
+        """They come up."""
+        self.server.up(*keys)
+
+    def holds(self, key: str | int, seconds: float) -> None:
+        """A key is held for as long."""
+        self.down(key)
+        self.during(seconds)
+        self.up(key)
+
+    def writes(self, text: str) -> None:
+        """Typed where the keyboard is."""
+        self.server.write(text)
+
+    def enters(self, text: str) -> None:
+        """Typed, and Return."""
+        self.writes(text)
+        self.key("Return")
+
+    def find(self, text: str, on: str = "") -> tuple[float, float]:
+        """Where this stands on the screen: exactly this, or else something with it; ``on`` a kind of widget."""
+        found: list[tuple[float, float]] = []
+
+        def there() -> bool:
+            texts = [each for each in self.screen.get("texts", ()) if on in {"", each[3]} and text in each[0]]
+            texts.sort(key=lambda each: each[0] != text)
+            found.extend((x, y) for _text, x, y, _on in texts)
+            return bool(found)
+
+        self.until(there, f"{text!r} on the screen")
+        return found[0]
+
+    def points(self, text: str, on: str = "") -> None:
+        """The pointer on a text."""
+        self.server.point(*self.find(text, on))
+
+    def clicks(self, text: str, on: str = "") -> None:
+        """The left button of the mouse on a text."""
+        self.points(text, on)
+        self.server.button("left", down=True)
+        self.server.button("left", down=False)
+
+    def touches(self, *texts: str, on: str = "") -> None:
+        """As many fingers, each on a text; they come up together (inside Qt: XTEST has no touch)."""
+        at = [self.find(text, on) for text in texts]
+        for do in ("press", "release"):
+            self.ask("touch", fingers=[(number, do, *place) for number, place in enumerate(at)])
+
+    def freezes(self, seconds: float) -> int:
+        """Qt's thread does nothing for as long; ``answered`` tells when it is over."""
+        return self.post("freeze", seconds=seconds)
+
+    def stops_the_process(self) -> None:
+        """As a debugger or a suspended computer stops it: every thread of it."""
+        os.kill(self.popen.pid, signal.SIGSTOP)
+
+    def lets_it_go_on(self) -> None:
+        """And on."""
+        os.kill(self.popen.pid, signal.SIGCONT)
+
+    # --- what everybody does ---------------------------------------------------------------------------
+
+    def arrives(self) -> None:
+        """In front of a desk that is open and has the keyboard."""
+        self.until(lambda: bool(self.seen) and bool(self.screen.get("active")), "the window")
+
+    def drives_on(self) -> None:
+        """D, and the machine is ready."""
+        self.reaches("DRIVES OFF")
+        self.key("d")
+        self.reaches("READY")
+
+    def cycle_start(self) -> None:
+        """Both palms at once, and hands off; they are held as long as a relay wants it."""
+        self.down("F11", "F12")
+        self.during(0.15)
+        self.up("F11", "F12")
+
+    def starts(self) -> None:
+        """Both palms as soon as the prompt offers it."""
+        self.until(lambda: "TO START" in self.prompt, "ready to start")
+        self.cycle_start()
+        self.reaches("RUNNING", "WAITING")
+
+    # --- the end ---------------------------------------------------------------------------------------
+
+    def leaves(self) -> None:
+        """Whatever is left of the process is killed."""
+        self.server.let_go()
+        if not self._ended:
+            os.kill(self.popen.pid, signal.SIGKILL)
+        self.popen.wait()
+        self._reader.join()
+        for each in (self.popen.stdin, self.popen.stdout, self._errors):
+            assert each is not None
+            try:
+                each.close()
+            except BrokenPipeError:
+                continue  # what was still to be asked

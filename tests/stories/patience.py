@@ -1,0 +1,27 @@
+"""Waiting: for what shall be, with a deadline; and looking for so long that something stays as it is."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+PATIENCE = 60.0  # s for what comes at once on a computer that is not busy
+LOOK = 0.02  # s
+
+
+def until(ready: Callable[[], bool], what: Callable[[], object], patience: float = PATIENCE) -> None:
+    """Wait for it; ``what`` is told when it does not come."""
+    tick, end = threading.Event(), time.monotonic() + patience
+    while not ready():
+        assert time.monotonic() < end, what()
+        tick.wait(LOOK)
+
+
+def throughout(seconds: float, look: Callable[[], None]) -> None:
+    """Look again and again for so long; ``look`` raises when it sees what must not be."""
+    tick, end = threading.Event(), time.monotonic() + seconds
+    while time.monotonic() < end:
+        look()
+        tick.wait(LOOK)
+    look()
