@@ -12,8 +12,8 @@ A story in ten lines::
         assert 0 < operator.rests()[0] < .5 * 25.4  # mm, of the simulated slides themselves
         operator.until(lambda: operator.status["execution"] == "FEED_HOLD", "status.json")
 
-``story.begins(program, machine=…, changes=…, tools=…)`` starts the process in a folder of its own, under a server
-and a window manager of its own; ``tests.stories.operator`` says what an operator can do and see.
+``story.begins(program, machine=…, changes=…, tools=…)`` starts the process in a folder of its own, under
+a server and a window manager of its own; ``tests.stories.operator`` says what an operator can do and see.
 Nothing sleeps: ``until`` waits for what shall be, ``keeps`` looks for so long that something stays,
 ``during`` is how long a hand holds. What is seen comes from a thread in the process (``tests.stories.eyes``);
 the product knows nothing of them. A story that fails leaves a picture of the screen in ``story-failures``.

@@ -2,7 +2,7 @@
 
 A thread tells every change of the machine as a line of JSON. What is asked on standard input is answered by
 Qt's own thread, as it shows things: ``{"ask": "screen"}``; and what a hand cannot do from outside is done
-there: ``{"ask": "freeze", "seconds": 2}``, and touches: ``{"ask": "touch", "fingers": [[1, "press", 9, 8]]}``.
+there: ``{"ask": "freeze", "seconds": 2}``, or fingers that touch: ``{"ask": "touch", "fingers": …}``.
 """
 
 from __future__ import annotations

@@ -237,7 +237,7 @@ class Operator:
         self.key("Return")
 
     def find(self, text: str, on: str = "") -> tuple[float, float]:
-        """Where this stands on the screen: exactly this, or else something with it; ``on`` a kind of widget."""
+        """Where this stands on the screen, whole or in something longer; ``on``: a kind of widget."""
         found: list[tuple[float, float]] = []
 
         def there() -> bool:
