@@ -67,7 +67,7 @@ class Execution:
             case State.IDLE:
                 if self._completed:
                     return COMPLETED
-                return STOPPED if snapshot.interrupted else READY
+                return STOPPED if snapshot.interrupted_line else READY
             case state:
                 return _BY_STATE[state]
 

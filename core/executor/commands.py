@@ -156,6 +156,23 @@ class ForceOutput:
 
 
 @dataclass(frozen=True, slots=True)
+class ConfirmStart:
+    """The operator has read which job was interrupted (its ``at``), and means to start at the first line.
+
+    It counts for the next start, for a minute, and until the machine does anything else.
+    """
+
+    at: str
+
+
+@dataclass(frozen=True, slots=True)
+class PartsMade:
+    """So many parts of the loaded program are made; for the number of the part that is under way."""
+
+    parts: int
+
+
+@dataclass(frozen=True, slots=True)
 class Prepare:
     """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
 
@@ -188,5 +205,7 @@ Command = (
     | UseOffsets
     | SpindleStop
     | ForceOutput
+    | ConfirmStart
+    | PartsMade
     | Prepare
 )

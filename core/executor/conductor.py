@@ -13,6 +13,8 @@ from core.executor.feed import Pass
 from core.executor.handwheel import Handwheel
 from core.executor.homing import Homing
 from core.executor.inherited import at_power_up
+from core.executor.interrupted import CLOSED, ESTOP, Interrupted
+from core.executor.interruption import Note
 from core.executor.job import Job
 from core.executor.rounds import Rounds
 from core.executor.snapshot import Event, State
@@ -25,9 +27,15 @@ from core.interpreter.setup import Setup
 class Conductor:
     """Everything about one machine that outlives a tick. Used by the executor's thread alone."""
 
-    def __init__(self, bench: Bench, passes: Callable[[Job, Setup], Pass]) -> None:
+    def __init__(
+        self,
+        bench: Bench,
+        passes: Callable[[Job, Setup], Pass],
+        note: Note,
+        left: Interrupted | None,
+    ) -> None:
         self._bench = bench
-        self.rounds = Rounds(bench, passes, self.enter)
+        self.rounds = Rounds(bench, passes, self.enter, note, left)
         self.standing = self.rounds.standing
         self.standing.modal = at_power_up(bench)
         self.counters = self.rounds.counters
@@ -118,7 +126,7 @@ class Conductor:
         if pressed and self.state is not State.ESTOP:
             self.supervisor.react(Reaction.OFF)
             self._giving_up = False
-            self.rounds.forget()
+            self.rounds.forget(ESTOP)
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
             self.enter(State.DISABLED)
@@ -169,7 +177,7 @@ class Conductor:
         self.supervisor.react(reaction)
         self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
         self._giving_up = False
-        self.rounds.forget()
+        self.rounds.forget(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
         bench.on_event(Event(bench.now, "alarm", f"{alarm.text}: {alarm.cause}", alarm.line))
@@ -183,7 +191,7 @@ class Conductor:
     def shut(self) -> None:
         """Nothing is left moving or switched on."""
         self.supervisor.react(Reaction.OFF)
-        self.rounds.forget()
+        self.rounds.forget(CLOSED)
         if self.state is not State.ESTOP:
             self.standing.state = State.DISABLED
 

@@ -13,6 +13,8 @@ from core.executor.conductor import Conductor
 from core.executor.feed import Pass
 from core.executor.guard import Guard
 from core.executor.interpret import interpret
+from core.executor.interrupted import Interrupted
+from core.executor.interruption import Note
 from core.executor.job import Job
 from core.executor.orders import Orders
 from core.executor.publish import Publisher
@@ -33,10 +35,15 @@ _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
+def _kept_nowhere(_what: Interrupted | None) -> None:
+    """Nothing outlives this executor."""
+
+
 class Executor:
     """``post`` and ``snapshot`` may be used from any thread, ``tick`` from one only.
 
     ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
+    ``note`` is told what job a power cut would leave interrupted now, ``left`` is what the last one left.
     """
 
     def __init__(
@@ -45,6 +52,8 @@ class Executor:
         ports: MachinePorts,
         on_event: Callable[[Event], None],
         passes: Callable[[Job, Setup], Pass] = interpret,
+        note: Note = _kept_nowhere,
+        left: Interrupted | None = None,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
@@ -53,7 +62,7 @@ class Executor:
             machine, ports, on_event, spindle, ports.clock.now(), ports.axes.sample(), dict(ports.io.inputs())
         )
         self._station = StationWatch()
-        self._conductor = Conductor(self._bench, passes)
+        self._conductor = Conductor(self._bench, passes, note, left)
         self._orders = Orders(self._bench, self._conductor, self._station)
         self._publisher = Publisher()
         self._told = 1.0

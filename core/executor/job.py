@@ -27,6 +27,7 @@ class Job:
     reading: Reading = field(compare=False, repr=False)
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
     carries: frozenset[str] = frozenset()  # what the program has from the job before it
+    text_digest: str = ""  # of the text alone
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
 
 
@@ -61,9 +62,12 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
         [(each.name, each.text) for each in source.subprograms],
     )
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
+    alone = text.hexdigest()
     text.update(repr(circumstances).encode())
     reading = whole.reading if whole is not None else Reading(source, strict=setup.strict)
-    return Job(source, setup, text.hexdigest(), reading, frozenset(setup.tools), carried(source), part_of)
+    return Job(
+        source, setup, text.hexdigest(), reading, frozenset(setup.tools), carried(source), alone, part_of
+    )
 
 
 def outdated(job: Job, left: Modal) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.executor.bench import Bench
-from core.executor.commands import GiveProof, LoadJob, Prepare, Renew
+from core.executor.commands import ConfirmStart, GiveProof, LoadJob, PartsMade, Prepare, Renew
 from core.executor.conductor import Conductor
 from core.executor.snapshot import Starts
 from core.executor.states import CYCLE
@@ -18,12 +18,16 @@ class Loading:
         self._bench = bench
         self._conductor = conductor
 
-    def obey(self, command: LoadJob | GiveProof | Renew | Prepare) -> None:
+    def obey(self, command: LoadJob | GiveProof | Renew | Prepare | ConfirmStart | PartsMade) -> None:
         """Do it, or say why not."""
         if isinstance(command, GiveProof):
             self._conductor.standing.proof = command.proof
         elif isinstance(command, Renew):
             self._renew(command)
+        elif isinstance(command, PartsMade):
+            self._conductor.counters.made = max(0, command.parts)
+        elif isinstance(command, ConfirmStart):
+            self._confirm(command)
         elif self._conductor.state in CYCLE:
             self._bench.say("refused", _UNDER_WAY)
         elif isinstance(command, LoadJob):
@@ -34,6 +38,7 @@ class Loading:
     def _load(self, command: LoadJob) -> None:
         """A restart belonged to the program before; an open SEARCHTO or MDI stays open."""
         standing = self._conductor.standing
+        self._conductor.rounds.interruption.loaded(command.job)
         standing.job, standing.proof, standing.start_refused = command.job, command.proof, ""
         self._conductor.rounds.renewal.forget()
         if standing.starts is Starts.RESTART:
@@ -48,6 +53,11 @@ class Loading:
             self._bench.say("refused", why)
         elif self._conductor.state not in CYCLE:
             rounds.renewal.take_up(standing)
+
+    def _confirm(self, command: ConfirmStart) -> None:
+        why = self._conductor.rounds.interruption.answer(command.at)
+        self._conductor.standing.start_refused = ""
+        self._bench.say("refused" if why else "confirmed", why or "a start at the first line is meant")
 
     def _prepare(self, command: Prepare) -> None:
         standing = self._conductor.standing

@@ -8,6 +8,7 @@ from core.executor.bench import Bench
 from core.executor.by_hand import ByHand
 from core.executor.commands import (
     Command,
+    ConfirmStart,
     CycleStart,
     EnableDrives,
     FeedHold,
@@ -19,6 +20,7 @@ from core.executor.commands import (
     JogStep,
     JogStop,
     LoadJob,
+    PartsMade,
     Prepare,
     Renew,
     Reset,
@@ -63,7 +65,7 @@ class Orders:
             simple()
             return
         match command:
-            case LoadJob() | GiveProof() | Renew() | Prepare():
+            case LoadJob() | GiveProof() | Renew() | Prepare() | ConfirmStart() | PartsMade():
                 self._loading.obey(command)
             case SetSwitch(name=name, on=on):
                 self._switch(name, on)

@@ -16,34 +16,24 @@ class Piece:
     """
 
     def __init__(self) -> None:
-        self._broken_off = ("", 0)  # program and line
         self._begun = 0  # blocks of it without a gap
         self._whole = True  # nothing is left out by what runs now
         self.restarted = False
 
-    def begin(self, job: Job) -> None:
-        """What is going to run."""
+    def begin(self, job: Job, begun: int) -> None:
+        """What is going to run; ``begun`` blocks of the piece were begun before it was interrupted."""
         begin = job.setup.begin
         self.restarted = begin is not None
-        if begin is None or self._broken_off[0] != job.source.name:
-            self._begun = 0
+        self._begun = 0 if begin is None else begun
         self._whole = begin is None or begin.checkpoint.blocks <= self._begun
-        self._broken_off = ("", 0)
 
-    def break_off(self, program: str, line: int, blocks: int) -> None:
-        """It was given up at this line, with so many blocks begun."""
-        self._broken_off = (program, line)
-        if self._whole:
-            self._begun = max(self._begun, blocks)
-
-    @property
-    def broken_off(self) -> tuple[str, int]:
-        """Program and line where it was given up; nobody, 0: it was not."""
-        return self._broken_off
+    def begun_to(self, block: int) -> int:
+        """How many blocks are begun without a gap when what runs has come to this one."""
+        return max(self._begun, block) if self._whole else self._begun
 
     def end(self) -> None:
         """The program has come to its end: what follows is another piece."""
-        self._broken_off, self._begun, self._whole, self.restarted = ("", 0), 0, True, False
+        self._begun, self._whole, self.restarted = 0, True, False
 
     @property
     def why_none(self) -> str:
@@ -75,5 +65,6 @@ class PartCount:
             self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
         else:
             counters.parts += 1
+            counters.made += 1
             self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
         self.piece.end()

@@ -81,6 +81,7 @@ class Publisher:
             cycle_elapsed=counters.cycle,
             last_cycle=counters.last_cycle,
             parts=counters.parts,
+            made=counters.made,
             ends=counters.ends,
             underruns=counters.underruns,
             max_following_error=conductor.supervisor.max_following_error,
@@ -88,7 +89,8 @@ class Publisher:
             starts=standing.starts,
             prepared=standing.prepared.digest if standing.prepared else "",
             lines=counters.lines,
-            interrupted=_interrupted(conductor),
+            interrupted=standing.interrupted,
+            confirmed=conductor.rounds.interruption.answered,
             tool_open=standing.tool_open,
             start_refused=standing.start_refused,
             wheel=conductor.wheel.axis,
@@ -137,12 +139,6 @@ def _next_text(cycle: Cycle | None) -> str:
     """Of the block that comes after the one that is played."""
     following = cycle.next_block if cycle else None
     return following.text if following else ""
-
-
-def _interrupted(conductor: Conductor) -> int:
-    """The line at which the loaded program was given up."""
-    job, (name, line) = conductor.standing.job, conductor.rounds.parts.piece.broken_off
-    return line if job is not None and job.source.name == name else 0
 
 
 def _turns(block: Block | None, modal: Modal) -> bool:

@@ -11,6 +11,8 @@ from core.executor.cycle import Cycle
 from core.executor.feed import Pass
 from core.executor.inherited import as_it_is, given_up, interrupted
 from core.executor.interpret import circumstances
+from core.executor.interrupted import GIVEN_UP, Interrupted
+from core.executor.interruption import Interruption, Note
 from core.executor.job import Job, outdated
 from core.executor.mover import Mover
 from core.executor.moving import Moving
@@ -30,7 +32,12 @@ class Rounds:
     """The cycle under way, if any, and what stands between two of them. On the executor's thread alone."""
 
     def __init__(
-        self, bench: Bench, passes: Callable[[Job, Setup], Pass], enter: Callable[[State], None]
+        self,
+        bench: Bench,
+        passes: Callable[[Job, Setup], Pass],
+        enter: Callable[[State], None],
+        note: Note,
+        left: Interrupted | None,
     ) -> None:
         self._bench = bench
         self._passes = passes
@@ -39,6 +46,7 @@ class Rounds:
         self.standing = Standing()
         self.parts = PartCount(bench)
         self.counters = self.parts.counters
+        self.interruption = Interruption(bench, self.standing, self.parts, note, left)
         self.renewal = Renewal(bench)
         self.cycle: Cycle | None = None
         self._source: Pass | None = None
@@ -47,7 +55,7 @@ class Rounds:
 
     def refusal(self, state: State) -> str:
         """Why what Cycle Start would begin may not begin; empty when it may."""
-        return prepared.refusal(self._bench, state, self.standing)
+        return prepared.refusal(self._bench, state, self.standing) or self.interruption.refusal
 
     def begin(self) -> None:
         """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
@@ -61,7 +69,8 @@ class Rounds:
             standing.starts = Starts.PROGRAM
         standing.prepared = standing.prepared_proof = None
         if not self._line:
-            self.parts.piece.begin(job)
+            self.parts.piece.begin(job, self.interruption.begun)
+            self.interruption.begin(job.setup.begin)
         self._open(job)
         self._enter(State.RUN)
         bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
@@ -80,19 +89,22 @@ class Rounds:
             return False
         said = "the line was given up by reset" if self._line else "program given up by reset"
         kind = "mdi" if self._line else "end"
-        self.forget()
+        self.forget(GIVEN_UP)
         self._enter(State.IDLE)
         self._bench.say(kind, said)
         return True
 
-    def forget(self) -> None:
-        """What an interrupted program leaves in force is what M30 would have left; MDI keeps its modes."""
-        cycle, job = self.cycle, self.standing.job
+    def forget(self, why: str) -> None:
+        """What an interrupted program leaves in force is what M30 would have left; MDI keeps its modes.
+
+        ``why`` is in words what interrupts it.
+        """
+        cycle = self.cycle
         if cycle is None:
             self.mover.forget()
             return
-        if not (self._line or self._between) and job is not None and cycle.current is not None:
-            self.parts.piece.break_off(job.source.name, cycle.current.line, cycle.current.n)
+        if not (self._line or self._between):
+            self.interruption.broke_off(cycle.current, why)
         self._put_away(interrupted(cycle.modal) if self._line else given_up(cycle.modal))
 
     def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
@@ -113,6 +125,7 @@ class Rounds:
 
     def look(self) -> None:
         """Between two cycles: what stands is what the machine really does; the next part may begin."""
+        self.interruption.look(None if self._line or self._between else self.cycle)
         if self.cycle is None:
             self.standing.modal = as_it_is(self.standing.modal, self._bench)
         elif self._between and self.standing.state in {State.RUN, State.WAIT}:
@@ -137,6 +150,7 @@ class Rounds:
             self._line_ended()
             return
         self.parts.ended()
+        self.interruption.finished()
         self._between = end is not None and end.reset and self._bench.switches.cycle_repeat
         if self.cycle is not None and self._between:
             self._go_round(self.cycle)
@@ -157,6 +171,7 @@ class Rounds:
         self._between = False
         self.counters.cycle = 0.0
         assert self.standing.job is not None
+        self.interruption.begin(None)
         self._open(self.standing.job)
         self._enter(State.RUN)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from core.executor.interrupted import Interrupted
 from core.interpreter.modal import Modal
 from core.interpreter.swivel import Swivel
 
@@ -95,18 +96,26 @@ class Snapshot:
     cycle_elapsed: float = 0.0  # of this cycle, stops not counted
     last_cycle: float = 0.0
     parts: int = 0  # completed and counted since the executor was started
+    made: int = 0  # of the loaded program, as it was told with ``PartsMade`` and counted since
     ends: int = 0  # programs that came to their end, counted or not
     underruns: int = 0
     max_following_error: float = 0.0
     proof_wanted: bool = False  # a job is loaded that no proof covers
     starts: Starts = Starts.PROGRAM  # what Cycle Start begins
     prepared: str = ""  # digest of the line or restart that Cycle Start would begin
-    interrupted: int = 0  # last line of the loaded program when it was given up, 0: it was not
+    interrupted: Interrupted | None = None  # a program that did not come to its end
+    confirmed: bool = False  # that a start at the first line is meant all the same
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     start_refused: str = ""  # why the last Cycle Start did nothing
     wheel: str = ""  # axis that the handwheel moves, empty for none
     wheel_ended: str = ""  # why the control has taken the handwheel away
+
+    @property
+    def interrupted_line(self) -> int:
+        """The line at which the loaded program was interrupted, 0: it was not."""
+        found = self.interrupted
+        return found.line if found is not None and found.program == self.program else 0
 
     @property
     def tip(self) -> tuple[float, float]:
@@ -120,7 +129,7 @@ class Event:
 
     t: float
     # state, alarm, start, restart, mdi, end, part, uncounted, stop,
-    # refused, override, switch, force, load, offsets
+    # interrupted, cleared, refused, override, switch, force, load, offsets
     kind: str
     text: str
     line: int = 0

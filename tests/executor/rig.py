@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 
 from app.compose.machine import control_limits
 from app.compose.simulated import simulated
-from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
+from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.feed import Pass
 from core.executor.interpret import interpret
+from core.executor.interrupted import Interrupted
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.blocks import Block
@@ -44,13 +45,19 @@ class Rig:
     clock_kind: type[StepClock] = StepClock
     made: Iterable[Block] | None = None  # run these instead of interpreting
     gear: bool = True  # whether the driver follows the spindle by itself
+    left: Interrupted | None = None  # what the last power cut left interrupted
+    notes: list[Interrupted | None] = field(
+        default_factory=list
+    )  # what a power cut would leave, as it was noted
 
     def __post_init__(self) -> None:
         self.clock = self.clock_kind()
         self.sim: Simulation = simulated(self.machine, self.clock)
         if not self.gear:
             self.sim = self.sim._replace(ports=dataclasses.replace(self.sim.ports, gear=None))
-        self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
+        self.executor = Executor(
+            self.machine, self.sim.ports, self.events.append, self._passes, self.notes.append, self.left
+        )
         self.executor.tick()
 
     def _passes(self, job: Job, setup: Setup) -> Pass:
@@ -96,7 +103,13 @@ class Rig:
             self.tick()
         return self.clock.now() - began
 
-    def load(self, text: str, tools: Mapping[int, ToolOffset] | None = None, **changes: object) -> Job:
+    def load(
+        self,
+        text: str,
+        tools: Mapping[int, ToolOffset] | None = None,
+        name: str = "PART",
+        **changes: object,
+    ) -> Job:
         """Load a program with a proof that has nothing against it."""
         if self.made is not None:
             changes.setdefault("metric", self.shot.modal.metric)  # what stands in for a program needs no unit
@@ -106,7 +119,7 @@ class Rig:
             last_rapid=self.machine.manual_rapid,
             **changes,  # type: ignore[arg-type]
         )
-        job = make_job(Source("PART", text), setup)
+        job = make_job(Source(name, text), setup)
         self.post(LoadJob(job, Proof(job.digest, ())))
         return job
 
@@ -120,7 +133,13 @@ class Rig:
             self.ready()
         self.run(0.3)  # no bounce of the last start
         self.load(text, tools)
+        self.confirm()
         self.post(CycleStart())
+
+    def confirm(self) -> None:
+        """The operator has read what was interrupted, and means to begin at the first line."""
+        if self.shot.interrupted is not None:
+            self.post(ConfirmStart(self.shot.interrupted.at))
 
     def said(self, kind: str) -> list[str]:
         return [event.text for event in self.events if event.kind == kind]

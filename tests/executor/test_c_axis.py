@@ -139,6 +139,7 @@ def test_reset_in_a_plane_and_a_new_start() -> None:
     turned = rig.shot.demand[2]
     assert -45.0 < turned < 45.0
     rig.run(0.4)
+    rig.confirm()
     rig.post(CycleStart())
     rig.until(State.IDLE, State.FAULT)
     assert rig.shot.alarms == ()

@@ -174,6 +174,7 @@ def test_reset_does_not_clear_a_fault_that_stays() -> None:
     rig.post(EnableDrives())
     rig.load("G90G94F300\nX-3\nM30\n")
     rig.run(0.4)
+    rig.confirm()
     rig.post(CycleStart())
     alarm(rig, "axis")
 

@@ -264,6 +264,7 @@ def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
     stood = rig.shot.demand
     rig.run(2.0)
     assert rig.shot.demand == stood
+    rig.confirm()
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.block == 1)
     rig.until(State.IDLE)

@@ -164,13 +164,14 @@ def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
         rig.until(State.DISABLED)
         rig.ready()
     assert rig.shot.proof_wanted
-    assert rig.shot.interrupted == 5
+    assert rig.shot.interrupted_line == 5
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is State.IDLE
     new = corrected(job, -0.0254)
     rig.post(Renew(new, good(new)))
     rig.run(0.4)
+    rig.confirm()
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.line == 5)
     assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
@@ -195,7 +196,7 @@ def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
     rig.post(SetSwitch("cycle_repeat", False))
     rig.until(State.IDLE)
     assert rig.shot.parts == 2
-    assert rig.shot.interrupted == 0
+    assert rig.shot.interrupted_line == 0
 
 
 def test_reset_between_two_parts_has_broken_nothing_off() -> None:
@@ -205,7 +206,7 @@ def test_reset_between_two_parts_has_broken_nothing_off() -> None:
     rig.until(State.WAIT)
     rig.post(Reset())
     rig.until(State.IDLE)
-    assert (rig.shot.parts, rig.shot.interrupted) == (1, 0)
+    assert (rig.shot.parts, rig.shot.interrupted_line) == (1, 0)
 
 
 def test_m31_ends_the_repeating_all_the_same() -> None:

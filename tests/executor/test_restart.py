@@ -61,13 +61,13 @@ def broken_off(rig: Rig, at_z: float = -0.3) -> None:
 def test_the_line_that_was_running_is_offered_and_forgotten_when_the_part_is_done() -> None:
     rig = Rig()
     broken_off(rig)
-    assert rig.shot.interrupted == 8
+    assert rig.shot.interrupted_line == 8
     mdi(rig, "G90")
-    assert rig.shot.interrupted == 8
+    assert rig.shot.interrupted_line == 8
     restart(rig, 8)
-    assert rig.shot.interrupted == 0
+    assert rig.shot.interrupted_line == 0
     rig.until(State.IDLE)
-    assert rig.shot.interrupted == 0
+    assert rig.shot.interrupted_line == 0
     assert rig.shot.parts == 1
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from app.shopfloor.execution import Execution, mode_of
 from core.executor.snapshot import Snapshot, Starts, State
+from tests.interrupted import broken_off
 
 RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE, program="a.nc")
 
@@ -92,8 +93,8 @@ def test_a_repeated_cycle_stays_active() -> None:
 
 
 def test_a_program_that_was_given_up_is_stopped_and_not_completed() -> None:
-    given_up = replace(IDLE, interrupted=12)
-    assert told(RUN, given_up, replace(RUN, interrupted=0)) == ["ACTIVE", "STOPPED", "ACTIVE"]
+    given_up = replace(IDLE, interrupted=broken_off(program="a.nc"))
+    assert told(RUN, given_up, replace(RUN, interrupted=None)) == ["ACTIVE", "STOPPED", "ACTIVE"]
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ class SearchOpening:
         self.open, self.started = True, False
         lines = loaded.source.lines if loaded.source is not None else ()
         before = self.cursor.line if self.cursor.lines is lines else 1
-        self.cursor.show(lines, snapshot.interrupted or before)
+        self.cursor.show(lines, snapshot.interrupted_line or before)
         self._forget()
 
     def leave(self) -> None:

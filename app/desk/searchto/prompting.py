@@ -20,7 +20,7 @@ def prompt(stage: Stage, snapshot: Snapshot, trouble: str, start: str) -> str:
 
 
 def _choose(snapshot: Snapshot) -> str:
-    if not snapshot.interrupted:
+    if not snapshot.interrupted_line:
         return tr("TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE")
     words = tr("LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE")
-    return words.format(line=snapshot.interrupted)
+    return words.format(line=snapshot.interrupted_line)

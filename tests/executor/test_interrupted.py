@@ -1,0 +1,333 @@
+"""A program that breaks off is an interrupted job: noted beforehand, kept, and never begun anew unasked."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from core.executor.commands import ConfirmStart, CycleStart, FeedHold, JogStep, PartsMade, Reset, SetSwitch
+from core.executor.interrupted import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, of_plain, plain
+from core.executor.snapshot import State
+from tests.executor.lines import TOOLS, mdi, press
+from tests.executor.rig import INCH, Rig
+from tests.executor.test_restart import PART, broken_off, restart
+from tests.interrupted import broken_off as made
+
+CUT = -50.8 - 0.3 * INCH  # machine Z in the middle of line 8
+
+
+def in_the_cut(rig: Rig) -> None:
+    rig.start(PART, TOOLS)
+    rig.until_true(lambda shot: shot.line == 8 and shot.actual[1] < CUT)
+
+
+def begins(rig: Rig) -> bool:
+    """Both palms now: whether something starts."""
+    rig.run(0.4)
+    rig.post(CycleStart())
+    return rig.state is not State.IDLE
+
+
+# --- what interrupts ----------------------------------------------------------------------------------------
+
+
+def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> None:
+    rig = Rig()
+    rig.post(PartsMade(11))
+    broken_off(rig)
+    rig.run(0.5)
+    found = rig.shot.interrupted
+    assert found is not None
+    assert (found.program, found.line, found.tool, found.part, found.why) == ("PART", 8, 1, 12, ESTOP)
+    assert found.axes == ("X", "Z", "C")
+    assert found.where == pytest.approx(rig.shot.actual, abs=1e-3)  # not where the braking began
+    assert found.job == rig.shot.job
+    assert rig.said("interrupted") == ["PART line 8, T1, part 12: E-STOP"]
+
+
+def test_reset_twice_is_an_interrupted_job_too() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    assert rig.shot.interrupted is None  # a hold goes on with Cycle Start
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert rig.shot.interrupted is not None
+    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, GIVEN_UP)
+
+
+def test_an_alarm_names_itself_as_the_cause() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.sim.machine.jam("Z")
+    rig.until(State.FAULT)
+    assert rig.shot.interrupted is not None
+    assert rig.shot.interrupted.why == f"ALARM {rig.shot.alarms[0].number}: {rig.shot.alarms[0].text}"
+
+
+def test_closing_the_control_in_the_cut() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.executor.shut()
+    assert rig.shot.interrupted is not None
+    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, CLOSED)
+    assert rig.notes[-1] == rig.shot.interrupted
+
+
+def test_a_program_that_ends_leaves_nothing() -> None:
+    rig = Rig()
+    rig.start(PART, TOOLS)
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.shot.interrupted is None
+    assert rig.notes[-1] is None
+    assert begins(rig)
+
+
+def test_a_line_of_mdi_is_no_job() -> None:
+    rig = Rig()
+    rig.load(PART, TOOLS)
+    rig.ready()
+    press(rig, "G90G94F10X1Z1")
+    rig.run(0.3)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    assert rig.shot.interrupted is None
+    assert rig.notes == []
+
+
+# --- the next start -----------------------------------------------------------------------------------------
+
+
+def test_both_palms_do_not_begin_at_the_first_line_unasked() -> None:
+    rig = Rig()
+    broken_off(rig)
+    stood = rig.shot.demand
+    for _ in range(3):
+        assert not begins(rig)
+        assert rig.shot.start_refused.startswith(
+            "line 8 of PART was interrupted and T1 may stand in the part"
+        )
+    rig.run(2.0)
+    assert rig.shot.demand == stood
+
+
+def test_a_confirmed_start_begins_once_and_the_next_break_asks_again() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.confirm()
+    assert rig.shot.confirmed
+    assert begins(rig)
+    rig.until_true(lambda shot: shot.line == 8)
+    assert not rig.shot.confirmed
+    assert [text for text in rig.said("cleared") if "the program begins anew" in text]
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert not begins(rig)
+
+
+def test_an_answer_to_another_question_does_not_count() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.post(ConfirmStart("2020-01-01T00:00:00Z"))
+    assert not rig.shot.confirmed
+    assert rig.said("refused")[-1] == "there is no interrupted job to be answered for now"
+    assert not begins(rig)
+
+
+def test_an_answer_counts_for_a_minute() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.confirm()
+    rig.run(61.0)
+    assert not rig.shot.confirmed
+    assert not begins(rig)
+
+
+def test_an_answer_is_taken_back_by_a_jog() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.confirm()
+    rig.post(JogStep("X", 1.0, 5.0))
+    rig.until(State.IDLE)
+    assert not rig.shot.confirmed
+    assert not begins(rig)
+
+
+def test_an_answer_while_the_drives_are_off_does_not_count() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.confirm()
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.confirm()
+    rig.ready()
+    assert not begins(rig)
+
+
+# --- what it outlives, and what ends it ---------------------------------------------------------------------
+
+
+def test_it_outlives_reset_drives_off_mdi_and_jog() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.run(0.5)
+    first = rig.shot.interrupted
+    rig.post(Reset())
+    mdi(rig, "G90", "G94F100X1.4")
+    rig.post(JogStep("Z", 2.0, 5.0))
+    rig.until(State.IDLE)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+    assert rig.shot.interrupted == first  # where it stood; where it stands now the readouts tell
+    assert rig.shot.actual != first.where if first else False
+
+
+def test_the_same_program_read_again_keeps_it_and_another_clears_it_in_the_log() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.load(PART, TOOLS)
+    assert rig.shot.interrupted_line == 8
+    rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
+    assert rig.shot.interrupted is None
+    assert rig.notes[-1] is None
+    assert rig.said("cleared") == ["PART line 8, T1, part 1: E-STOP; OTHER was loaded in its place"]
+    assert begins(rig)
+
+
+def test_a_restart_to_the_end_finishes_it() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert rig.shot.interrupted is None
+    assert rig.notes[-1] is None
+
+
+def test_a_restart_that_is_itself_interrupted_on_its_way_stays_at_the_line() -> None:
+    rig = Rig()
+    broken_off(rig)
+    first = rig.shot.interrupted
+    assert first is not None
+    restart(rig, 6)
+    rig.until_true(lambda shot: shot.actual[0] > first.where[0] + 1.0)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.run(0.5)
+    again = rig.shot.interrupted
+    assert again is not None
+    assert (again.line, again.block, again.tool, again.begun) == (8, first.block, 1, first.begun)
+    assert again.where[0] > first.where[0] + 1.0
+
+
+def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    rig.until_true(lambda shot: shot.line == 10)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert rig.shot.interrupted_line == 10
+
+
+# --- a power cut --------------------------------------------------------------------------------------------
+
+
+def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
+    rig = Rig()
+    rig.load(PART, TOOLS)
+    rig.ready()
+    rig.run(0.4)
+    stood = rig.shot.demand
+    rig.post(CycleStart())
+    note = rig.notes[0]
+    assert note is not None
+    assert rig.shot.demand == stood
+    assert (note.program, note.line, note.why) == ("PART", 1, CONTROL_LOST)
+
+
+def test_notes_follow_the_tool_at_once_and_lines_once_a_second() -> None:
+    text = "G90G94F300\nT1\n" + "".join(f"X1Z{n % 2}.{n % 10}\n" for n in range(200)) + "T2\nX2Z2\nM30\n"
+    rig = Rig()
+    rig.start(text, TOOLS)
+    began = rig.clock.now()
+    rig.until_true(lambda shot: shot.modal.tool == 2)
+    rig.run(0.05)
+    note = rig.notes[-1]
+    assert note is not None
+    assert note.tool == 2
+    assert len(rig.notes) <= rig.clock.now() - began + 4  # start, first block, and the tools
+    assert len(rig.notes) >= 0.8 * (rig.clock.now() - began)
+
+
+def test_a_hold_is_noted_where_it_came_to_rest() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.tick()
+    note = rig.notes[-1]
+    assert note is not None
+    assert note.where == pytest.approx(rig.shot.actual, abs=0.05)
+
+
+def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> None:
+    before = Rig()
+    in_the_cut(before)
+    kept = json.loads(json.dumps(plain(before.notes[-1]))) if before.notes[-1] else None
+    rig = Rig(left=of_plain(kept))
+    assert rig.shot.interrupted is not None
+    assert rig.shot.interrupted.why == CONTROL_LOST
+    rig.load(PART, TOOLS)
+    rig.ready()
+    assert rig.shot.interrupted_line in {6, 7, 8}
+    assert not begins(rig)
+    restart(rig, rig.shot.interrupted_line)
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1  # nothing was left out, so it is a part
+    assert rig.shot.interrupted is None
+
+
+def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("cycle_repeat", True))
+    rig.post(PartsMade(3))
+    rig.start(PART, TOOLS)
+    rig.until_true(lambda shot: shot.parts == 1 and shot.line == 8)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert rig.shot.interrupted is not None
+    assert rig.shot.interrupted.part == 5
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"where": [1.0, "x", 0.0]},
+        {"where": [1.0, 2.0]},
+        {"where": [1.0, float("nan"), 0.0]},
+        {"line": None},
+        {"program": ""},
+        {"axes": 3},
+    ],
+)
+def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
+    good = plain(made())
+    assert of_plain(good) == made()
+    assert of_plain(good | change) is None
+    assert of_plain([good]) is None
+    assert of_plain(None) is None
+
+
+def test_the_log_says_which_job() -> None:
+    assert made().words == "PIN.NC line 8, T3, part 5: E-STOP"
+    assert replace(made(), line=9) == made(line=9)
