@@ -13,13 +13,14 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from core import faults
 from core.block_port import BlockSink
 
 FloatArray = npt.NDArray[np.float64]
-
-
-class DriverError(Exception):
-    """A driver cannot do what it was asked; the sentence says what, where and what to do."""
+Fault = faults.Fault
+FaultCode = faults.FaultCode
+DriverError = faults.DriverError
+code_of = faults.code_of
 
 
 class Stop(StrEnum):

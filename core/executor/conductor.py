@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.alarms import Reaction
 from core.executor import gate
-from core.executor.alarms import Reaction, TroubleError, alarm_of
+from core.executor.alarms import TroubleError, alarm_of, log_alarm
 from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
@@ -180,7 +181,8 @@ class Conductor:
         self.rounds.forget(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
-        bench.on_event(Event(bench.now, "alarm", f"{alarm.text}: {alarm.cause}", alarm.line))
+        log_alarm(alarm)
+        bench.on_event(Event(bench.now, "alarm", f"{alarm.number} {alarm.text}: {alarm.cause}", alarm.line))
 
     def failed(self, error: Exception) -> None:
         """A mistake of the control itself, whatever the table of states says about it."""

@@ -188,7 +188,7 @@ class Cycle:
                 self._read()
                 self._mover.begin(self._feed.take())
             case Next.END if self._needs_end:
-                raise TroubleError("program", "the program ends without M30 or M02")
+                raise TroubleError("no-end")
             case Next.END:
                 self._ended(None)
             case _:

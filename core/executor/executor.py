@@ -139,7 +139,7 @@ class Executor:
     def _supervise(self) -> None:
         self._conductor.supervisor.look()
         if self._conductor.state in _POWERED and not self._bench.sample.enabled:
-            raise TroubleError("axis", "the drives have lost power")
+            raise TroubleError("power-lost")
 
     def _go_on(self) -> None:
         self._conductor.go_on()
@@ -159,7 +159,7 @@ class Executor:
         except MotionError as error:
             self._conductor.alarm(TroubleError("program", str(error)))
         except DriverError as error:
-            self._conductor.alarm(TroubleError("driver", str(error)))
+            self._conductor.alarm(TroubleError(error.code, str(error)))
 
     def _publish(self) -> Snapshot:
         return self._publisher.snapshot(self._bench, self._conductor)

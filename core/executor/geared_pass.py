@@ -12,7 +12,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.alarms import TroubleError
 from core.executor.thread_way import Way
 from core.executor.turns import Turns
 from core.interpreter.blocks import Block
@@ -72,7 +71,7 @@ class GearedPass:
         for attempt in range(_TRIES):
             if self._mesh_from_rest(_EARLY * 2**attempt):
                 return
-        raise DriverError("the thread could not be queued in time; look for what keeps the computer busy")
+        raise DriverError("the thread could not be queued in time", "late")
 
     def track(self) -> None:
         """Once a tick: see how well it is followed; plan the end again when the speed has changed."""
@@ -116,9 +115,7 @@ class GearedPass:
     def _mesh_from_rest(self, early: float) -> bool:
         """Plan the whole pass; False when that came too late."""
         now = self._axes.now()
-        state = self._turns.at(now)
-        if state is None or state[1] == 0.0:
-            raise TroubleError("program", "a thread needs a turning spindle with an encoder")
+        state = self._turns.turning_at(now)
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._running_up(self._speed)
         first = self._sign * state[0] + self._speed * (self._axes.commit + early)

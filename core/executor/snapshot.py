@@ -37,7 +37,11 @@ class Starts(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """Text, cause, what to do, and the line that was running (0: none)."""
+    """Text, cause, what to do, and the line that was running (0: none).
+
+    ``cause`` is what exactly happened here where that is known, else the likeliest of ``causes``; ``detail``
+    is for the log.
+    """
 
     number: int
     code: str
@@ -46,6 +50,8 @@ class Alarm:
     remedy: str
     line: int = 0
     time: float = 0.0
+    causes: tuple[str, ...] = ()
+    detail: str = ""
 
 
 @dataclass(frozen=True, slots=True)

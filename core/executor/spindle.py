@@ -10,7 +10,7 @@ from core.executor.turns import Turns
 from core.geometry.spindle import surface_rpm
 from core.interpreter.blocks import Block
 from core.machine.model import SpindleModel
-from core.ports import Spindle, SpindleHold
+from core.ports import Spindle, SpindleHold, code_of
 
 _GRACE = 1.0  # s in which a drive must have begun to obey a lower speed
 _OVER = 0.1  # fraction and
@@ -153,7 +153,7 @@ class SpindleControl:
         fault = self._port.fault()
         if fault:
             self._coasting = True
-            raise TroubleError("spindle", fault)
+            raise TroubleError(code_of(fault, "spindle"), fault)
         self._coasting = self._coasting and not self.stopped and self.command == 0.0
         if not self._coasting and abs(self.measured) > self._allowed(now):
             raise TroubleError("ignores-stop", f"{self.measured:.0f} rpm, {self.command:.0f} asked")

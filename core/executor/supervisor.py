@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.executor.alarms import Reaction, TroubleError
+from core.alarms import Reaction
+from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
-from core.ports import DriverError, Stop
+from core.ports import DriverError, Stop, code_of
 
 _HOST = 0.1  # s beyond the drive's own time after which the control itself trips on a following error
 
@@ -23,7 +24,7 @@ class Supervisor:
         """Raises TroubleError for the first thing that must stop the machine."""
         sample, bench = self._bench.sample, self._bench
         if sample.fault:
-            raise TroubleError("axis", sample.fault)
+            raise TroubleError(code_of(sample.fault, "axis"), sample.fault)
         self._following()
         turning = not bench.spindle.stopped and bench.spindle.asked
         gripped = bench.inputs.get("collet_closed", True) or not bench.ports.io.outputs().get("collet", True)

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.alarms import TroubleError
 from core.executor.thread_way import Phases, Way
 from core.executor.turns import Turns
 from core.interpreter.blocks import Block
@@ -80,7 +79,7 @@ class ThreadPass:
         for _ in range(_TRIES):
             if self._replan():
                 return
-        raise DriverError("the thread could not be queued in time; look for what keeps the computer busy")
+        raise DriverError("the thread could not be queued in time", "late")
 
     def track(self) -> None:
         """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""
@@ -200,9 +199,7 @@ class ThreadPass:
 
     def _state(self, t: float) -> tuple[float, float]:
         """Turns and turns per second at ``t``, both counted in the direction in which the spindle turns."""
-        state = self._turns.at(t)
-        if state is None or state[1] == 0.0:
-            raise TroubleError("program", "a thread needs a turning spindle with an encoder")
+        state = self._turns.turning_at(t)
         if self._index == 0.0:
             self._sign = math.copysign(1.0, state[1])
         return self._sign * state[0], self._sign * state[1]

@@ -6,6 +6,8 @@ from collections import deque
 
 import numpy as np
 
+from core.executor.alarms import TroubleError
+
 _WINDOW = 0.2  # s of readings that count; longer is quieter, shorter follows a changing speed better
 _DEGREE = 3
 _CURVED = 0.06  # s beyond the last reading for which a change of speed is taken to go on
@@ -48,6 +50,15 @@ class Turns:
         for factor in reversed(shape):
             turns, speed = turns * near + factor, speed * near + turns
         return base + turns + speed * (u - near), speed
+
+    def turning_at(self, t: float) -> tuple[float, float]:
+        """The same of a spindle that turns. Raises TroubleError for one that stands or is not measured."""
+        state = self.at(t)
+        if state is None:
+            raise TroubleError("thread-no-encoder", "the encoder on the spindle counts nothing")
+        if state[1] == 0.0:
+            raise TroubleError("thread-no-encoder", "the spindle does not turn")
+        return state
 
     def _fitted(self) -> tuple[list[float], float]:
         """Factors of the cubic from the last reading on, and that reading."""

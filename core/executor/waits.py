@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from core.alarms import Code
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
 from core.executor.spindle import Ask
@@ -34,7 +35,7 @@ class Wait:
     done: Callable[[float], bool]
     since: float
     timeout: float = float("inf")
-    alarm: str = ""
+    alarm: Code = "internal"
 
     def over(self, now: float) -> bool:
         """Whether it is over; raises TroubleError when it took too long."""

@@ -23,7 +23,7 @@ LANGUAGES = ("es",)
 COMPOSING = "app/compose"
 COMPOSED = ("journal.py", "offsets.py", "mdi.py", "screen.py", "special.py", "searchto.py", "simulated.py")
 ROOMS = (
-    *("app/desk", "app/screen", "core/executor", "core/store", "core/interpreter"),
+    *("app/desk", "app/screen", "core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
 )
 # Scripts and tables that no screen shows.
@@ -43,7 +43,7 @@ ALSO = (
     "IN/OUT",
     "%1 · SIMULATED",
 )
-LOUD = ("app", "core/executor")  # where a single word in capitals is read by somebody
+LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _NO_TEXT = re.compile(
     r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"

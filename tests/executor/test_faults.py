@@ -97,7 +97,8 @@ def test_an_exception_in_the_worker_stops_the_machine(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(rig.executor, "_go_on", burst)
     alarm(rig, "internal")
-    assert "BrokenError: at the worst moment" in rig.shot.alarms[0].cause
+    assert "BrokenError: at the worst moment" in rig.shot.alarms[0].detail
+    assert "BrokenError" not in rig.shot.alarms[0].cause  # that is for the log
     assert not rig.sim.ports.axes.sample().enabled
 
 
@@ -418,7 +419,7 @@ def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch
     rig = Rig()
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
     threading(rig)
-    alarm(rig, "program")
+    alarm(rig, "thread-no-encoder")
     assert rig.shot.demand[:2] == pytest.approx((11.9, 5.0))
 
 

@@ -262,7 +262,7 @@ def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPa
     in_thread(rig)
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
     rig.until(State.FAULT)
-    assert rig.shot.alarms[0].code == "program"
+    assert rig.shot.alarms[0].code == "thread-no-encoder"
     assert rig.shot.demand[1] == pytest.approx(0.2 * INCH)  # the next pass did not begin
 
 

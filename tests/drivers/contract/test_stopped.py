@@ -49,7 +49,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     control.until(State.FAULT, limit=outcome.told + 0.01)
     control.rest(max(outcome.rests + struck - control.clock.now(), 0.0))
     alarm = control.shot.alarms[0]
-    assert outcome.says in alarm.cause + alarm.remedy
+    assert outcome.says in alarm.detail + alarm.remedy
     all_off(control, outcome)
     stood, powered = control.world.place(), rig.ports.axes.sample().enabled
     control.press()

@@ -1,0 +1,28 @@
+"""All entries of the alarm catalogue together; no alarm exists outside it."""
+
+from __future__ import annotations
+
+from core.alarms.axes import AXES
+from core.alarms.control import CONTROL
+from core.alarms.entry import Code, Entries, Entry
+from core.alarms.program import PROGRAM
+from core.alarms.spindle import CHUCK, SPINDLE
+from core.alarms.station import STATION
+from core.alarms.wires import WIRES
+
+SUBJECTS: tuple[tuple[str, Entries], ...] = (
+    ("Slides and axis drives", AXES),
+    ("Spindle, C axis and threads", SPINDLE),
+    ("Collet", CHUCK),
+    ("Program", PROGRAM),
+    ("Bus, feeder and controller", WIRES),
+    ("Operator station and stops", STATION),
+    ("The control", CONTROL),
+)
+CATALOGUE: dict[Code, Entry] = {code: entry for _, entries in SUBJECTS for code, entry in entries.items()}
+_BY_NUMBER = {entry.number: entry for entry in CATALOGUE.values()}
+
+
+def by_number(number: int) -> Entry | None:
+    """The entry of a number; None for one that is not in this catalogue."""
+    return _BY_NUMBER.get(number)

@@ -1,0 +1,43 @@
+"""Alarms of the control itself: late, failed."""
+
+from __future__ import annotations
+
+from core.alarms.entry import HOLD, OFF, Entries, Entry
+
+CONTROL: Entries = {
+    "internal": Entry(
+        901,
+        OFF,
+        "the control has failed",
+        ("a mistake in TurnDesk; the log has it",),
+        "look where the tool stands; save the log (F10), end TurnDesk and start it again",
+    ),
+    "broken-path": Entry(
+        902,
+        OFF,
+        "the planned path does not fit together",
+        ("a mistake in TurnDesk; nothing of the wrong piece was moved",),
+        "Reset, Drives On; save program and log (F10), and restart at another line",
+    ),
+    "late": Entry(
+        903,
+        HOLD,
+        "the computer was too late",
+        (
+            "another program, a backup or an update keeps this computer busy",
+            "the computer is too slow or too hot, or its disk hangs",
+            "the screen was locked or the computer asleep",
+        ),
+        "the slides have stopped on the path; end other programs, then Cycle Start",
+    ),
+    "low-queue": Entry(
+        904,
+        HOLD,
+        "setpoints ran low",
+        (
+            "another program, a backup or an update keeps this computer busy",
+            "the computer is too slow or too hot, or its disk hangs",
+        ),
+        "the slides have stopped on the path; end other programs, then Cycle Start",
+    ),
+}

@@ -1,0 +1,78 @@
+"""An entry of the alarm catalogue, the codes that there are, and what each makes of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import Literal, NamedTuple
+
+from core.faults import FaultCode
+
+# What the control itself finds; drivers have theirs in ``core.faults``.
+OwnCode = Literal[
+    # axes, spindle, thread
+    "in-position",
+    "at-speed",
+    "spindle-still",
+    "c-is-spindle",
+    "thread-lost",
+    "thread-no-encoder",
+    # chuck
+    "collet-open",
+    "unclamp",
+    "collet",
+    "collet-lost",
+    # program
+    "program",
+    "travel",
+    "no-end",
+    # the control
+    "internal",
+    # holds that nobody pressed
+    "station-silent",
+    "pot-jumps",
+    "low-queue",
+    "spindle-slow",
+    "spindle-stopped",
+    "spindle-switch",
+    "spindle-pot",
+    "controller-holds",
+    "feed-lost",
+    # stops that somebody asked for
+    "estop",
+    "feed-hold",
+    "reset",
+    "program-stop",
+    "optional-stop",
+    "single-block",
+    "by-hand",
+]
+Code = Literal[FaultCode, OwnCode]
+
+
+class Reaction(Enum):
+    """What an alarm makes of the machine; one supervisor carries it out for all drivers."""
+
+    OFF = "the slides brake and lose power, spindle off, outputs safe; Reset acknowledges"
+    STOP = "the slides brake and hold, spindle off, outputs safe; Reset acknowledges"
+    HOLD = "the slides stop on the path, the spindle goes on turning; Cycle Start goes on"
+    ASKED = "what was asked for: a stop that somebody pressed or programmed"
+
+
+class Entry(NamedTuple):
+    """``text`` is what happened, ``causes`` why, the likeliest first, ``remedy`` what to do now.
+
+    ``tells``: what comes with the alarm (an axis, a line, a drive's own word) is for the operator too, and
+    stands before the causes. Without it that goes to the log alone.
+    """
+
+    number: int
+    reaction: Reaction
+    text: str
+    causes: tuple[str, ...]
+    remedy: str
+    tells: bool = False
+
+
+Entries = Mapping[Code, Entry]
+OFF, STOP, HOLD, ASKED = Reaction.OFF, Reaction.STOP, Reaction.HOLD, Reaction.ASKED

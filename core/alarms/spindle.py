@@ -1,0 +1,182 @@
+"""Alarms of the spindle: drive, inverter, speed, encoder, C axis, threads; and of the chuck."""
+
+from __future__ import annotations
+
+from core.alarms.entry import HOLD, OFF, STOP, Entries, Entry
+
+SPINDLE: Entries = {
+    "spindle": Entry(
+        201,
+        STOP,
+        "spindle drive fault",
+        (
+            "the spindle drive has tripped: its display says why",
+            "too heavy a cut",
+            "its supply or motor cable",
+        ),
+        "read the drive's display, put the cause right, Reset",
+        tells=True,
+    ),
+    "at-speed": Entry(
+        202,
+        STOP,
+        "spindle not at speed",
+        (
+            "the spindle does not turn: belt, brake, or its drive is not enabled",
+            "the speed is more than it reaches with this chuck and part",
+            "it was stopped from outside",
+        ),
+        "look at the spindle, Reset; try the speed in MDI before the program is run again",
+        tells=True,
+    ),
+    "ignores-stop": Entry(
+        203,
+        STOP,
+        "spindle ignores the command",
+        (
+            "the spindle drive does not follow its command: cable, settings, local mode at its keypad",
+            "it was started at the drive itself",
+        ),
+        "PRESS E-STOP; then find out why before it is started again",
+        tells=True,
+    ),
+    "spindle-still": Entry(
+        204,
+        STOP,
+        "feed per revolution with a still spindle",
+        ("no M03 or M04 before the cut",),
+        "start the spindle in the program before this line",
+        tells=True,
+    ),
+    "thread-lost": Entry(
+        205,
+        STOP,
+        "spindle lost in a thread",
+        (
+            "the cut stalled the spindle",
+            "the belt slips",
+            "the spindle was switched off during the pass",
+        ),
+        "X was drawn back: look at part and insert; the thread is not finished",
+        tells=True,
+    ),
+    "c-is-spindle": Entry(
+        206,
+        STOP,
+        "C moves while the spindle turns",
+        ("on this machine the spindle is C, and M05 is missing before this line",),
+        "put M05 before the line, load the program again",
+        tells=True,
+    ),
+    "spindle-off": Entry(
+        207,
+        STOP,
+        "the spindle may not start",
+        ("E-stop is pressed", "a fault of its drive stands", "it is held as C"),
+        "put right what is named, Reset, start again",
+        tells=True,
+    ),
+    "inverter-silent": Entry(
+        208,
+        STOP,
+        "the inverter does not answer",
+        ("its cable is off, or disturbed by the motor cable", "its power is off", "baud rate or address"),
+        "IF THE SPINDLE TURNS PRESS E-STOP; then check the inverter's cable and power, Reset",
+        tells=True,
+    ),
+    "spindle-disagrees": Entry(
+        209,
+        STOP,
+        "encoder and spindle drive disagree",
+        ("the belt slips or is off", "the encoder's coupling is loose", "counts a turn in the machine file"),
+        "PRESS E-STOP; look at belt and encoder before the spindle is started again",
+        tells=True,
+    ),
+    "spindle-encoder": Entry(
+        210,
+        STOP,
+        "spindle encoder lost",
+        ("its cable", "its power", "it has restarted or reports a fault"),
+        "check encoder and cable, Reset; without it no thread is cut",
+        tells=True,
+    ),
+    "c-coupling": Entry(
+        211,
+        OFF,
+        "the spindle does not become C",
+        ("its index was not found", "the drive did not change over in time", "power was lost meanwhile"),
+        "Reset, Drives On; try M19 in MDI",
+        tells=True,
+    ),
+    "thread-no-encoder": Entry(
+        212,
+        STOP,
+        "a thread needs a turning spindle",
+        ("no M03 or M04 before the thread", "this machine has no encoder on the spindle"),
+        "start the spindle before the thread; without an encoder use a die or tap",
+        tells=True,
+    ),
+    "spindle-slow": Entry(
+        221,
+        HOLD,
+        "spindle below half its speed",
+        ("the cut is too heavy", "the belt slips", "the spindle pot was turned down"),
+        "let it come to speed, then Cycle Start",
+    ),
+    "spindle-stopped": Entry(
+        222,
+        HOLD,
+        "spindle stopped",
+        ("the spindle was stopped while the program fed by the revolution",),
+        "start the spindle, then Cycle Start; else Reset",
+    ),
+    "spindle-switch": Entry(
+        223,
+        HOLD,
+        "spindle switch off",
+        ("the spindle switch stands at OFF",),
+        "switch it to AUTO, let the spindle come to speed, then Cycle Start",
+    ),
+    "spindle-pot": Entry(
+        224,
+        HOLD,
+        "spindle override at 0",
+        ("the spindle pot stands at 0",),
+        "turn the spindle pot up, let it come to speed, then Cycle Start",
+    ),
+}
+
+CHUCK: Entries = {
+    "collet-open": Entry(
+        301,
+        STOP,
+        "spindle start with the collet open",
+        ("the program starts the spindle before M12", "the collet's switch does not answer"),
+        "close the collet with M12, Reset, start again",
+        tells=True,
+    ),
+    "unclamp": Entry(
+        302,
+        STOP,
+        "unclamping refused",
+        ("the spindle still turns where the program opens the collet",),
+        "put M05 before M13, load the program again",
+        tells=True,
+    ),
+    "collet": Entry(
+        303,
+        STOP,
+        "collet does not answer",
+        ("no air", "its switch or cable", "bar or part keeps it from moving"),
+        "check air and switch, Reset",
+        tells=True,
+    ),
+    "collet-lost": Entry(
+        304,
+        STOP,
+        "collet has opened",
+        ("air was lost while the spindle turned", "the switch or its cable"),
+        "WAIT UNTIL THE SPINDLE STANDS; check air, collet and bar, Reset",
+        tells=True,
+    ),
+}

@@ -1,0 +1,94 @@
+"""What a driver can find wrong: the code of the alarm that an operator reads, and a sentence for the log.
+
+Every code here has its entry in the catalogue (``core.alarms``), with number, likely causes and remedy.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+FaultCode = Literal[
+    # axes
+    "axis",
+    "following",
+    "driver",
+    "power-lost",
+    "no-power",
+    "drive-silent",
+    "drive-restarted",
+    "drive-setup",
+    "drive-keeps-fault",
+    "limit-switch",
+    "homing",
+    "position-lost",
+    "drive-limits",
+    "queue-dry",
+    # spindle
+    "spindle",
+    "ignores-stop",
+    "spindle-off",
+    "inverter-silent",
+    "spindle-disagrees",
+    "spindle-encoder",
+    "c-coupling",
+    # wires and what hangs on them
+    "bus",
+    "io-silent",
+    "output",
+    "feeder-gone",
+    "feeder-silent",
+    "controller-lost",
+    "controller-silent",
+    "controller-reset",
+    "controller-refuses",
+    "controller-alarm",
+    "controller-modes",
+    "controller-estop",
+    "door",
+    # the control itself
+    "late",
+    "broken-path",
+]
+
+
+class Fault(str):
+    """A fault that stands: a sentence for whoever mends it, and the alarm's code; empty when all is well.
+
+    It is a string, so that a driver without more to say can answer ``""``, and one that has several joins
+    them by ``or``.
+    """
+
+    __slots__ = ("code",)
+    code: FaultCode
+
+    def __new__(cls, text: str, code: FaultCode) -> Fault:
+        """``text`` says which drive, wire or terminal, and what was seen."""
+        made = super().__new__(cls, text)
+        made.code = code
+        return made
+
+    def __reduce__(self) -> tuple[type[Fault], tuple[str, FaultCode]]:
+        """A copy keeps its code."""
+        return Fault, (str(self), self.code)
+
+
+def code_of(fault: str, otherwise: FaultCode) -> FaultCode:
+    """The code of a fault; ``otherwise`` for a plain sentence."""
+    return fault.code if isinstance(fault, Fault) else otherwise
+
+
+class DriverError(Exception):
+    """A driver cannot do what it was asked; the sentence says what, where and what to do.
+
+    ``code`` is the alarm that it becomes when nobody deals with it. The code of a ``Fault`` that is handed
+    on goes with it.
+    """
+
+    def __init__(self, text: str = "", code: FaultCode | None = None) -> None:
+        super().__init__(text)
+        self.code: FaultCode = code or code_of(text, "driver")
+
+    @property
+    def fault(self) -> Fault:
+        """The same as a fault that stands."""
+        return Fault(str(self), self.code)

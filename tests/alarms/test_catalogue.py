@@ -1,0 +1,116 @@
+"""The catalogue of alarms: whole, in words for an operator, and nothing is raised beside it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal, get_args, get_origin
+
+import pytest
+
+from core.alarms import CATALOGUE, Entry, Reaction, by_number
+from core.alarms.catalogue import SUBJECTS
+from core.alarms.entry import Code, OwnCode
+from core.faults import FaultCode
+
+HOUSE = Path(__file__).parents[2]
+# Words of whoever wrote the control. An operator has slides, drives, blocks and keys.
+OURS = re.compile(r"\b(splice|queue|tick|commit|snapshot|exception|None|Error|executor|socket|ms)\b")
+ENTRIES = pytest.mark.parametrize("code", sorted(CATALOGUE))
+
+
+def codes_of(alias: object) -> set[str]:
+    """The words of a Literal, and of the Literals in it."""
+    assert get_origin(alias) is Literal
+    return set(get_args(alias))
+
+
+def test_every_code_has_its_entry_and_every_entry_a_code() -> None:
+    assert codes_of(Code) == codes_of(FaultCode) | codes_of(OwnCode) == set(CATALOGUE)
+    assert not codes_of(FaultCode) & codes_of(OwnCode)
+
+
+def test_no_code_and_no_number_is_given_twice() -> None:
+    codes = Counter(code for _, entries in SUBJECTS for code in entries)
+    numbers = Counter(entry.number for entry in CATALOGUE.values())
+    assert [
+        each for each, count in (codes + Counter(map(str, numbers.elements()))).items() if count > 1
+    ] == []
+
+
+def test_numbers_that_were_there_before_stay() -> None:
+    """Written on notes at machines and in status files."""
+    known = {
+        **{"axis": 101, "following": 102, "in-position": 103, "driver": 104, "spindle": 201, "at-speed": 202},
+        **{"ignores-stop": 203, "spindle-still": 204, "thread-lost": 205, "c-is-spindle": 206},
+        **{"collet-open": 301, "unclamp": 302, "collet": 303, "collet-lost": 304},
+        **{"program": 401, "travel": 402, "internal": 901},
+    }
+    assert {code: entry.number for code, entry in CATALOGUE.items() if code in known} == known
+
+
+@ENTRIES
+def test_an_entry_says_what_why_and_what_to_do(code: Code) -> None:
+    entry = CATALOGUE[code]
+    assert by_number(entry.number) is entry
+    assert 100 <= entry.number <= 999
+    assert entry.causes
+    for text in (entry.text, entry.remedy, *entry.causes):
+        assert len(text.strip()) > 3
+        assert text == text.strip().rstrip(".")
+        assert not OURS.search(text), text
+    assert len(entry.text) <= 48, "readable from two metres, in one line of the smallest screen"
+
+
+@ENTRIES
+def test_the_remedy_names_the_key_that_goes_on(code: Code) -> None:
+    """What stops with an alarm is acknowledged by Reset, what holds goes on by Cycle Start."""
+    entry = CATALOGUE[code]
+    if entry.reaction is Reaction.HOLD:
+        assert "Cycle Start" in entry.remedy
+
+
+def test_a_number_that_is_not_there_has_no_entry() -> None:
+    assert by_number(0) is None
+    assert by_number(100) is None
+
+
+def raised(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    """Every code that a source hands to an alarm, a fault or a driver's refusal, as a plain word."""
+    place = {"TroubleError": 0, "Fault": 1, "DriverError": 1, "code_of": 1}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in place:
+            at = place[node.func.id]
+            codes = [*node.args[at : at + 1], *(k.value for k in node.keywords if k.arg == "code")]
+            for code in codes:
+                if isinstance(code, ast.Constant) and isinstance(code.value, str):
+                    yield code.value, node.lineno
+
+
+def test_no_alarm_exists_outside_the_catalogue() -> None:
+    found = 0
+    for room in ("core", "drivers", "app"):
+        for path in (HOUSE / room).rglob("*.py"):
+            for code, line in raised(ast.parse(path.read_text(encoding="utf-8"))):
+                found += 1
+                assert code in CATALOGUE, f"{path.relative_to(HOUSE)}:{line} raises {code!r}"
+    assert found > 30
+
+
+def test_an_alarm_is_made_in_one_place() -> None:
+    """Whoever makes an Alarm by hand goes round the catalogue."""
+    makers = [
+        str(path.relative_to(HOUSE))
+        for room in ("core", "drivers", "app")
+        for path in (HOUSE / room).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Alarm"
+    ]
+    assert makers == ["core/executor/alarms.py"]
+
+
+def test_a_plain_entry_is_whole() -> None:
+    assert Entry(999, Reaction.STOP, "text", ("cause",), "remedy").tells is False
