@@ -50,6 +50,10 @@ def degrees(angle: float) -> float:
     return round(angle, 6) + 0.0
 
 
+# Checks that interpreting makes by itself, by the code of their findings.
+_CHECKS = {"spindle-stopped": "spindle-off", "collet-open": "collet-open", "thread-run-up": "thread-run-up"}
+
+
 def diagnostic_json(diagnostic: Diagnostic) -> Json:
     """One diagnostic with the keys of interfaces.md; one about a whole line stands at its first column."""
     return {
@@ -59,6 +63,9 @@ def diagnostic_json(diagnostic: Diagnostic) -> Json:
         "code": diagnostic.code,
         "message": diagnostic.message,
         "hint": diagnostic.hint,
+        "check": diagnostic.check or _CHECKS.get(diagnostic.code),
+        "n": diagnostic.n or None,
+        "count": diagnostic.count,
     }
 
 

@@ -163,13 +163,13 @@ PLANES = (
         "~PLXC",
         "(~PLXC) … (END)",
         "A mill on the face: X and Y across it, by X and C.",
-        "T0\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\n(~PLXC)\n(X.25Y0)\n(X.25Y.2)\n(END)\nM05",
+        "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLXC)\n(X.25Y0)\n(X.25Y.2)\n(END)\nM28\nM05",
     ),
     Entry(
         "~PLZC",
         "(~PLZC) … (END)",
         "A mill on the side: X along, Y around it, by Z and C.",
-        "T0\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\n(~PLZC)\n(D1.)\n(X.25Y.2)\n(X.5Y0)\n(END)\nM05",
+        "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLZC)\n(D1.)\n(X.25Y.2)\n(X.5Y0)\n(END)\nM28\nM05",
     ),
 )
 

@@ -16,7 +16,11 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding. Lines and columns count from 1; column 0 speaks of the whole line, line 0 of the file."""
+    """One finding. Lines and columns count from 1; column 0 speaks of the whole line, line 0 of the file.
+
+    ``check`` names the check of the part that has found it, ``n`` the elementary block (0: none). One that
+    repeats is told once: ``count`` says how often, and its place is the first.
+    """
 
     line: int
     column: int
@@ -24,12 +28,20 @@ class Diagnostic:
     code: str
     message: str
     hint: str = ""
+    check: str = ""
+    n: int = 0
+    count: int = 1
+
+    @property
+    def text(self) -> str:
+        """The sentence, and how often it would have to be said."""
+        return self.message if self.count == 1 else f"{self.message} ({self.count} times)"
 
     def shown(self, name: str) -> str:
         """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = f" — {self.hint}" if self.hint else ""
-        return f"{place}: {self.severity}: {self.message} [{self.code}]{hint}"
+        return f"{place}: {self.severity}: {self.text} [{self.code}]{hint}"
 
 
 class ProgramError(Exception):

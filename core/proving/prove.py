@@ -16,6 +16,7 @@ from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine
+from core.proving.cutting_checks import CuttingChecks
 from core.proving.interlock import c_findings
 from core.proving.passing import Part
 from core.proving.report import MillFigures, Report, Times
@@ -42,20 +43,23 @@ def prove(
 
     ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
     """
+    source = program.source if isinstance(program, Reading) else program
     timeline = Timeline.of(program, setup, machine, ideal=ideal)
-    proof = _Proof(machine)
+    single = setup.begin is not None and setup.begin.single
+    proof = _Proof(machine, CuttingChecks(machine, source.dialect, single))
     for stretch in timeline.spans():
         proof.add(stretch)
         if progress is not None and proof.last is not None:
             progress(proof.last.n)
-    return proof.report(timeline, program.source if isinstance(program, Reading) else program)
+    return proof.report(timeline, source)
 
 
 class _Proof:
     """What adds up while the program passes by."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
         self._machine = machine
+        self._checks = checks
         self._tally = Tally()
         self._unseen: list[Part] = []
         self._waiting = 0  # blocks in them
@@ -79,6 +83,8 @@ class _Proof:
         self._rapid += rapid
         self._cutting += float(spent.sum()) - rapid
         self._unseen += stretch.parts
+        for part in stretch.parts:
+            self._checks.look(part)
         self._waiting += len(spent)
         self.elementary += len(spent)
         if stretch.last is not None:
@@ -113,6 +119,7 @@ class _Proof:
             return
         self.elementary += 1
         self.last = stretch.block
+        self._checks.look([stretch.block])
         self._need([stretch.block])
         if isinstance(stretch.block.action, Dwell):
             self._dwell += spent
@@ -121,7 +128,8 @@ class _Proof:
 
     def report(self, timeline: Timeline, source: Source) -> Report:
         self._see()
-        found = [*timeline.diagnostics, *list(self._beyond.values())[:MAX_FINDINGS]]
+        beyond = list(self._beyond.values())[:MAX_FINDINGS]
+        found = [*timeline.diagnostics, *beyond, *self._checks.findings]
         interpreter, last, tally = timeline.interpreter, self.last, self._tally
         end = self._last_move  # in its own frame: M30 takes the work shift away, and moves nothing
         return Report(

@@ -10,7 +10,7 @@ import pytest
 
 from tests.cli.conftest import Turndesk
 
-FACE = "G90G94F300\nT1\nM19\nX-.5Z0\nCI10S20\nG04F1\n(~PLXC)\n(X.3Y-.3F20)\n(Y.3)\n(END)\nX-.6\nM30\n"
+FACE = "G90G94F300\nT1M27\nM19\nX-.5Z0\nCI10S20\nG04F1\n(~PLXC)\n(X.3Y-.3F20)\n(Y.3)\n(END)\nX-.6\nM30\n"
 SIDE = "G90G94F300\nT1\nM19\nX-.5Z0\n(~PLZC)\n(D.8F20)\n(END)\nM30\n"
 ROUND = "G90G94F300\nT1\nM19\nX-.5Z0\n(~PLZC)\n(Z.8F20)\n(G02X.1Y.1I.1J0)\n(END)\nM30\n"
 

@@ -1,0 +1,190 @@
+"""Checks of cutting: is there a tool, is the collet closed, does the live tool turn, are there the inputs?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.modal import Modal
+from core.interpreter.series import Series
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import Dialect
+from core.machine.model import Machine
+
+LIVE = "live"
+"""The names of outputs that turn a live tool begin with it in the machine file."""
+
+_QUICK = 100 * 25.4 / 60  # mm/s; what moves by G94 at this or more goes to a place and cuts nothing
+_MILLING = frozenset({Kind.PLANE_LINE, Kind.PLANE_ARC})
+_METAL = _MILLING | {Kind.ARC, Kind.THREAD}
+_WAYS = _METAL | {Kind.FEED}
+_MOST = 100  # findings
+
+
+def cuts(block: Block) -> bool:
+    """Whether a move is one that would take metal off: no rapid, no quick feed to another place."""
+    return block.kind in _WAYS and (block.per_rev or block.feed < _QUICK or block.kind is Kind.THREAD)
+
+
+@dataclass(slots=True)
+class CuttingChecks:
+    """Goes with the blocks of an OmniTurn program in their order; ``findings`` at the end.
+
+    One finding for each time that something was wrong, at the first block of it. Other languages have
+    tools and frames of their own and are not looked at.
+    """
+
+    machine: Machine
+    dialect: Dialect
+    single: bool = False  # a line of MDI: whoever types it sees which tool is in force
+    _found: list[Diagnostic] = field(default_factory=list)
+    _without_tool: list[Diagnostic] = field(default_factory=list)  # how much they weigh is known at the end
+    _names_tool: bool = False
+    _tool_off: int = 0  # line of a T0
+    _preset: bool = False  # G92 has said where the point stands since the last T
+    _has_run: bool = False  # the program has turned the spindle
+    _told: frozenset[str] = frozenset()  # what is wrong now and has been told
+    _cut_before_collet: int = 0  # line of the first cut in the collet as the program has met it
+    _collet: bool = False  # M12 or M13 has come
+    _asked: frozenset[str] = frozenset()
+    _like: tuple[Modal, Kind] | None = None  # of the move before: one such as it is no news
+
+    def twin(self) -> CuttingChecks:
+        """The same place in a program, for one of its other ways; what was found before is left behind."""
+        return replace(self, _found=[], _without_tool=[])
+
+    @property
+    def findings(self) -> list[Diagnostic]:
+        """What was found, in the order of the blocks."""
+        weight = Severity.ERROR if self._names_tool else Severity.WARNING
+        return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
+
+    def look(self, blocks: Sequence[Block]) -> None:
+        """The next blocks."""
+        if self.dialect is not Dialect.OMNITURN or not blocks:
+            return
+        alike: Iterable[Block] = (blocks[0],) if isinstance(blocks, Series) else blocks
+        for block in alike:
+            if block.action is not None:
+                self._like = None
+                self._act(block)
+            elif (block.modal, block.kind) != self._like:
+                self._like = (block.modal, block.kind) if block.modal.collet_closed else None
+                if cuts(block):
+                    self._cut(block)
+
+    def _act(self, block: Block) -> None:
+        match block.action:
+            case ToolChange(tool=tool):
+                self._names_tool = self._names_tool or tool > 0
+                self._tool_off = 0 if tool else block.line
+                self._preset = False
+                self._clear("no-tool")
+            case Preset():
+                self._preset = True
+            case SpindleRun():
+                self._has_run = True
+                self._clear("spindle-off")
+            case Collet(closed=closed):
+                self._collet = True
+                if closed:
+                    self._clear("collet-open")
+            case AskInput(terminal=terminal) | WaitInput(terminal=terminal):
+                self._input(block, terminal)
+            case ProgramEnd():
+                self._end(block)
+            case _:
+                pass
+
+    def _cut(self, block: Block) -> None:
+        modal = block.modal
+        if not self._collet:
+            self._cut_before_collet = self._cut_before_collet or block.line
+        if not (modal.tool or self.single or self._preset or modal.preset_x or modal.preset_z):
+            self._no_tool(block)
+        if not modal.collet_closed:
+            self._collet_open(block)
+        if any(name.startswith(LIVE) for name in modal.outputs):
+            self._clear("live-tool-off", "spindle-off")
+        elif modal.c_locked or block.kind in _MILLING:
+            self._live_tool_off(block)
+        elif not modal.spindle and not block.per_rev and self._has_run:
+            self._spindle_off(block)
+
+    def _no_tool(self, block: Block) -> None:
+        text = "This move cuts with no tool: its numbers count from the machine's home."
+        hint = "Write T with the tool's number before it."
+        if self._tool_off:
+            after = f"the T0 on line {self._tool_off}"
+            text = f"This move cuts after {after}: its numbers count from the machine's home."
+        if "no-tool" not in self._told:
+            self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
+        self._told |= {"no-tool"}
+
+    def _collet_open(self, block: Block) -> None:
+        """Bar work moves a stop or a gripper while the collet is open; nothing is cut in it."""
+        if block.per_rev or block.kind in _METAL or block.modal.c_locked:
+            text = "This move cuts with the collet open: the part is held by nothing."
+            self._tell(block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before it.")
+        elif block.x != block.x0 or block.z < block.z0:
+            text = "This move feeds with the collet open, and not away from the spindle as a bar is pulled."
+            self._tell(block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before it.")
+
+    def _live_tool_off(self, block: Block) -> None:
+        codes = sorted(
+            code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE)
+        )
+        if not codes:
+            return  # a live tool that this control does not switch
+        hint = f"Switch it on with {' or '.join(f'M{code:02d}' for code in codes)} before it."
+        if block.kind in _MILLING:
+            text = "This move mills, and no live tool is on."
+            self._tell(block, Severity.ERROR, "live-tool-off", text, hint)
+        else:
+            text = "This move cuts with the spindle held as C, and no live tool is on."
+            self._tell(block, Severity.WARNING, "live-tool-off", text, hint)
+
+    def _spindle_off(self, block: Block) -> None:
+        text = "This move cuts after the program has stopped the spindle, and no live tool is on."
+        self._tell(block, Severity.WARNING, "spindle-off", text, "Start it with M03 or M04 before it.")
+
+    def _input(self, block: Block, terminal: str) -> None:
+        if terminal in self.machine.inputs or terminal in self._asked:
+            return
+        self._asked |= {terminal}
+        text = f"This machine has no input {terminal}."
+        hint = "Correct the number, or name the input under [io.in] of the machine file."
+        if isinstance(block.action, WaitInput):
+            text = f"This machine has no input {terminal}: the wait would never end."
+        self._add(_finding(block, Severity.ERROR, "no-input", text, hint))
+
+    def _end(self, block: Block) -> None:
+        if block.modal.collet_closed or not self._cut_before_collet:
+            return
+        line = self._cut_before_collet
+        text = (
+            f"The program ends with the collet open, and the next cycle cuts on line {line} before any M12."
+        )
+        self._add(
+            _finding(block, Severity.WARNING, "collet-open", text, "Write M12 at its end or its start.")
+        )
+
+    def _tell(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
+        """Once until it is right again; an error also behind a warning."""
+        key = f"{check} {severity}"
+        if key not in self._told:
+            self._told |= {key}
+            self._add(_finding(block, severity, check, text, hint))
+
+    def _clear(self, *checks: str) -> None:
+        self._told = frozenset(each for each in self._told if each.split()[0] not in checks)
+
+    def _add(self, found: Diagnostic) -> None:
+        if len(self._found) < _MOST:
+            self._found.append(found)
+
+
+def _finding(block: Block, severity: Severity, check: str, text: str, hint: str) -> Diagnostic:
+    return Diagnostic(block.line, 0, severity, check, text, hint, check=check, n=block.n)
