@@ -19,6 +19,17 @@ CONTROL: Entries = {
         ("a mistake in TurnDesk; nothing of the wrong piece was moved",),
         "Reset, Drives On; save program and log (F10), and restart at another line",
     ),
+    "not-safe": Entry(
+        905,
+        OFF,
+        "the machine could not be made safe",
+        (
+            "a driver does not do what a stop asks of it: a wire is off, or it has failed",
+            "a mistake in TurnDesk; the log has it",
+        ),
+        "PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again",
+        tells=True,
+    ),
     "late": Entry(
         903,
         HOLD,

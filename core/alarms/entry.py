@@ -28,6 +28,7 @@ OwnCode = Literal[
     "no-end",
     # the control
     "internal",
+    "not-safe",
     # holds that nobody pressed
     "station-silent",
     "pot-jumps",

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from core.executor.guard import Attempt
 from core.executor.snapshot import Event
 from core.executor.spindle import SpindleControl
 from core.executor.station_watch import Heard
 from core.machine.model import Machine
 from core.ports import AxisSample, MachinePorts
 
+_log = logging.getLogger(__name__)
 _QUIET = Heard(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
 _LEAST = 0.005  # of the feed: a smaller change of a pot is no change
 
@@ -49,7 +52,14 @@ class Bench:
 
     def say(self, kind: str, text: str) -> None:
         """Put something into the log."""
-        self.on_event(Event(self.now, kind, text, self.line))
+        self.tell(Event(self.now, kind, text, self.line))
+
+    def tell(self, event: Event) -> None:
+        """Hand an event to who keeps the log; that it cannot be kept stops nothing."""
+        with Attempt() as trial:
+            self.on_event(event)
+        if trial.error is not None:
+            _log.error("an event was lost: %s", event, exc_info=trial.error)
 
     def terminal(self, name: str) -> bool:
         """Whether an input is on, by the name or terminal that a program uses."""

@@ -11,6 +11,7 @@ from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
 from core.executor.feed import Pass
+from core.executor.guard import Attempt
 from core.executor.handwheel import Handwheel
 from core.executor.homing import Homing
 from core.executor.inherited import at_power_up
@@ -18,11 +19,14 @@ from core.executor.interrupted import CLOSED, ESTOP, Interrupted
 from core.executor.interruption import Note
 from core.executor.job import Job
 from core.executor.rounds import Rounds
+from core.executor.safe_stop import SafeStop
 from core.executor.snapshot import Event, State
 from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
+
+_STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 
 
 class Conductor:
@@ -41,6 +45,7 @@ class Conductor:
         self.standing.modal = at_power_up(bench)
         self.counters = self.rounds.counters
         self.supervisor = Supervisor(bench)
+        self.safe = SafeStop(bench)
         self.jogger = jogger_of(bench)
         self.wheel = Handwheel(bench, self.jogger)
         self.homing = Homing(bench)
@@ -104,8 +109,7 @@ class Conductor:
     def reset(self) -> None:
         """Give the program up, stop the spindle, acknowledge alarms."""
         self.standing.start_refused = ""
-        self._bench.spindle.stop()
-        self._bench.ports.io.safe()
+        self.safe.functions_off()
         if self.standing.alarms:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
@@ -125,9 +129,8 @@ class Conductor:
     def mirror_estop(self, pressed: bool) -> None:
         """The hardware has stopped everything; the control follows, and nothing starts on release."""
         if pressed and self.state is not State.ESTOP:
-            self.supervisor.react(Reaction.OFF)
-            self._giving_up = False
-            self.rounds.forget(ESTOP)
+            self.safe.react(Reaction.OFF)
+            self._give_up(ESTOP)
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
             self.enter(State.DISABLED)
@@ -136,6 +139,7 @@ class Conductor:
 
     def go_on(self) -> None:
         """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
+        self._finish_stopping()
         self.rounds.look()
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
@@ -175,25 +179,40 @@ class Conductor:
         if any(old.code == alarm.code for old in self.standing.alarms):
             return
         self.standing.alarms = (*self.standing.alarms, alarm)
-        self.supervisor.react(reaction)
         self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
-        self._giving_up = False
-        self.rounds.forget(f"ALARM {alarm.number}: {alarm.text}")
+        self.safe.react(reaction)
+        self._give_up(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
         log_alarm(alarm)
-        bench.on_event(Event(bench.now, "alarm", f"{alarm.number} {alarm.text}: {alarm.cause}", alarm.line))
+        bench.tell(Event(bench.now, "alarm", f"{alarm.number} {alarm.text}: {alarm.cause}", alarm.line))
 
-    def failed(self, error: Exception) -> None:
+    def failed(self, error: BaseException) -> None:
         """A mistake of the control itself, whatever the table of states says about it."""
         if self.state is not State.ESTOP:
             self.standing.state = State.FAULT
         self.alarm(TroubleError("internal", f"{type(error).__name__}: {error}"))
 
+    def _give_up(self, why: str) -> None:
+        """What was under way is over, whether or not what it stood on still answers."""
+        self._giving_up = False
+        with Attempt() as trial:
+            self.rounds.forget(why)
+        if trial.error is not None:
+            self.rounds.drop()
+            self._bench.say("alarm", f"while giving the program up: {trial.error}")
+
+    def _finish_stopping(self) -> None:
+        """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
+        if self.state in _STOPPED:
+            self.safe.again()
+            if self.safe.undone:
+                self.alarm(TroubleError("not-safe", f"a driver does not obey: {self.safe.undone}"))
+
     def shut(self) -> None:
         """Nothing is left moving or switched on."""
-        self.supervisor.react(Reaction.OFF)
-        self.rounds.forget(CLOSED)
+        self.safe.react(Reaction.OFF)
+        self._give_up(CLOSED)
         if self.state is not State.ESTOP:
             self.standing.state = State.DISABLED
 
@@ -207,6 +226,7 @@ class Conductor:
             bench.ports.axes.enable(False)
         bench.ports.axes.clear_fault()
         standing.power_off, standing.alarms = False, ()
+        self.safe.forget()
         bench.sample = bench.ports.axes.sample()
         if self.state is State.FAULT:
             self.enter(State.IDLE if bench.sample.enabled else State.DISABLED)

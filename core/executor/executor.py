@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 
 from core.executor.alarms import TroubleError
@@ -11,7 +12,7 @@ from core.executor.bench import Bench
 from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Wheel
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
-from core.executor.guard import Guard
+from core.executor.guard import Attempt, Guard
 from core.executor.interpret import interpret
 from core.executor.interrupted import Interrupted
 from core.executor.interruption import Note
@@ -74,21 +75,40 @@ class Executor:
 
     def tick(self) -> None:
         """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
-        with Guard(self.failed):
+        with Guard(self.failed) as look:
             self._look()
-            for part in (self._obey, self._supervise, self._go_on, self._turn):
-                self._guarded(part)
-        with Guard(self.failed):
-            self.snapshot = self._publish()
+        if look.error is not None:
+            self._blind()
+        for part in (self._obey, self._supervise, self._go_on, self._turn):
+            self._guarded(part)
+        self._show()
 
-    def failed(self, error: Exception) -> None:
+    def failed(self, error: BaseException) -> None:
         """A mistake of the control itself: nothing may go on."""
         self._conductor.failed(error)
 
     def shut(self) -> None:
-        """The end of the executor: nothing is left moving or switched on."""
-        self._conductor.shut()
-        self.snapshot = self._publish()
+        """The end of the executor: nothing is left moving or switched on. Raises nothing."""
+        with Guard(self.failed):
+            self._conductor.shut()
+        self._show()
+
+    def _show(self) -> None:
+        """Where the machine cannot be read any more, its state and alarms at least."""
+        with Guard(self.failed) as publishing:
+            self.snapshot = self._publish()
+        if publishing.error is not None:
+            standing = self._conductor.standing
+            self.snapshot = replace(
+                self.snapshot, t=self._bench.now, state=standing.state, alarms=standing.alarms
+            )
+
+    def _blind(self) -> None:
+        """Something cannot be read: what was seen before starts nothing, and E-stop is still obeyed."""
+        bench = self._bench
+        bench.heard = bench.heard._replace(start=False)
+        with Attempt():
+            bench.heard = bench.heard._replace(estop=self._ports.station.snapshot().estop)
 
     def _look(self) -> None:
         bench, before = self._bench, self._bench.now
@@ -152,14 +172,15 @@ class Executor:
 
     def _guarded(self, part: Callable[[], None]) -> None:
         """What a part of a tick has to tell becomes an alarm, and the other parts go on."""
-        try:
-            part()
-        except TroubleError as trouble:
-            self._conductor.alarm(trouble)
-        except MotionError as error:
-            self._conductor.alarm(TroubleError("program", str(error)))
-        except DriverError as error:
-            self._conductor.alarm(TroubleError(error.code, str(error)))
+        with Guard(self.failed):
+            try:
+                part()
+            except TroubleError as trouble:
+                self._conductor.alarm(trouble)
+            except MotionError as error:
+                self._conductor.alarm(TroubleError("program", str(error)))
+            except DriverError as error:
+                self._conductor.alarm(TroubleError(error.code, str(error)))
 
     def _publish(self) -> Snapshot:
         return self._publisher.snapshot(self._bench, self._conductor)

@@ -107,6 +107,12 @@ class Rounds:
             self.interruption.broke_off(cycle.current, why)
         self._put_away(interrupted(cycle.modal) if self._line else given_up(cycle.modal))
 
+    def drop(self) -> None:
+        """The same where nothing answers any more: only that nothing goes on counts."""
+        self.cycle = self._source = None
+        self._between = False
+        self._bench.line = 0
+
     def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
         """Nothing is under way any more; offsets that were changed meanwhile count from here on."""
         self._stand(left, tool_open=tool_open)

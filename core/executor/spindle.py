@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from core.executor.alarms import TroubleError
@@ -106,12 +108,23 @@ class SpindleControl:
         self._let_go()
         self._send(0.0, self._now)
 
-    def coast(self) -> None:
-        """Let it run down without torque: E-stop, and drives that are no longer trusted."""
-        self._ask, self.command = None, 0.0
-        self._coasting = True
-        self._let_go()
-        self._port.coast()
+    def safe_steps(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
+        """What a safe stop does about it, each to be done whatever the others raise: the word is forgotten, C
+        is let go, the drive is told to stop, also one that is believed to have been told.
+        """
+        self._ask, self._in_band_since = None, None
+        if coast:
+            self._coasting = True
+        return [("C", self._let_go), ("the spindle", partial(self._tell_off, coast=coast))]
+
+    def _tell_off(self, *, coast: bool) -> None:
+        if coast:
+            self.command = 0.0
+            self._port.coast()
+        else:
+            self._note_fall(0.0, self._now)
+            self.command = 0.0
+            self._port.run(0.0)
 
     def hold(self, *, orient: bool) -> bool:
         """M19 and M89: as C; True once it is. Raises DriverError."""
@@ -184,13 +197,17 @@ class SpindleControl:
     def _send(self, rpm: float, now: float) -> None:
         if abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0):
             return
-        fastest = max(abs(self.measured), abs(self.command))  # measured: it may still coast from an E-stop
-        if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
-            self._fell = (now, fastest)
+        self._note_fall(rpm, now)
         if abs(rpm - self.command) > self._model.at_speed * abs(rpm):
             self._in_band_since = None
         self.command = rpm
         self._port.run(rpm)
+
+    def _note_fall(self, rpm: float, now: float) -> None:
+        """From where a lower speed begins; measured, since it may still coast from an E-stop."""
+        fastest = max(abs(self.measured), abs(self.command))
+        if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
+            self._fell = (now, fastest)
 
     def _watch_band(self, now: float) -> None:
         if abs(self.measured - self.command) > self._model.at_speed * abs(self.command):

@@ -1,19 +1,16 @@
-"""Looks after the machine every tick, and stops it: one place for all drivers."""
+"""Looks after the machine every tick: one place for all drivers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from core.alarms import Reaction
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
-from core.ports import DriverError, Stop, code_of
+from core.ports import code_of
 
 _HOST = 0.1  # s beyond the drive's own time after which the control itself trips on a following error
 
 
 class Supervisor:
-    """Sees faults and raises them as TroubleError; ``react`` stops the machine."""
+    """Sees faults and raises them as TroubleError."""
 
     def __init__(self, bench: Bench) -> None:
         self._bench = bench
@@ -32,24 +29,6 @@ class Supervisor:
             self._collet_lost()
         else:
             self._open_since = None
-
-    def react(self, reaction: Reaction) -> None:
-        """Brake all axes, spindle off, outputs safe. A driver that refuses does not keep the others alive."""
-        ports = self._bench.ports
-        how = Stop.RAMP_OFF if reaction is Reaction.OFF else Stop.RAMP_HOLD
-        steps: list[Callable[[], None]] = [
-            lambda: ports.axes.stop(how),
-            self._bench.spindle.coast if reaction is Reaction.OFF else self._bench.spindle.stop,
-            ports.io.safe,
-        ]
-        for step in steps:
-            self._carefully(step)
-
-    def _carefully(self, step: Callable[[], None]) -> None:
-        try:
-            step()
-        except DriverError as error:
-            self._bench.say("alarm", f"while stopping: {error}")
 
     def _following(self) -> None:
         """The control's own check behind the drives'."""
