@@ -31,6 +31,7 @@ FaultCode = Literal[
     "spindle-disagrees",
     "spindle-encoder",
     "c-coupling",
+    "thread-no-encoder",
     # wires and what hangs on them
     "bus",
     "io-silent",

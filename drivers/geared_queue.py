@@ -35,7 +35,7 @@ class GearedQueue(SetpointQueue):
             gearing.load(cam)
             return
         if gearing is None and self.horizon(now) > now:
-            raise DriverError("slides have to rest before they can follow the spindle")
+            raise DriverError("slides have to rest before they can follow the spindle", "broken-path")
         self._gearing = Gearing(cam, phase, self._slides, self._rest)
 
     def play(self, t: float, read_at: float, count: float) -> Motion:
@@ -62,7 +62,9 @@ class GearedQueue(SetpointQueue):
     def splice(self, segments: Segments, now: float) -> None:
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
-            raise DriverError("the slides follow the spindle; stop them before they can move by time")
+            raise DriverError(
+                "the slides follow the spindle; stop them before they can move by time", "broken-path"
+            )
         super().splice(segments, now)
         self._gearing = None
 

@@ -41,7 +41,7 @@ class Gearing:
         self.turns = self._goal(phase.t)  # at which the cam is played
         self._speed = cam.sign * phase.speed  # at which it is played, turns/s
         if self._speed < _STANDS:
-            raise DriverError("the spindle does not turn; no slide can follow it")
+            raise DriverError("the spindle does not turn; no slide can follow it", "thread-no-encoder")
         position, velocity = slides.tolerance.position, slides.tolerance.velocity
         per_turn = Tolerance(position, tuple(v / self._speed for v in velocity))
         self._queue = SetpointQueue(slides.names, standing, 0.0, per_turn)
@@ -50,7 +50,7 @@ class Gearing:
     def load(self, cam: Cam) -> None:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
-            raise DriverError("slides that follow the spindle cannot change to another index")
+            raise DriverError("slides that follow the spindle cannot change to another index", "broken-path")
         self._queue.commit = self._slides.commit * self._speed
         self._queue.splice(cam.way, self.turns)
         self._cam = cam

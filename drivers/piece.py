@@ -31,12 +31,12 @@ def pieces_of(segments: Segments, axes: int) -> list[Piece]:
     count = len(segments.t)
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
     if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
-        raise DriverError(f"setpoints need one row each of t, dt, p, v, a for {axes} axes")
+        raise DriverError(f"setpoints need one row each of t, dt, p, v, a for {axes} axes", "broken-path")
     for part in segments:
         if not np.isfinite(part).all():
-            raise DriverError("setpoints hold a value that is no number")
+            raise DriverError("setpoints hold a value that is no number", "broken-path")
     if (segments.dt < 0).any():
-        raise DriverError("setpoints run backwards in time")
+        raise DriverError("setpoints run backwards in time", "broken-path")
     rows = zip(
         segments.t.tolist(),
         segments.dt.tolist(),

@@ -74,7 +74,9 @@ class SetpointQueue:
         start = pieces[0].t
         if start < now + self.commit - 1e-9:
             late = 1000 * (now + self.commit - start)
-            raise DriverError(f"setpoints start {late:.1f} ms too early to be changed any more; splice later")
+            raise DriverError(
+                f"setpoints start {late:.1f} ms too early to be changed any more; splice later", "late"
+            )
         self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v), "where they take over")
         self._check_run(segments)
         self._replace(start, pieces, at(pieces[-1], np.inf)[0])
@@ -124,7 +126,9 @@ class SetpointQueue:
         v_end = segments.v + segments.a * dt
         gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
         if gaps.size:
-            raise DriverError(f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued")
+            raise DriverError(
+                f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued", "broken-path"
+            )
         jumps = (np.abs(segments.p[1:] - p_end[:-1]) > self._tolerance.position) | (
             np.abs(segments.v[1:] - v_end[:-1]) > self._tolerance.velocity
         )
@@ -133,10 +137,12 @@ class SetpointQueue:
             before = f"{p_end[row, axis]:.4f} at {v_end[row, axis]:.3f}/s"
             after = f"{segments.p[row + 1, axis]:.4f} at {segments.v[row + 1, axis]:.3f}/s"
             where = f"{self.axes[axis]}: setpoints jump at t = {t_end[row]:.4f}"
-            raise DriverError(f"{where} from {before} to {after}; nothing was queued")
+            raise DriverError(f"{where} from {before} to {after}; nothing was queued", "broken-path")
         moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
         if moving:
-            raise DriverError(f"setpoints do not end at rest: {', '.join(moving)} still moves at their end")
+            raise DriverError(
+                f"setpoints do not end at rest: {', '.join(moving)} still moves at their end", "broken-path"
+            )
 
     def _check_joint(
         self,

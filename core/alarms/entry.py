@@ -16,7 +16,6 @@ OwnCode = Literal[
     "spindle-still",
     "c-is-spindle",
     "thread-lost",
-    "thread-no-encoder",
     # chuck
     "collet-open",
     "unclamp",

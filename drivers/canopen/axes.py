@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.ports import AxisSample, DriverError, Segments, Stop
+from core.ports import AxisSample, DriverError, Segments, Stop, code_of
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
 from drivers.canopen.drives import DriveSet
@@ -53,7 +53,7 @@ class CanopenAxes:
             if self._on and not self.fault:
                 self._go_on(now)
         except DriverError as error:
-            self._trip(str(error))
+            self._trip(error.fault)
         self.drives.note_motion(now)
         self.queue.trim(now - _PAST)
 
@@ -106,7 +106,7 @@ class CanopenAxes:
             self.drives.power_off()
             return
         if self.fault:
-            raise DriverError(f"drives stay off: {self.fault}; clear the fault first")
+            raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
         if self._powered():
             return
         self.follower.prepare()
@@ -132,14 +132,14 @@ class CanopenAxes:
             return
         self._need_power()
         if self.sample().moving:
-            raise DriverError(f"{axis} cannot home while an axis moves; wait for standstill")
+            raise DriverError(f"{axis} cannot home while an axis moves; wait for standstill", "homing")
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
 
     def clear_fault(self) -> None:
         """Forget the fault, reset the drives that have one; they stay without power. Raises DriverError."""
         if self._bus.trouble:
-            raise DriverError(f"{self._bus.trouble}; mend it and start the control again")
+            raise DriverError(f"{self._bus.trouble}; mend it and start the control again", "bus")
         self._off(DriveState.OFF)
         for clear in self.clearing:
             clear()
@@ -211,9 +211,9 @@ class CanopenAxes:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(f"{self.fault}; clear the fault first")
+            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
         if not self._powered():
-            raise DriverError("the drives are off; switch them on first")
+            raise DriverError("the drives are off; switch them on first", "power-lost")
 
     def _powered(self) -> bool:
         return self._on and self.drives.powered

@@ -14,7 +14,7 @@ from canopen.sdo.client import SdoClient
 from canopen.sdo.constants import RESPONSE_ABORTED
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
-from core.ports import Clock, DriverError
+from core.ports import Clock, DriverError, Fault
 from drivers.canopen.config import BusConfig
 
 _log = logging.getLogger(__name__)
@@ -37,7 +37,7 @@ class Bus(canopen.Network):
         self.config = config
         self.clock = clock
         self.garbled = 0
-        self.trouble = ""  # why the bus cannot be trusted; stays until it is opened anew
+        self.trouble: Fault | str = ""  # why the bus cannot be trusted; stays until it is opened anew
         self._idle = idle
         self._next_beat = clock.now()
         if config.interface not in _ECHOING:
@@ -78,7 +78,7 @@ class Bus(canopen.Network):
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame. Raises DriverError when the interface does not take it."""
         if self.bus is None or self.trouble:
-            raise DriverError(f"CAN {self.config.channel}: {self.trouble or 'closed'}")
+            raise DriverError(f"CAN {self.config.channel}: {self.trouble or 'closed'}", "bus")
         frame = can.Message(
             arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
         )
@@ -86,7 +86,7 @@ class Bus(canopen.Network):
             self.bus.send(frame)
         except (can.CanError, OSError) as error:
             self.lost(f"the CAN interface does not send: {error}")
-            raise DriverError(f"CAN {self.config.channel}: {self.trouble}") from error
+            raise DriverError(f"CAN {self.config.channel}: {self.trouble}", "bus") from error
 
     def synchronise(self) -> None:
         """One SYNC: drives apply what was sent before it, and answer."""
@@ -106,7 +106,7 @@ class Bus(canopen.Network):
 
     def lost(self, why: str) -> None:
         """Nothing on this bus can be believed any more; the first reason is kept."""
-        self.trouble = self.trouble or why
+        self.trouble = self.trouble or Fault(why, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:
         assert self._idle is not None

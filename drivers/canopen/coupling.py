@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
-from core.ports import DriverError, Stop
+from core.ports import DriverError, Fault, Stop
 from drivers.canopen import objects as od
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.drives import DrivenAxis
@@ -50,7 +50,7 @@ class SpindleC:
         config = replace(config, count=_TURN / per_turn, counts_per_rev=per_turn)
         self._axis = DrivenAxis(config, spindle.drive, homed=True)
         self.step = Step.FREE
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self._wanted = self._orient = False
         self._since = 0.0
         self._homing = Referencing(spindle.drive)
@@ -66,9 +66,13 @@ class SpindleC:
             raise DriverError(self.trouble)
         if on and not self._wanted:
             if not self._axes.sample().enabled:
-                raise DriverError("C is the spindle's drive, and the drives are off; switch them on first")
+                raise DriverError(
+                    "C is the spindle's drive, and the drives are off; switch them on first", "c-coupling"
+                )
             if self.step is Step.FREE and (self._spindle.wanted or abs(self._drive.more) >= _STANDS):
-                raise DriverError("C is the spindle's drive, and the spindle turns; stop it first")
+                raise DriverError(
+                    "C is the spindle's drive, and the spindle turns; stop it first", "c-coupling"
+                )
             self._orient = orient
         self._want(on)
 
@@ -99,7 +103,7 @@ class SpindleC:
         try:
             steps[self.step](now)
         except DriverError as error:
-            self._fail(str(error))
+            self._fail(error.fault)
 
     def clear_fault(self) -> None:
         """The operator has seen it."""
@@ -241,7 +245,7 @@ class SpindleC:
         self.step, self._since = step, now
 
     def _fail(self, why: str) -> None:
-        self.trouble = self.trouble or why
+        self.trouble = self.trouble or Fault(why, "c-coupling")
         self._want(False)
         self._part()
         self._drive.extra = 0

@@ -7,11 +7,13 @@ import struct
 import canopen
 from canopen.emcy import EmcyError
 
+from core.ports import Fault, FaultCode
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus, Node
 from drivers.canopen.setup import Setup
 from drivers.canopen.states import QUICK, DriveState, reset_step, state_of, towards_enabled
 
+_FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing before a drive counts as silent
 _COMMAND = struct.Struct("<Hbi")  # control word, mode, target
 _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
@@ -44,7 +46,7 @@ class Drive402:
         self.inputs = 0  # 0x60FD
         self.missing = 0  # SYNCs without an answer
         self.heard = self.asked = self.answered = bus.clock.now()  # answered: the SYNC that it shows
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self.rebooted = False
         self._resetting = False
 
@@ -103,11 +105,14 @@ class Drive402:
         """Supervise: heartbeat, answers, status. ``trouble`` stays until ``forget``."""
         now = self.bus.clock.now()
         if now - self.heard > patience:
-            self._wrong(f"{self.name}: no heartbeat for {now - self.heard:.2f} s; check cable and power")
+            self._wrong(
+                f"{self.name}: no heartbeat for {now - self.heard:.2f} s; check cable and power",
+                "drive-silent",
+            )
         elif self.missing > SYNCS:
-            self._wrong(f"{self.name}: the drive does not answer SYNC; check cable and power")
+            self._wrong(f"{self.name}: the drive does not answer SYNC; check cable and power", "drive-silent")
         elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
-            self._wrong(f"{self.name}: drive fault")
+            self._wrong(f"{self.name}: drive fault", "axis")
 
     def forget(self) -> None:
         """The operator has seen it."""
@@ -125,8 +130,8 @@ class Drive402:
             return QUICK
         return 0
 
-    def _wrong(self, what: str) -> None:
-        self.trouble = self.trouble or what
+    def _wrong(self, what: str, code: FaultCode) -> None:
+        self.trouble = self.trouble or Fault(what, code)
 
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
         self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
@@ -139,10 +144,11 @@ class Drive402:
         self.heard = self.bus.clock.now()
         if state == 0:
             self.rebooted = True
-            self._wrong(f"{self.name}: the drive has restarted; its reference is lost")
+            self._wrong(f"{self.name}: the drive has restarted; its reference is lost", "drive-restarted")
         elif state == 4:
-            self._wrong(f"{self.name}: the drive was stopped by NMT")
+            self._wrong(f"{self.name}: the drive was stopped by NMT", "axis")
 
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
-            self._wrong(f"{self.name}: {error.get_desc().lower() or 'drive error'} (EMCY {error.code:04X})")
+            what = f"{error.get_desc().lower() or 'drive error'} (EMCY {error.code:04X})"
+            self._wrong(f"{self.name}: {what}", "following" if error.code == _FOLLOWING else "axis")

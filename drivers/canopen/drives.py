@@ -105,7 +105,8 @@ class DriveSet:
         if not self._bus.wait(lambda: all(axis.ready for axis in self.answered()), _POWER):
             slow = [f"{axis.config.name} is {axis.drive.state}" for axis in self.axes if not axis.ready]
             self.aim(DriveState.OFF)
-            raise DriverError(f"drives do not come on: {', '.join(slow)}; is E-stop pressed, is power there?")
+            why = f"drives do not come on: {', '.join(slow)}; is E-stop pressed, is power there?"
+            raise DriverError(why, "no-power")
 
     def power_off(self) -> None:
         """Wait a little for it."""
@@ -122,7 +123,8 @@ class DriveSet:
             axis.drive.clear()
         if not self._bus.wait(lambda: not any(a.drive.state in _FAULTS for a in self.answered()), _POWER):
             names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULTS]
-            raise DriverError(f"{', '.join(names)}: the drive keeps its fault; look at its display")
+            why = f"{', '.join(names)}: the drive keeps its fault; look at its display"
+            raise DriverError(why, "drive-keeps-fault")
 
     def lose_home(self) -> None:
         """Behind an E-stop only encoders that are absolute are believed."""
@@ -131,7 +133,7 @@ class DriveSet:
 
     def look(self) -> str:
         """Supervise; the first thing that is wrong, or nothing."""
-        trouble = ""
+        trouble: str = ""
         for axis in self.axes:
             axis.drive.look(3.0 * self._bus.config.heartbeat)
             trouble = trouble or axis.drive.trouble

@@ -7,7 +7,7 @@ from collections import deque
 import canopen
 from canopen.emcy import EmcyError
 
-from core.ports import DriverError
+from core.ports import DriverError, Fault
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus, Node
 from drivers.canopen.config import EncoderConfig
@@ -34,7 +34,7 @@ class CanEncoder:
             self._setup = Setup(bus, self.node, config.name)
         else:
             self.node, self._setup = drive.node, drive.setup
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self.missing = 0
         self._range = _WORD  # counts after which it goes round
         self._raw: int | None = None
@@ -83,7 +83,7 @@ class CanEncoder:
             self.connect()
             self.operational()
         except DriverError as error:
-            self.trouble = f"spindle encoder {error}"
+            self.trouble = Fault(f"spindle encoder {error}", "spindle-encoder")
 
     def speed(self) -> float:
         """rpm, signed, over the last tenth of a second."""
@@ -152,7 +152,9 @@ class CanEncoder:
             self._wrong(f"{error.get_desc().lower() or 'device error'} (EMCY {error.code:04X})")
 
     def _wrong(self, what: str) -> None:
-        self.trouble = self.trouble or f"spindle encoder {self._config.name}: {what}"
+        self.trouble = self.trouble or Fault(
+            f"spindle encoder {self._config.name}: {what}", "spindle-encoder"
+        )
 
 
 class MeasuredSpindle:
@@ -164,7 +166,7 @@ class MeasuredSpindle:
     def run(self, rpm: float) -> None:
         """There is nothing to turn. Raises DriverError, unless asked to stop."""
         if rpm:
-            raise DriverError("there is no spindle drive on this bus; see spindle.driver")
+            raise DriverError("there is no spindle drive on this bus; see spindle.driver", "spindle-off")
 
     def coast(self) -> None:
         """Nothing is turned here."""

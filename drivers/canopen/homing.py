@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
+from core.ports import Fault
 from drivers.canopen import objects as od
 from drivers.canopen.drives import DrivenAxis
 from drivers.canopen.states import BIT_12, BIT_13, HALT, HM, NEW, REACHED
@@ -32,7 +33,7 @@ class Homing:
         self._back = back
         self._step = _Step.MODE
         self._since = now
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self._write()
         self._drive.mode = HM
 
@@ -90,7 +91,7 @@ class Homing:
 
     def _fail(self, why: str) -> None:
         self._drive.extra &= ~NEW
-        self.trouble = f"{self.config.name}: homing has failed: {why}"
+        self.trouble = Fault(f"{self.config.name}: homing has failed: {why}", "homing")
 
     def _write(self) -> None:
         """Method, speeds, acceleration and offset. Raises DriverError."""

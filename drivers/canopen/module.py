@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import canopen
 
-from core.ports import DriverError
+from core.ports import DriverError, Fault
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus, Node
 from drivers.canopen.config import ModuleConfig, Terminal
@@ -37,7 +37,7 @@ class Module401:
         self.sizes = {od.DIGITAL_IN: 0, od.DIGITAL_OUT: 0, od.ANALOG_IN: 0}
         self.heard = self.answered = bus.clock.now()
         self.missing = 0
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self._sent = (-1e9, b"")
 
     def measure(self, needed: Iterable[Terminal]) -> None:
@@ -114,7 +114,7 @@ class Module401:
             self._wrong(f"{self.config.name}: the I/O module has restarted; its outputs have fallen")
 
     def _wrong(self, what: str) -> None:
-        self.trouble = self.trouble or what
+        self.trouble = self.trouble or Fault(what, "io-silent")
 
 
 def _entries(index: int, count: int, bits: int) -> list[tuple[int, int]]:

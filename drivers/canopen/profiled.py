@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.ports import DriverError, Segments
+from core.ports import DriverError, Fault, Segments
 from drivers.canopen import objects as od
 from drivers.canopen.follow import Fed
 from drivers.canopen.states import AT_ONCE, BIT_12, NEW, PP
@@ -29,7 +29,7 @@ class ProfiledFollower:
         self._queue = queue
         self._pending: tuple[float, Segments | None] | None = None
         self._told = -1.0
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self.urgent = False
         self.off_path = 0.0
 
@@ -50,7 +50,8 @@ class ProfiledFollower:
         limit = max(axis.config.count for axis in self._axes)
         if float(np.abs(off).max()) > limit:
             raise DriverError(
-                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "pvt"'
+                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "pvt"',
+                "drive-limits",
             )
         self._pending = (float(segments.t[0]), segments)
 
@@ -102,4 +103,6 @@ class ProfiledFollower:
             for axis in self._axes:
                 axis.drive.extra &= ~(NEW | AT_ONCE)
         elif now - self._told > _ANSWER:
-            self.trouble = self.trouble or f"{', '.join(late)}: the drive did not take its target"
+            self.trouble = self.trouble or Fault(
+                f"{', '.join(late)}: the drive did not take its target", "axis"
+            )

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Sequence
 from enum import Enum
 
-from core.ports import Segments
+from core.ports import Fault, Segments
 from drivers.canopen.follow import Fed
 from drivers.canopen.pvt import packed, span
 from drivers.canopen.states import BIT_12, IP, NEW
@@ -15,6 +15,7 @@ from drivers.setpoint_queue import SetpointQueue
 
 _log = logging.getLogger(__name__)
 
+_DRY = "the drives' queues ran dry: this computer was away for too long"
 LOW_WATER = 2  # records; with fewer a drive faults
 MOST = 56  # records in a drive that takes 64
 RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
@@ -46,7 +47,7 @@ class PvtFollower:
         self.front = 0.0  # time of the next point
         self._begun = 0.0
         self._sent: deque[float] = deque()  # when each record that was sent is over
-        self.trouble = ""
+        self.trouble: Fault | str = ""
         self.urgent = False
         self.off_path = 0.0
         self.lowest = float("inf")  # s, the least that was ever queued in the drives
@@ -90,7 +91,9 @@ class PvtFollower:
     def _begin(self, now: float) -> None:
         """Points of rest, then all drives at one SYNC: the first point is where the slides stand."""
         if any(self._queue.demand_at(now)[1]):
-            self.trouble = "the drives were late to begin; the path has begun without them"
+            self.trouble = Fault(
+                "the drives were late to begin; the path has begun without them", "queue-dry"
+            )
             return
         self.front = self._begun = now
         for _ in range(_PREFILL):
@@ -106,10 +109,11 @@ class PvtFollower:
             _log.warning("the drives' queues are low: %.0f ms left", 1000 * left)
         self.lowest = min(self.lowest, left)
         if left <= 0.0:
-            self.trouble = self.trouble or "the drives' queues ran dry: this computer was away for too long"
+            self.trouble = self.trouble or Fault(_DRY, "queue-dry")
         if now - self._begun > _BEGIN and not self._active(all):
             names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
-            self.trouble = self.trouble or f"{', '.join(names)}: the drive's queue has stopped playing"
+            why = f"{', '.join(names)}: the drive's queue has stopped playing"
+            self.trouble = self.trouble or Fault(why, "queue-dry")
 
     def _top_up(self, now: float) -> None:
         at_rest = self._queue.horizon(now) <= min(self.front, now)

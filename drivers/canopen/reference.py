@@ -47,10 +47,12 @@ class Referencing:
             if drive.enabled and drive.shown_mode == HM:
                 drive.extra, self._told, self._since = NEW, True, now
             elif waited > _CHANGE:
-                raise DriverError(f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}")
+                raise DriverError(
+                    f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}", "c-coupling"
+                )
             return False
         if drive.status & BIT_13 or waited > self._limit:
-            raise DriverError(f"C: {self._why}")
+            raise DriverError(f"C: {self._why}", "c-coupling")
         done = waited > _FIRST and bool(drive.status & BIT_12 and drive.status & REACHED)
         if done:
             drive.extra = 0

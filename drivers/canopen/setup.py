@@ -52,7 +52,8 @@ class Setup:
             shown = int.from_bytes(kept, "little")
             raise DriverError(
                 f"{self._name}: object {index:04X}:{sub} stays at {shown} instead of {value};"
-                f" check what the drive allows and [canopen.sdo]"
+                f" check what the drive allows and [canopen.sdo]",
+                "drive-setup",
             )
 
     def write_all(self, values: tuple[tuple[int, int, int], ...]) -> None:
@@ -69,7 +70,8 @@ class Setup:
         if found != profile:
             raise DriverError(
                 f"{self._name}: node {self._node.id} is a device of profile {found}, expected {profile};"
-                " check the node numbers in [canopen.nodes]"
+                " check the node numbers in [canopen.nodes]",
+                "drive-setup",
             )
 
     def demand_modes(self, modes: int) -> None:
@@ -77,7 +79,9 @@ class Setup:
         offered = self.read(od.SUPPORTED)
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
-            raise DriverError(f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode")
+            raise DriverError(
+                f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode", "drive-setup"
+            )
 
     def entries(self, index: int) -> int:
         """How many entries an array of the node has; 0 where the node has no such object."""
@@ -108,7 +112,9 @@ class Setup:
         try:
             found: PdoMap = pdos[number]
         except KeyError as error:
-            raise DriverError(f"{self._name}: PDO {number} is not in the node's EDS file") from error
+            raise DriverError(
+                f"{self._name}: PDO {number} is not in the node's EDS file", "drive-setup"
+            ) from error
         return found
 
     def _map(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
@@ -153,9 +159,11 @@ class Setup:
         try:
             return do()
         except SdoAbortedError as error:
-            raise DriverError(f"{where}: refused by the node: {error}") from error
+            raise DriverError(f"{where}: refused by the node: {error}", "drive-setup") from error
         except SdoCommunicationError as error:
             why = self._bus.trouble or f"{error}; check cable, power and node number"
-            raise DriverError(f"{where}: {why}") from error
+            raise DriverError(f"{where}: {why}", "drive-silent") from error
         except KeyError as error:
-            raise DriverError(f"{where}: not in the node's object dictionary; check its EDS file") from error
+            raise DriverError(
+                f"{where}: not in the node's object dictionary; check its EDS file", "drive-setup"
+            ) from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.ports import DriverError
+from core.ports import DriverError, Fault
 from drivers.canopen import objects as od
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import SpindleConfig
@@ -64,16 +64,22 @@ class CanopenSpindle:
         if lost:
             drive.goal, drive.target = DriveState.OFF, 0
         elif not drive.enabled and now - self._ordered > _POWER:
-            drive.trouble = "spindle: the drive does not come on; is E-stop pressed, is power there?"
+            drive.trouble = Fault(
+                "spindle: the drive does not come on; is E-stop pressed, is power there?", "spindle"
+            )
         elif drive.target == 0 and abs(drive.more) < _STANDS:
             drive.goal = DriveState.OFF
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
         if rpm and (self._bus.trouble or self.drive.trouble):
-            raise DriverError(f"the spindle stays off: {self._bus.trouble or self.drive.trouble}")
+            raise DriverError(
+                f"the spindle stays off: {self._bus.trouble or self.drive.trouble}", "spindle-off"
+            )
         if rpm and self.kept:
-            raise DriverError("the spindle stays off: its drive is held as C; let it go first, by M05")
+            raise DriverError(
+                "the spindle stays off: its drive is held as C; let it go first, by M05", "spindle-off"
+            )
         limit = self._config.rpm_max
         self.drive.target = round(min(max(rpm, -limit), limit))
         if rpm and self.lent:
@@ -132,7 +138,7 @@ class CanopenSpindle:
 
     def fault(self) -> str:
         """What is wrong with it; empty when well."""
-        return self._bus.trouble or self.drive.trouble
+        return self._bus.trouble or (self.drive.trouble and Fault(self.drive.trouble, "spindle"))
 
 
 class NoSpindle:
@@ -141,7 +147,7 @@ class NoSpindle:
     def run(self, rpm: float) -> None:
         """There is nothing to turn. Raises DriverError, unless asked to stop."""
         if rpm:
-            raise DriverError("there is no spindle drive on this bus; see spindle.driver")
+            raise DriverError("there is no spindle drive on this bus; see spindle.driver", "spindle-off")
 
     def coast(self) -> None:
         """It does not turn."""

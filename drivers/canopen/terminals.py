@@ -55,7 +55,7 @@ class CanopenIO:
 
     def tick(self, now: float) -> str:
         """Supervise and send; what is wrong with a module, or nothing."""
-        trouble = ""
+        trouble: str = ""
         for module in self.modules.values():
             module.look(3.0 * self._bus.config.heartbeat)
             trouble = trouble or module.trouble
@@ -80,10 +80,10 @@ class CanopenIO:
         """Switch one output; it goes out with the next tick. Raises DriverError."""
         output = self._config.outputs.get(name)
         if output is None:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]")
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
         module = self._module(output.terminal)
         if on and (self._bus.trouble or module.trouble):
-            raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}")
+            raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}", "output")
         self._switch(name, output.terminal, on)
 
     def _switch(self, name: str, where: Terminal, on: bool) -> None:

@@ -7,8 +7,8 @@ import queue
 from collections.abc import Mapping
 from typing import Protocol
 
-from core.ports import Clock, DriverError
-from drivers.feeder.wire import NOTHING, Message, text, texts
+from core.ports import Clock, DriverError, Fault
+from drivers.feeder.wire import NOTHING, Message, fault_of, texts
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
@@ -30,7 +30,7 @@ class Line:
     def __init__(self, link: Link, clock: Clock) -> None:
         self._link = link
         self.clock = clock
-        self.lost = ""  # why the feeder cannot be asked any more
+        self.lost: Fault | str = ""  # why the feeder cannot be asked any more
         self._state: Mapping[str, object] = {}
         self._at = -1.0
         self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
@@ -42,9 +42,9 @@ class Line:
         try:
             answer = self._link.ask(message)
         except DriverError as error:
-            self.lost = str(error)
+            self.lost = error.fault
             raise
-        if why := text(answer.head, "error"):
+        if why := fault_of(answer.head, "error", "driver"):
             raise DriverError(why)
         return answer
 
@@ -66,7 +66,7 @@ class Line:
                     self.ask(self._posted.get())
                 self._state = self.ask(Message({"do": "look"}, NOTHING)).head
             except DriverError as error:
-                self.lost = self.lost or str(error)
+                self.lost = self.lost or error.fault
             self._at = now
             for note in texts(self._state.get("notes")):
                 _log.warning("feeder: %s", note)

@@ -52,11 +52,11 @@ class SocketLink:
             return self._answer(time.monotonic() + limit)
         except TimeoutError as error:
             raise DriverError(
-                f"the feeder has not answered for {limit:g} s; the slides stop on their path"
+                f"the feeder has not answered for {limit:g} s; the slides stop on their path", "feeder-silent"
             ) from error
         except OSError as error:
             raise DriverError(
-                f"the feeder process has ended ({error.strerror}); start the control again"
+                f"the feeder process has ended ({error.strerror}); start the control again", "feeder-gone"
             ) from error
 
     def close(self) -> None:
@@ -73,6 +73,6 @@ class SocketLink:
                 raise TimeoutError
             data = self._socket.recv(_CHUNK)
             if not data:
-                raise DriverError("the feeder process has ended; start the control again")
+                raise DriverError("the feeder process has ended; start the control again", "feeder-gone")
             for message in self._inbox.feed(data):
                 return message

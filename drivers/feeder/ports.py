@@ -11,11 +11,11 @@ from drivers.feeder.wire import (
     VERSION,
     Message,
     cam_message,
+    fault_of,
     floats,
     items,
     number,
     rows,
-    text,
     texts,
 )
 
@@ -59,7 +59,7 @@ class FeederAxes:
             enabled=shown.get("enabled") is True and not self._line.lost,
             homed=tuple(one is True for one in items(shown.get("homed"))) or (False,) * len(self.axes),
             moving=shown.get("moving") is True and not self._line.lost,
-            fault=self._line.lost or text(shown, "fault"),
+            fault=self._line.lost or fault_of(shown, "fault", "axis"),
         )
 
     def enable(self, on: bool) -> None:
@@ -124,7 +124,7 @@ class FeederSpindle:
 
     def fault(self) -> str:
         """What is wrong with it."""
-        return self._line.lost or text(self._line.look(), "spindle")
+        return self._line.lost or fault_of(self._line.look(), "spindle", "spindle")
 
 
 class FeederLock:

@@ -11,7 +11,7 @@ import numpy as np
 
 from core.ports import DriverError, MachinePorts, Stop
 from drivers.feeder.orders import act, use_hand
-from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segments, text
+from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segments, text, with_code
 
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
@@ -79,7 +79,7 @@ class Feeder:
         try:
             return answer(message)
         except DriverError as error:
-            return _refused(str(error))
+            return _refused(error.fault)
         finally:
             self._heard = self._ports.clock.now()  # some orders wait for a drive
 
@@ -155,10 +155,10 @@ class Feeder:
         ports, sample = self._ports, self._ports.axes.sample()
         geared = ports.gear.geared() if ports.gear is not None else None
         head: dict[str, object] = {
-            "sample": sample._asdict(),
+            "sample": {**sample._asdict(), **with_code("fault", sample.fault, "axis")},
             "speed": ports.spindle.speed(),
             "angle": ports.spindle.angle(),
-            "spindle": ports.spindle.fault(),
+            **with_code("spindle", ports.spindle.fault(), "spindle"),
             "inputs": dict(ports.io.inputs()),
             "outputs": dict(ports.io.outputs()),
             "station": asdict(ports.station.snapshot()),
@@ -197,4 +197,4 @@ def _value(value: float) -> Message:
 
 
 def _refused(why: str) -> Message:
-    return Message({"error": why}, NOTHING)
+    return Message(with_code("error", why, "driver"), NOTHING)

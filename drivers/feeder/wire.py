@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import numpy as np
 
-from core.ports import Cam, DriverError, FloatArray, Segments
+from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments, code_of
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
 LARGEST = 64_000_000  # bytes; more is no message
@@ -47,7 +47,7 @@ class Inbox:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
             end = _LENGTHS.size + head + numbers
             if end > LARGEST or numbers % 8:
-                raise DriverError("the feeder's socket carries something that is no message")
+                raise DriverError("the feeder's socket carries something that is no message", "feeder-silent")
             if len(self._bytes) < end:
                 return
             text = bytes(self._bytes[_LENGTHS.size : _LENGTHS.size + head])
@@ -60,9 +60,11 @@ def _head(text: bytes) -> Mapping[str, object]:
     try:
         head = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise DriverError("the feeder's socket carries something that is no message") from error
+        raise DriverError(
+            "the feeder's socket carries something that is no message", "feeder-silent"
+        ) from error
     if not isinstance(head, dict):
-        raise DriverError("the feeder's socket carries something that is no message")
+        raise DriverError("the feeder's socket carries something that is no message", "feeder-silent")
     return head
 
 
@@ -76,7 +78,7 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
-        raise DriverError("setpoints were damaged on their way to the feeder")
+        raise DriverError("setpoints were damaged on their way to the feeder", "feeder-silent")
     cuts = np.cumsum([count, count, count * axes, count * axes])
     t, dt, p, v, a = np.split(numbers, cuts)
     return Segments(t, dt, p.reshape(count, axes), v.reshape(count, axes), a.reshape(count, axes))
@@ -93,7 +95,7 @@ def number(head: Mapping[str, object], key: str) -> float:
     """A finite number of the head. Raises DriverError where there is none."""
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
-        raise DriverError(f"the feeder was sent no number as {key}")
+        raise DriverError(f"the feeder was sent no number as {key}", "feeder-silent")
     return float(value)
 
 
@@ -118,13 +120,24 @@ def cam_of(message: Message, axes: int) -> Cam:
 def floats(values: object) -> tuple[float, ...]:
     """A list of numbers as it comes out of JSON. Raises DriverError."""
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
-        raise DriverError("the feeder answered no numbers")
+        raise DriverError("the feeder answered no numbers", "feeder-silent")
     return tuple(float(v) for v in values)
 
 
 def items(value: object) -> list[object]:
     """A list as it comes out of JSON; an empty one for anything else."""
     return value if isinstance(value, list) else []
+
+
+def fault_of(head: Mapping[str, object], key: str, otherwise: FaultCode) -> Fault:
+    """A fault of the head, its code beside it; empty where there is none."""
+    code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), otherwise)
+    return Fault(text(head, key), code)
+
+
+def with_code(key: str, fault: str, otherwise: FaultCode) -> Mapping[str, str]:
+    """A fault as it goes into a head."""
+    return {key: fault, f"{key}_code": code_of(fault, otherwise)}
 
 
 def texts(value: object) -> list[str]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from core.block_port import BlockOp, BlockState, ThreadOp
-from core.ports import DriverError
+from core.ports import DriverError, code_of
 from drivers.grblhal import codes, scripts
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import line_number, line_of
@@ -160,7 +160,7 @@ class GrblBlocks:
     def demand_power(self) -> None:
         """Raises DriverError while there is no leave to move."""
         if not self.powered:
-            raise DriverError("the drives are off; switch them on first")
+            raise DriverError("the drives are off; switch them on first", "power-lost")
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -174,7 +174,7 @@ class GrblBlocks:
     def _demand_ready(self) -> None:
         why = self.hindrance()
         if why:
-            raise DriverError(f"the controller takes no block: {why}")
+            raise DriverError(f"the controller takes no block: {why}", code_of(why, "controller-refuses"))
         self.demand_power()
 
     def _dead(self) -> bool:

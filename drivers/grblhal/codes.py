@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from core.ports import FaultCode
+
 # The range from 0x80 on: its older twins ? ~ ! are plain text inside comments and $ lines.
 STATUS, START, HOLD, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x85, 0x87
 RESET, STOP = 0x18, 0x19
@@ -72,6 +74,20 @@ _ERRORS = {
     53: "it has no such setting",
     79: "a critical alarm stands: Reset first",
 }
+
+
+_OF_AXES: dict[int, FaultCode] = {
+    1: "limit-switch",
+    3: "position-lost",
+    10: "controller-estop",
+    12: "limit-switch",
+}
+_HOMING = frozenset((6, 7, 8, 9, 15, 18))
+
+
+def alarm_code(number: int) -> FaultCode:
+    """What of the catalogue an alarm of the controller is."""
+    return "homing" if number in _HOMING else _OF_AXES.get(number, "controller-alarm")
 
 
 def alarm_text(number: int) -> str:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from core.ports import Clock
+from core.ports import Clock, code_of
 from drivers.grblhal import codes
 from drivers.grblhal.config import GrblConfig
 from drivers.grblhal.hearing import Hearing
@@ -91,7 +91,10 @@ class Controller(Hearing):
     def _gone(self, error: WireLostError) -> None:
         self.lost = True
         self.runner.drop()
-        self.fail(f"the connection to the controller is lost: {error}; it moves what it has, then rests")
+        self.fail(
+            f"the connection to the controller is lost: {error}; it moves what it has, then rests",
+            "controller-lost",
+        )
         self.void()
 
     def _read(self) -> None:
@@ -107,7 +110,7 @@ class Controller(Hearing):
         why = self.runner.go_on(self.clock.now())
         self.expected = self.expected and self.busy
         if why:
-            self.fail(why)
+            self.fail(why, code_of(why, "controller-silent"))
 
     def _interval(self) -> float:
         if self.busy:
@@ -130,10 +133,12 @@ class Controller(Hearing):
         now = self.clock.now()
         if self.asked_at is not None and now - self.asked_at > (_INDEX if self.index_wait else _SILENT):
             self.asked_at = now
-            self.fail("the controller does not answer; look at the cable and at the controller")
+            self.fail(
+                "the controller does not answer; look at the cable and at the controller", "controller-silent"
+            )
         idle = self.report is not None and self.report.state == "Idle"
         if not (self.stream.unanswered and idle) or self.fault:
             return
         first = self.stream.unanswered[0]
         if now - max(first.sent_at, self.answered_at) > (_INDEX if self.index_wait else _UNANSWERED):
-            self.fail(f"no answer to {first.line!r}; the line may be disturbed")
+            self.fail(f"no answer to {first.line!r}; the line may be disturbed", "controller-silent")

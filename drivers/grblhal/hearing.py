@@ -6,7 +6,7 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.ports import Clock
+from core.ports import Clock, Fault, FaultCode
 from drivers.grblhal import codes
 from drivers.grblhal.config import GrblConfig
 from drivers.grblhal.known import Known
@@ -29,7 +29,7 @@ class Hearing(Known):
         self.write = write
         self.stream = Stream(write)
         self.banners = 0  # how many resets have been told
-        self.fault = ""
+        self.fault: Fault | str = ""
         self.lost = False  # for good: start the control again
         self.alarm = 0
         self.trusted = True  # the position
@@ -69,13 +69,13 @@ class Hearing(Known):
         """Bytes that bypass every buffer."""
         self.write(bytes(codes_))
 
-    def fail(self, why: str) -> None:
+    def fail(self, why: str, code: FaultCode) -> None:
         """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
 
         A jog knows no feed hold, and everything else no jog cancel.
         """
         if not self.fault:
-            self.fault = why
+            self.fault = Fault(why, code)
         self.ready = False
         self.stream.waiting.clear()
         if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
@@ -110,7 +110,7 @@ class Hearing(Known):
         self.trusted = self.trusted and number not in codes.LOST
         self.void()
         if number != codes.HOMING_REQUIRED:
-            self.fail(codes.alarm_text(number))
+            self.fail(codes.alarm_text(number), codes.alarm_code(number))
         self.ready = False
 
     def damaged(self, line: str) -> None:
@@ -123,7 +123,7 @@ class Hearing(Known):
         if self.stream.stale or (self.busy and self.identity is None):
             return
         if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
-            self.fail(f"the line to the controller is disturbed: {line!r} is no answer")
+            self.fail(f"the line to the controller is disturbed: {line!r} is no answer", "controller-silent")
             self.doubtful = True
 
     # --- inside -------------------------------------------------------------------------------------------
@@ -144,14 +144,14 @@ class Hearing(Known):
             self.damaged("ok" if not error else f"error:{error}")
         elif error and first and not self.busy:
             # Sticky: what is behind it is answered with the same error and not executed.
-            self.fail(codes.error_text(error, ask.line))
+            self.fail(codes.error_text(error, ask.line), "controller-refuses")
 
     def _restarted(self) -> None:
         self.banners += 1
         self.void()
         self.diameter = self.overrides = None
         if not self.expected and self.identity is not None:
-            self.fail("the controller has been reset; what it was given is void")
+            self.fail("the controller has been reset; what it was given is void", "controller-reset")
 
     def _reported(self, report: Report | None, line: str) -> None:
         fit = report is not None and (self.busy or not self.ready or self.plausible(report))
@@ -160,7 +160,7 @@ class Hearing(Known):
             return
         self.keep(report)
         if report.diameter and self.ready:
-            self.fail("X counts in diameter (D:1): the controller has lost its modes")
+            self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
         self.asked_at = None
         self._mind(report)
         self.on_report(report)
@@ -177,6 +177,9 @@ class Hearing(Known):
                 self.alarmed(number)
             self.alarm, self.ready = number, False
         elif report.state == "Door":
-            self.fail(f"{codes.DOOR}, spindle and coolant are off: close it, then Reset")
+            self.fail(f"{codes.DOOR}, spindle and coolant are off: close it, then Reset", "door")
         elif report.state in _IDLERS:
-            self.fail(f"the controller is in state {report.state}, in which it runs no program of ours")
+            self.fail(
+                f"the controller is in state {report.state}, in which it runs no program of ours",
+                "controller-modes",
+            )

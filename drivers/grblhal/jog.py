@@ -73,7 +73,7 @@ class Jogs:
     def _begin(self, axis: str, velocity: float, now: float) -> None:
         place = self._c.position.get(axis)
         if place is None:
-            raise DriverError(f"the controller has no axis {axis} to jog")
+            raise DriverError(f"the controller has no axis {axis} to jog", "controller-refuses")
         if self.active:
             # Another speed or direction: from where the way that it has ends.
             place = self._sent

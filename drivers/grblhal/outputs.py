@@ -36,10 +36,10 @@ class GrblIO:
     def write(self, name: str, on: bool) -> None:
         """Raises DriverError for an output that the machine or the controller has not."""
         if name not in self._wanted:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]")
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
         why = self.lacking(name)
         if on and why:
-            raise DriverError(f"output {name} cannot be switched: {why}")
+            raise DriverError(f"output {name} cannot be switched: {why}", "output")
         self._wanted[name] = on
         if not why:
             self._tell(name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.ports import FaultCode
 from drivers.grblhal import codes
 
 _APART = 0.1  # s between two corrections
@@ -59,7 +60,7 @@ def in_reach(fraction: float) -> int:
 class Overrides:
     """``wanted`` is compared with what the controller reports; differences are sent again."""
 
-    def __init__(self, write: Callable[[bytes], None], fail: Callable[[str], None]) -> None:
+    def __init__(self, write: Callable[[bytes], None], fail: Callable[[str, FaultCode], None]) -> None:
         self._write = write
         self._fail = fail
         self._asked = [100, 100, 100]
@@ -98,7 +99,8 @@ class Overrides:
         self._since = now if self._since is None else self._since
         if now - self._since > _PATIENCE:
             self._fail(
-                f"the controller does not take an override: {self.wanted} asked, {list(reported)} told"
+                f"the controller does not take an override: {self.wanted} asked, {list(reported)} told",
+                "controller-refuses",
             )
             return
         self._sent_at, self._seen = now, told

@@ -66,7 +66,7 @@ class GrblAxes:
     def enable(self, on: bool) -> None:
         """The control's own leave to move; raises DriverError while a fault stands."""
         if on and self._c.fault:
-            raise DriverError(f"the controller stays locked: {self._c.fault}; Reset first")
+            raise DriverError(f"the controller stays locked: {self._c.fault}; Reset first", "no-power")
         self._blocks.powered = on
 
     def stop(self, how: Stop) -> None:
@@ -82,7 +82,7 @@ class GrblAxes:
             raise DriverError(f"the controller has no axis {axis!r} to home")
         self._blocks.demand_power()
         if self._blocks.hindrance() and self._c.alarm == 0:
-            raise DriverError(f"{axis} cannot home: {self._blocks.hindrance()}")
+            raise DriverError(f"{axis} cannot home: {self._blocks.hindrance()}", "homing")
         self._known[axis], self._homing = False, axis
         self._c.trusted = True
         self._blocks.home(axis)
@@ -90,7 +90,7 @@ class GrblAxes:
     def clear_fault(self) -> None:
         """The operator has seen it: reset, unlock, verify. Raises DriverError when the wire is gone."""
         if self._c.lost:
-            raise DriverError(f"{self._c.fault}; start the control again")
+            raise DriverError(f"{self._c.fault}; start the control again", "controller-lost")
         self._blocks.powered = False
         if not self._c.trusted:
             self._known = {axis.name: not axis.wired for axis in self._c.config.axes}

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
+from core.ports import Fault, FaultCode
+
 Step = tuple[Callable[[], bool], float, str]  # until, within s, what is told when it takes longer
 Script = Generator[Step, None, None]
 
 
 class ScriptError(Exception):
-    """What a script was begun for cannot be done; the sentence becomes the fault."""
+    """What a script was begun for cannot be done; the sentence becomes the fault, with its code."""
+
+    def __init__(self, text: str, code: FaultCode = "controller-refuses") -> None:
+        super().__init__(text)
+        self.code: FaultCode = code
 
 
 class Runner:
@@ -53,7 +59,7 @@ class Runner:
                 self._script = None
             except ScriptError as error:
                 self._script = None
-                return str(error)
+                return Fault(str(error), error.code)
             else:
                 self._until = now + self._step[1]
         return ""

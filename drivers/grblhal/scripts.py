@@ -32,7 +32,7 @@ def connect(c: Controller) -> Script:
     try:
         c.identity = read_identity((yield from asked(c, "$I")))
     except DriverError as error:
-        raise ScriptError(str(error)) from error
+        raise ScriptError(str(error), error.code) from error
     demand_axes(c)
     c.stream.use(c.identity.buffer)
     number = _alarm_of(c)
@@ -43,7 +43,7 @@ def connect(c: Controller) -> Script:
     if number:
         c.alarm = number
         if number != codes.HOMING_REQUIRED:
-            c.fail(codes.alarm_text(number))
+            c.fail(codes.alarm_text(number), codes.alarm_code(number))
         return
     yield from _quiet(c)
     yield from verify(c)
@@ -80,9 +80,12 @@ def verify(c: Controller) -> Script:
         yield from asked(c, "G49")
         yield from full_report(c)
     if any(abs(offset) > 1e-9 for offset in c.offset):
-        raise ScriptError(f"the controller keeps offsets {c.offset}; blocks go out in machine coordinates")
+        raise ScriptError(
+            f"the controller keeps offsets {c.offset}; blocks go out in machine coordinates",
+            "controller-modes",
+        )
     if c.diameter:
-        raise ScriptError("X counts in diameter (D:1) although G8 is in force")
+        raise ScriptError("X counts in diameter (D:1) although G8 is in force", "controller-modes")
     if c.report is None or c.report.state not in {"Idle", "Jog"}:
         raise ScriptError(f"the controller is in state {c.report.state if c.report else 'unknown'}, not Idle")
     c.ready = c.fault == ""
@@ -108,13 +111,13 @@ def recover(c: Controller) -> Script:
     c.void()
     yield from full_report(c)
     if c.report is not None and "E" in c.report.pins:
-        raise ScriptError("E-stop is pressed at the controller: release it, then Reset")
+        raise ScriptError("E-stop is pressed at the controller: release it, then Reset", "controller-estop")
     if c.report is not None and c.report.moves:
         yield from stop(c)
     yield from reset(c)
     yield from full_report(c)
     if _door(c):
-        raise ScriptError(f"{codes.DOOR}: close it, then Reset")
+        raise ScriptError(f"{codes.DOOR}: close it, then Reset", "door")
     number = _alarm_of(c)
     if number == codes.HOMING_REQUIRED:
         return

@@ -76,11 +76,13 @@ class GrblSpindle:
         beyond which it would turn slower than the program has it, and while it takes no lines.
         """
         if rpm and self._blocks.hindrance():
-            raise DriverError(f"the spindle stays off: {self._blocks.hindrance()}")
+            raise DriverError(f"the spindle stays off: {self._blocks.hindrance()}", "spindle-off")
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
         highest = self.highest
         if highest and abs(rpm) > 1.001 * highest:
-            raise DriverError(f"the spindle: the controller allows {highest:g} rpm ($30), not {abs(rpm):.0f}")
+            raise DriverError(
+                f"the spindle: the controller allows {highest:g} rpm ($30), not {abs(rpm):.0f}", "spindle-off"
+            )
         self._wanted = rpm
         self.pump()
 
@@ -155,7 +157,7 @@ class GrblSpindle:
             self._paused_at = None
             self._c.realtime(codes.SPINDLE_PAUSE)
         elif self._paused_at is not None and self._c.clock.now() - self._paused_at > _OBEYS and self._turns():
-            self._c.fail("the controller does not stop its spindle in a hold: PRESS E-STOP")
+            self._c.fail("the controller does not stop its spindle in a hold: PRESS E-STOP", "ignores-stop")
 
     def _after_hold(self) -> None:
         """$63 leaves it off; said again, in case that this controller has restored it."""

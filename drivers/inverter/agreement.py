@@ -5,6 +5,7 @@ The inverter's figure is late by a round of its line, so it is compared only whi
 
 from __future__ import annotations
 
+from core.ports import Fault
 from drivers.inverter.obedience import PRESS
 
 _EVEN_RPM, _EVEN = 10.0, 0.01  # a change of the output that is none
@@ -33,7 +34,8 @@ class Agreement:
         self._off_since = now if self._off_since is None else self._off_since
         if now - self._off_since < _LONG:
             return ""
-        return (
+        return Fault(
             f"the encoder measures {measured:.0f} rpm and the inverter gives {given:.0f}: "
-            f"coupling, belt or counts_per_rev; {PRESS}"
+            f"coupling, belt or counts_per_rev; {PRESS}",
+            "spindle-disagrees",
         )

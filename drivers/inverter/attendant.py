@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.ports import Clock, DriverError
+from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.errors import NoAnswerError, RefusedError
 from drivers.inverter.family import Family, Look
 from drivers.inverter.obedience import PRESS, STANDS, Obedience
@@ -48,7 +48,7 @@ class Attendant:
         self._reset = False
         self.grace = 0.0  # until then silence is no trouble
         self.seen: Seen | None = None
-        self.trouble = ""  # latched until ``clear``
+        self.trouble: Fault | str = ""  # latched until ``clear``
         self.missed = ""  # why the last exchange failed
         self.warnings: tuple[str, ...] = ()
 
@@ -179,16 +179,16 @@ class Attendant:
         if self._reset:
             return  # a look from before the operator's word
         if look.trip:
-            self._latch(f"the inverter has tripped: {look.trip}")
+            self._latch(f"the inverter has tripped: {look.trip}", "spindle")
         elif why := self._obedience.judge(now, look):
-            self._latch(f"the inverter does not obey: {why}")
+            self._latch(f"the inverter does not obey: {why}", "ignores-stop")
 
     def _let_go(self, why: str) -> None:
         self.missed = why
         if self._family is not None:
             self._family.close()
         self._family, self._told = None, None
-        self._latch(f"{why}: {PRESS}" if self._may_turn() else why)
+        self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
 
     def _supervise(self) -> None:
         """Nothing seen for too long is trouble, also when nothing was wanted of it."""
@@ -196,12 +196,12 @@ class Attendant:
         silent = now - self.seen.t if self.seen is not None else LOST
         if silent >= LOST and now >= self.grace and not self.trouble:
             why = self.missed or "the inverter does not answer"
-            self._latch(f"{why}: {PRESS}" if self._may_turn() else why)
+            self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
 
     def _may_turn(self) -> bool:
         return self._want != 0.0 or self.seen is None or self.seen.look.output > 0.0
 
-    def _latch(self, why: str) -> None:
+    def _latch(self, why: str, code: FaultCode) -> None:
         if not self.trouble:
-            self.trouble = why
+            self.trouble = Fault(why, code)
         self._want, self._reset = 0.0, False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from core.ports import Clock, DriverError
+from core.ports import Clock, DriverError, Fault
 from drivers.inverter.agreement import Agreement
 from drivers.inverter.attendant import LOST, Attendant
 from drivers.inverter.config import InverterConfig
@@ -68,11 +68,15 @@ class InverterSpindle:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
         if rpm:
             if self._estop():
-                raise DriverError("the spindle stays off while E-stop is pressed; release it first")
+                raise DriverError(
+                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                )
             if why := self.fault() or self._lost():
-                raise DriverError(f"the spindle stays off: {why}")
+                raise DriverError(f"the spindle stays off: {why}", "spindle-off")
             if not self._attendant.warm:
-                raise DriverError("the spindle stays off: the inverter has not yet answered often enough")
+                raise DriverError(
+                    "the spindle stays off: the inverter has not yet answered often enough", "spindle-off"
+                )
         limit = self._config.rpm_max
         self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
@@ -83,7 +87,9 @@ class InverterSpindle:
     def clear_fault(self) -> None:
         """Forget a fault; a reset goes to the inverter where it has tripped. Nothing turns."""
         if not self._alive():
-            raise DriverError("whoever attended the inverter has ended; start the control again")
+            raise DriverError(
+                "whoever attended the inverter has ended; start the control again", "inverter-silent"
+            )
         self._attendant.clear()
         self._unmeasured = ""
 
@@ -124,11 +130,13 @@ class InverterSpindle:
             attendant.want = 0.0
             return self._unmeasured
         if not self._alive():
-            return f"nobody attends the inverter any more: {PRESS}"
+            return Fault(f"nobody attends the inverter any more: {PRESS}", "inverter-silent")
         seen = attendant.seen
         now = self._clock.now()
         if seen is not None and now - seen.t > _DEAD and now > attendant.grace:
-            return f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}"
+            return Fault(
+                f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}", "inverter-silent"
+            )
         return ""
 
     def _wrong(self, encoder: Encoder) -> bool:

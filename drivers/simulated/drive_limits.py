@@ -17,14 +17,19 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
         axis = servo.axis
         fastest = abs(segments.v[:, i]).max(initial=0.0)
         if fastest > axis.vmax * 1.001 + 0.01:
-            raise DriverError(f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued")
+            raise DriverError(
+                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued", "drive-limits"
+            )
         if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
-            raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued")
+            raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued", "drive-limits")
         if axis.travel is None or not servo.homed:
             continue
         low, high = axis.travel
         if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
-            raise DriverError(f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued")
+            raise DriverError(
+                f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued",
+                "drive-limits",
+            )
 
 
 def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:

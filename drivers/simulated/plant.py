@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from core.ports import Cam, Clock, DriverError, Segments, Stop
+from core.ports import Cam, Clock, DriverError, Segments, Stop, code_of
 from drivers.geared_queue import GearedQueue
 from drivers.gearing import Slides, State
 from drivers.phase import Phase
@@ -107,9 +107,9 @@ class Plant:
                 self._power_off()
                 return
             if self.panel.estop:
-                raise DriverError("drives stay off while E-stop is pressed; release it first")
+                raise DriverError("drives stay off while E-stop is pressed; release it first", "no-power")
             if self.fault:
-                raise DriverError(f"drives stay off: {self.fault}; clear the fault first")
+                raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
             if not self.enabled:
                 self.queue.rest_at(self._readings())
             self.enabled, self._off_at = True, _NEVER
@@ -174,9 +174,9 @@ class Plant:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(f"{self.fault}; clear the fault first")
+            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
         if not self.enabled or self._off_at < _NEVER:
-            raise DriverError("the drives are off; switch them on first")
+            raise DriverError("the drives are off; switch them on first", "power-lost")
         if self._homing is not None:
             raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
 

@@ -104,9 +104,11 @@ class SimSpindle:
         with plant.lock:
             now = plant.advance()
             if rpm and plant.panel.estop:
-                raise DriverError("the spindle stays off while E-stop is pressed; release it first")
+                raise DriverError(
+                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                )
             if rpm and plant.spindle.faults.fault:
-                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}")
+                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}", "spindle-off")
             plant.spindle.order(now, rpm)
 
     def coast(self) -> None:

@@ -26,7 +26,7 @@ class Terminals:
     def write(self, name: str, on: bool, now: float) -> None:
         """Switch an output; raises DriverError for a name that the machine has not."""
         if name not in self.outputs:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]")
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
             self._opened_at = now + self._late(self._collet.open_time)

@@ -151,7 +151,7 @@ class GrblBench:
         return [event.text for event in self.events if event.kind == kind]
 
     def alarms(self) -> str:
-        return "; ".join(f"{alarm.code}: {alarm.cause}" for alarm in self.shot.alarms)
+        return "; ".join(f"{alarm.code}: {alarm.detail or alarm.cause}" for alarm in self.shot.alarms)
 
 
 def quirky(**changes: object) -> Quirks:
