@@ -130,10 +130,10 @@ class PathBuilder:
 
     def _append(self, new: Pieces, reached: float) -> None:
         """Join on; joints of short chords before the old end are moved to where the new ones say."""
-        if self._written is None or not self._parts:
+        known = joined([*self._parts, new[:0]])
+        if self._written is None or not len(known):  # blocks without length leave nothing to join on to
             self._parts, self._written = [unrounded(new, self._limits)], new[-2 * SUPPORT :]
             return
-        known = joined(self._parts)
         end = self._s0 + float(known.length.sum())
         redo = min(SUPPORT, len(known), len(self._written))
         if reached > end - float(known.length[len(known) - redo :].sum()):
