@@ -1,25 +1,63 @@
-"""What happens when TurnDesk itself is at fault: one line for the person, the traceback into a file."""
+"""What happens when TurnDesk itself is at fault: one line for the person, the traceback into a crash file."""
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
+import threading
+import time
 import traceback
 from pathlib import Path
 from types import TracebackType
 
+_NAMES = 100  # tried before giving up: so many crashes in one second
+
 
 def report_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """An excepthook: nobody at a machine can act on a traceback, but whoever mends it needs it."""
-    where = _keep("".join(traceback.format_exception(kind, error, trace)))
+    where = keep_crash(kind, error, trace)
     what = str(error).splitlines()[0] if str(error) else kind.__name__
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
-def _keep(text: str) -> str:
-    path = Path(tempfile.gettempdir()) / "turndesk-crash.txt"
+def keep_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
+    """A crash file of its own in the log folder, else in the system's folder for such; where it lies."""
+    text = "".join(traceback.format_exception(kind, error, trace))
+    head = (
+        f"{time.strftime('%Y-%m-%d %H:%M:%S%z')}  {' '.join(sys.argv)}  {threading.current_thread().name}\n"
+    )
+    for folder in (_logs(), Path(tempfile.gettempdir())):
+        path = _written(folder, head + text) if folder is not None else None
+        if path is not None:
+            return str(path)
+    return "what you were doing"
+
+
+def _logs() -> Path | None:
+    """Where the log lies; it may be the folder itself that has failed."""
     try:
-        path.write_text(text, encoding="utf-8")
+        from app.desk.home import home
+
+        return home() / "logs"
+    except (OSError, RuntimeError, ImportError):
+        return None
+
+
+def _written(folder: Path, text: str) -> Path | None:
+    """The file, never one that is already there; None where it cannot be written."""
+    stem = f"crash-{time.strftime('%Y%m%d-%H%M%S')}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for count in range(_NAMES):
+            path = folder / f"{stem}{f'-{count}' if count else ''}.txt"
+            try:
+                number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+            except FileExistsError:
+                continue
+            with open(number, "w", encoding="utf-8", errors="replace") as file:
+                file.write(text)
+            return path
     except OSError:
-        return "what you were doing"
-    return str(path)
+        return None
+    return None

@@ -14,7 +14,7 @@ from app.cli.crash import report_crash
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
-COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial")
+COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial", "alarms")
 
 NO_DISPLAY = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:
@@ -23,6 +23,7 @@ turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no op
   turndesk trace FILE --out CSV    the setpoints that the drives would get
   turndesk run FILE --headless     runs it on the simulated lathe
 """
+WITHOUT = "prove, expand, trace and run --headless need none"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -98,6 +99,10 @@ def _screen(args: argparse.Namespace) -> int:
     if not _has_display():
         sys.stderr.write(NO_DISPLAY)
         return EXIT_USAGE
+    from app.screen.display import trouble
+
+    if why := trouble():
+        raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}")
     from app.screen.main import run_screen
 
     return run_screen(machine=args.machine, program=args.program, offsets=args.offsets)

@@ -2,44 +2,75 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import logging.handlers
 import queue
+import sys
 
 from app.desk.home import home
 
 _SIZE = 1_000_000  # bytes, three files of it
+_FORM = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
 class Log:
     """Every logger writes to ``logs/turndesk.log`` until this is closed; nowhere, where no file can be made.
 
-    No thread of the machine may wait for a disk, so records go through a queue.
+    No thread of the machine may wait for a disk, so records go through a queue. ``trouble`` says why nothing
+    is written; empty while all is well.
     """
 
     def __init__(self) -> None:
         records: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
+        self._unmade = ""
+        self._file = self._opened()
         self._handler = logging.handlers.QueueHandler(records)
-        self._listener = logging.handlers.QueueListener(records, *_file())
+        self._listener = logging.handlers.QueueListener(records, *([self._file] if self._file else []))
         logging.getLogger().addHandler(self._handler)
         self._listener.start()
+
+    @property
+    def trouble(self) -> str:
+        """Why the log is not written."""
+        return self._unmade or (self._file.trouble if self._file else "")
 
     def close(self) -> None:
         """Write what is queued."""
         logging.getLogger().removeHandler(self._handler)
         self._listener.stop()
         for handler in self._listener.handlers:
-            handler.close()
+            with contextlib.suppress(OSError):  # of a full disk: told already
+                handler.close()
+
+    def _opened(self) -> _File | None:
+        folder = home() / "logs"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            file = _File(folder / "turndesk.log", maxBytes=_SIZE, backupCount=2, encoding="utf-8")
+        except OSError as error:
+            self._unmade = f"the log cannot be written: {folder}: {error.strerror or error}"
+            return None
+        file.setFormatter(logging.Formatter(_FORM))
+        return file
 
 
-def _file() -> list[logging.Handler]:
-    folder = home() / "logs"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = logging.handlers.RotatingFileHandler(
-            folder / "turndesk.log", maxBytes=_SIZE, backupCount=2, encoding="utf-8", delay=True
-        )
-    except OSError:
-        return []
-    file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
-    return [file]
+class _File(logging.handlers.RotatingFileHandler):
+    """A file whose disk may fail: that is told, and no traceback goes to the console."""
+
+    trouble = ""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write it; one that can be written again ends the trouble."""
+        self.failed = False
+        super().emit(record)
+        if not self.failed:
+            self.trouble = ""
+
+    def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802  logging's own name
+        """Keep why."""
+        error = sys.exc_info()[1]
+        what = error.strerror if isinstance(error, OSError) else error
+        self.failed, self.trouble = True, f"the log cannot be written: {self.baseFilename}: {what}"
+
+    failed = False

@@ -67,7 +67,7 @@ def build_desk(
         log.close()
 
     desk.shut = shut
-    desk.unkept = lambda: journal.trouble
+    desk.unkept = lambda: journal.trouble or log.trouble
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     return desk

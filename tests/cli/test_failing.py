@@ -1,0 +1,123 @@
+"""What TurnDesk says when it fails itself: a crash file in the log folder, no display, no log."""
+
+from __future__ import annotations
+
+import logging
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.cli.crash import report_crash
+from app.compose.logs import Log
+from core.executor.alarms import TroubleError, alarm_of, log_alarm
+
+CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"
+
+
+def crash(text: str) -> None:
+    """As the interpreter does with what nobody catches."""
+    error = RuntimeError(text)
+    report_crash(type(error), error, error.__traceback__)
+
+
+def test_crash_files_lie_in_the_log_folder_one_each(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    crash("first")
+    crash("second")
+    files = sorted((home / "logs").glob("crash-*.txt"))
+    assert len(files) == 2
+    texts = "".join(file.read_text() for file in files)
+    assert "RuntimeError: first" in texts
+    assert "RuntimeError: second" in texts
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 2
+    assert str(home / "logs") in told[0]
+    assert "Traceback" not in "".join(told)
+
+
+def test_a_crash_without_a_log_folder_is_kept_elsewhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    crash("nowhere")
+    assert str(tmp_path / "crash-") in capsys.readouterr().err
+
+
+def test_a_crash_that_can_be_kept_nowhere_is_one_line_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "file"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "file"))
+    crash("nowhere")
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="displays of Linux")
+@pytest.mark.parametrize(
+    ("display", "says"),
+    [
+        ({"DISPLAY": ":77"}, "no display answers at DISPLAY=:77"),
+        (
+            {"WAYLAND_DISPLAY": "/nowhere/wayland-9"},
+            "no display answers at WAYLAND_DISPLAY=/nowhere/wayland-9",
+        ),
+        ({"WAYLAND_DISPLAY": "w9", "DISPLAY": ":77"}, "WAYLAND_DISPLAY=w9 or DISPLAY=:77"),
+        ({"QT_QPA_PLATFORM": "xcb"}, "neither DISPLAY nor WAYLAND_DISPLAY is set"),
+        ({"QT_QPA_PLATFORM": "nonsense"}, "QT_QPA_PLATFORM=nonsense"),
+        ({"DISPLAY": "rubbish"}, "no display answers at DISPLAY=rubbish"),
+    ],
+)
+def test_a_screen_that_cannot_be_opened_is_one_line(
+    tmp_path: Path, display: dict[str, str], says: str
+) -> None:
+    """And status 2, where Qt alone would abort with a core dump."""
+    bare = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"}
+    }
+    around = {**bare, "TURNDESK_HOME": str(tmp_path), **display}
+    done = subprocess.run(
+        [sys.executable, "-c", CODE], env=around, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert says in done.stderr
+    assert "headless" in done.stderr
+    assert list(tmp_path.glob("logs/crash*")) == []
+
+
+def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "logs").write_text("a file stands where the folder should be")
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    log = Log()
+    assert log.trouble.startswith("the log cannot be written: ")
+    log.close()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a disk that is always full")
+def test_a_full_disk_under_the_log_is_told_without_a_traceback(
+    home: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (home / "logs").mkdir(parents=True)
+    (home / "logs" / "turndesk.log").symlink_to("/dev/full")
+    log = Log()
+    assert log.trouble == ""
+    logging.getLogger("test").warning("lost")
+    log.close()
+    assert "No space left on device" in log.trouble
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_a_record_of_the_log_has_time_thread_and_alarm(home: Path) -> None:
+    log = Log()
+    log_alarm(alarm_of(TroubleError("driver", "setpoints of a wrong shape", 7), 0, 1.0)[0])
+    log.close()
+    (line,) = (home / "logs" / "turndesk.log").read_text().splitlines()
+    assert "MainThread" in line
+    assert line.endswith("alarm 104 driver line 7: setpoints of a wrong shape")
