@@ -65,6 +65,16 @@ def _reached(report: Report, length: Callable[[float], float], unit: str) -> str
     return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
 
 
+def _ways(report: Report) -> str:
+    """What else the program may do: by its inputs, and by block delete."""
+    ways = report.ways
+    if ways.gone + ways.left <= 1:
+        return ""
+    left = f", {ways.left} not" if ways.left else ""
+    low, high = ways.cycle
+    return f"  {ways.gone} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
+
+
 def _sheet(path: Path, report: Report) -> str:
     """The proof as a person reads it."""
     from app.cli.shown import MM_PER_INCH, inches, millimetres, per_minute
@@ -83,6 +93,7 @@ def _sheet(path: Path, report: Report) -> str:
         f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
         f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"
         f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
+        f"{_ways(report)}"
         f"  path {length(report.cutting_length):.4f} {unit} cutting,"
         f" {length(report.rapid_length):.4f} {unit} rapid\n"
         f"{_reached(report, length, unit)}"

@@ -103,6 +103,11 @@ def report_json(file: str, report: Report) -> Json:
             "rpm": [round(rpm, 3) for rpm in reach.rpm],
             "feed_ipm": [per_minute(speed) for speed in reach.feed],
         },
+        "ways": {
+            "proved": report.ways.gone,
+            "left": report.ways.left,
+            "cycle_time_s": [seconds(t) for t in report.ways.cycle],
+        },
         "stock": None,
         "final": {
             "x": length(report.final[0]),

@@ -67,7 +67,10 @@ FLOW_WORDS: dict[str, frozenset[str]] = {
 }
 """Lines that steer the order of execution, and exactly what stands on them."""
 
-CALLS = frozenset({"P", "M95", "M97", "M98"})
+ASKS = frozenset({"M95", "M97"})
+"""Calls that depend on an input."""
+
+CALLS = ASKS | {"P", "M98"}
 ENDS = frozenset({2, 30})
 """M codes that end the program."""
 

@@ -99,7 +99,7 @@ class _Counter:
     def _line(self, made: Statement, depth: int) -> Count:
         if made.flow not in codes.CALLS:
             return Count(blocks_of(made), 1)
-        asks = made.flow in {"M95", "M97"}
+        asks = made.flow in codes.ASKS
         if depth >= DEEPEST_CALL or (asks and not takes_call(made, self._inputs)):
             return Count(int(asks), 1)
         return _sum(Count(int(asks), 1), self._subroutine(call_target(made), depth + 1))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
@@ -15,6 +15,10 @@ from core.interpreter.setup import Setup
 from core.language.diagnostics import Diagnostic
 from core.language.dialect import Dialect
 from core.language.source import Source
+
+if TYPE_CHECKING:
+    from core.interpreter.branching import Branching, Guide
+    from core.interpreter.program import Program
 
 _LATHE_AXES = 3
 
@@ -76,10 +80,20 @@ Begin = Callable[[Setup], Interpretation]
 
 def _omniturn(source: Source, strict: bool) -> Begin:
     from core.interpreter.program import read_program
-    from core.interpreter.run import Interpreter
 
-    program = read_program(source, strict)
-    return lambda setup: Interpreter(program.for_one_pass(), setup)
+    return _OmniTurn(read_program(source, strict))
+
+
+class _OmniTurn:
+    """An OmniTurn text that has been read."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+
+    def __call__(self, setup: Setup) -> Interpretation:
+        from core.interpreter.run import Interpreter
+
+        return Interpreter(self.program.for_one_pass(), setup)
 
 
 def line_alone(source: Source, setup: Setup) -> Line:
@@ -156,6 +170,23 @@ class Reading:
         if dialect is Dialect.OMNITURN and setup.begin is not None and setup.begin.single:
             return line_alone(self.source, setup)
         return self._begin(setup)
+
+    def branching(self, setup: Setup, guide: Guide) -> Branching | None:
+        """A pass that ``guide`` can send both ways; None where the program asks no input."""
+        if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.single):
+            return None
+        read = self._begin
+        if not isinstance(read, _OmniTurn) or not read.program.asks:
+            return None
+        from core.interpreter.branching import Branching
+
+        return Branching(read.program.for_one_pass(), setup, guide)
+
+    @property
+    def program(self) -> Program | None:
+        """The lines of an OmniTurn program ready to run; None for other languages."""
+        read = self._begin
+        return read.program if isinstance(read, _OmniTurn) else None
 
     @cached_property
     def _begin(self) -> Begin:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 from core.interpreter.count import DEEPEST_CALL
 from core.interpreter.log import refusal
 from core.interpreter.program import Program
@@ -19,6 +21,23 @@ class Flow:
         self._structure = program.structure
         self._loops: list[list[int]] = []  # index of LS, passes left
         self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
+
+    def twin(self) -> Flow:
+        """The same place, to go on from there by itself."""
+        twin = copy(self)
+        twin._loops = [loop[:] for loop in self._loops]
+        twin._calls = [(at, end, [loop[:] for loop in loops]) for at, end, loops in self._calls]
+        return twin
+
+    @property
+    def place(self) -> tuple[object, ...]:
+        """The line and the ways back from it: equal where everything that comes is equal."""
+        calls = tuple((at, tuple(map(tuple, loops))) for at, _, loops in self._calls)
+        return self.at, tuple(map(tuple, self._loops)), calls
+
+    def stop(self) -> None:
+        """Nothing comes any more."""
+        self.end = self.at
 
     @property
     def called(self) -> bool:

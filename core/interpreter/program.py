@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from core.interpreter import codes
@@ -9,7 +10,7 @@ from core.interpreter.plain import read_move
 from core.interpreter.reading import statement, unreadable
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
 from core.interpreter.steps import Steps, read_steps
-from core.interpreter.structure import Structure, find_structure
+from core.interpreter.structure import Structure, call_target, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
@@ -33,6 +34,9 @@ class Program:
     blocks: int  # lines that hold more than a comment
     names_units: bool  # G70 or G71 stands somewhere
     m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
+    asks: tuple[Statement, ...] = ()  # lines that call a subroutine by an input
+    deletes: bool = False  # / stands somewhere
+    calls: tuple[tuple[int, int], ...] = ()  # line of each call or contour by a subroutine, and its number
 
     def for_one_pass(self) -> Program:
         """The same; what the pass finds out about a line is its own."""
@@ -139,7 +143,18 @@ def read_program(source: Source, strict: bool = False) -> Program:
         blocks=_executable(reader),
         names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
         m_codes=tuple(made for made in reader.statements if made.m not in {None, *codes.M_KNOWN}),
+        asks=tuple(made for made in reader.statements if made.flow in codes.ASKS),
+        deletes=any(made.block_delete for made in reader.statements),
+        calls=tuple(_calls(reader.statements)),
     )
+
+
+def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
+    for made in statements:
+        if made.flow in codes.CALLS:
+            yield made.line, call_target(made)
+        elif made.one_shot in codes.CONTOUR_CYCLES and "P" in made.words:
+            yield made.line, int(made.value("P") or 0)
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:

@@ -205,12 +205,16 @@ class Interpreter(Told):
 
     def _call(self, made: Statement) -> Iterator[Block]:
         state = self._state
-        if made.flow in {"M95", "M97"}:
+        if made.flow in codes.ASKS:
             asked = AskInput(terminal(made))
             yield from self._shaped(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
-            if not takes_call(made, state.setup.inputs):
+            if not self._takes(made):
                 return
         self._flow.call(made)
+
+    def _takes(self, made: Statement) -> bool:
+        """Whether a conditional call is made; the input is asked at this moment."""
+        return takes_call(made, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, step: Step) -> None:
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""

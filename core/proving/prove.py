@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
-
-from core.interpreter.actions import Dwell
-from core.interpreter.blocks import Block
 from core.interpreter.dialects import Reading
-from core.interpreter.needs import Need, first_needs, needs_of
-from core.interpreter.series import Series
 from core.interpreter.setup import Setup
-from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine
+from core.proving.block_delete import deletes_blocks, with_the_other
+from core.proving.branches import Branches
 from core.proving.cutting_checks import CuttingChecks
-from core.proving.interlock import c_findings
-from core.proving.passing import Part
-from core.proving.report import MillFigures, Report, Times
-from core.proving.stretches import Moved, Rested
-from core.proving.tally import Tally
+from core.proving.one_pass import MAX_FINDINGS, Pass
+from core.proving.report import Report
 from core.proving.timeline import Timeline
-from core.proving.travel import travel_findings
 
-_AT_ONCE = 1000  # blocks that are looked at together
-MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the travel; nobody reads more
+__all__ = ["MAX_FINDINGS", "prove"]
+
+Progress = Callable[[float], None]
 
 
 def prove(
     program: Source | Reading,
     setup: Setup,
     machine: Machine,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
     *,
     ideal: bool = False,
 ) -> Report:
@@ -41,140 +33,31 @@ def prove(
 
     A program that others go through too is given as its one reading.
 
+    The figures are those of the inputs and of block delete as ``setup`` has them; what the program does with
+    other inputs, and with block delete the other way, is proved too, and found in ``diagnostics``.
+
     ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
     """
-    source = program.source if isinstance(program, Reading) else program
-    timeline = Timeline.of(program, setup, machine, ideal=ideal)
+    reading = program if isinstance(program, Reading) else Reading(program, strict=setup.strict)
+    report = _proved(reading, setup, machine, progress, ideal=ideal)
+    if not deletes_blocks(reading.source) or (setup.begin is not None and setup.begin.single):
+        return report
+    flipped = replace(setup, block_delete=not setup.block_delete)
+    other = _proved(reading, flipped, machine, progress, ideal=ideal)
+    return with_the_other(report, other, deleted=flipped.block_delete)
+
+
+def _proved(
+    reading: Reading, setup: Setup, machine: Machine, progress: Progress | None, *, ideal: bool
+) -> Report:
+    """With block delete as it stands, and all inputs both ways."""
+    branches = Branches(reading, setup, machine, ideal=ideal)
+    timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
     single = setup.begin is not None and setup.begin.single
-    proof = _Proof(machine, CuttingChecks(machine, source.dialect, single))
-    for stretch in timeline.spans():
-        proof.add(stretch)
-        if progress is not None and proof.last is not None:
-            progress(proof.last.n)
-    return proof.report(timeline, source)
-
-
-class _Proof:
-    """What adds up while the program passes by."""
-
-    def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
-        self._machine = machine
-        self._checks = checks
-        self._tally = Tally()
-        self._unseen: list[Part] = []
-        self._waiting = 0  # blocks in them
-        self._cutting = self._rapid = self._dwell = self._wait = 0.0
-        self._beyond: dict[tuple[int, str], Diagnostic] = {}
-        self._needs: tuple[Need, ...] = ()
-        self._before: Block | None = None
-        self.last: Block | None = None
-        self._last_move: Block | None = None
-        self.elementary = 0
-
-    def add(self, stretch: Moved | Rested) -> None:
-        if isinstance(stretch, Moved):
-            self._moved(stretch)
-        else:
-            self._rested(stretch)
-
-    def _moved(self, stretch: Moved) -> None:
-        spent = stretch.chunk.t1 - stretch.chunk.t0
-        rapid = float(spent[_rapid(stretch.parts)].sum())
-        self._rapid += rapid
-        self._cutting += float(spent.sum()) - rapid
-        self._unseen += stretch.parts
-        for part in stretch.parts:
-            self._checks.look(part)
-        self._waiting += len(spent)
-        self.elementary += len(spent)
-        if stretch.last is not None:
-            self.last = self._last_move = stretch.last
-        if self._waiting >= _AT_ONCE:
-            self._see()
-
-    def _see(self) -> None:
-        """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
-        parts, self._unseen, self._waiting = self._unseen, [], 0
-        self._tally.add(parts)
-        for part in parts:
-            self._need(part)
-            if len(self._beyond) < MAX_FINDINGS:
-                self._look_beyond(part)
-
-    def _look_beyond(self, part: Part) -> None:
-        for finding in (*travel_findings(part, self._machine), *c_findings(part, self._machine)):
-            self._beyond.setdefault((finding.line, finding.message[:1]), finding)
-
-    def _need(self, blocks: Part) -> None:
-        """Only a controller that plans by itself can lack what a program needs."""
-        if blocks and self._machine.backend == "grblhal":
-            unlike = blocks[:1] if isinstance(blocks, Series) else blocks  # what one needs, all need
-            self._needs = first_needs((*self._needs, *needs_of(unlike, self._before)))
-            self._before = blocks[-1]
-
-    def _rested(self, stretch: Rested) -> None:
-        spent = stretch.t1 - stretch.t0
-        if stretch.block is None:
-            self._wait += spent
-            return
-        self.elementary += 1
-        self.last = stretch.block
-        self._checks.look([stretch.block])
-        self._need([stretch.block])
-        if isinstance(stretch.block.action, Dwell):
-            self._dwell += spent
-        else:
-            self._wait += spent
-
-    def report(self, timeline: Timeline, source: Source) -> Report:
-        self._see()
-        beyond = list(self._beyond.values())[:MAX_FINDINGS]
-        found = [*timeline.diagnostics, *beyond, *self._checks.findings]
-        interpreter, last, tally = timeline.interpreter, self.last, self._tally
-        end = self._last_move  # in its own frame: M30 takes the work shift away, and moves nothing
-        return Report(
-            name=source.name,
-            dialect=source.dialect,
-            metric=bool(last and last.modal.metric),
-            blocks=interpreter.source_blocks,
-            elementary=self.elementary,
-            diagnostics=tuple(sorted(found, key=lambda d: (d.line, d.column))),
-            times=Times(self._cutting, self._rapid, self._dwell, self._wait),
-            cutting_length=tally.cutting_length,
-            rapid_length=tally.rapid_length,
-            tools=tuple(sorted(interpreter.used_tools)),
-            missing_tools=tuple(sorted(interpreter.missing_tools)),
-            reach=tally.reach,
-            final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
-            machine_final=end.machine_end if end else timeline.start,
-            mill=self._mill(),
-            needs=self._needs,
-        )
-
-    def _mill(self) -> MillFigures | None:
-        if self._machine.kind != "mill":
-            return None
-        return MillFigures(
-            axes=tuple(axis.name for axis in self._machine.axes),
-            reach=tuple(span.range for span in self._tally.axes),
-            final=self.last.swivel if self.last else None,
-        )
-
-
-def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
-    """For each block whether it is a rapid."""
-    found: list[bool] = []
-    for part in parts:
-        series = isinstance(part, Series)
-        found += [part[0].rapid] * len(part) if series else [block.rapid for block in part]
-    return np.array(found, dtype=bool)
-
-
-def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:
-    """X, Z and C of a start in the machine's order."""
-    return start[0], start[1], start[-1]
-
-
-def _shown_c(block: Block) -> float:
-    """C of the end as the program counts it."""
-    return block.c % 360.0 if block.modal.wraps_c else block.c
+    one = Pass(machine, CuttingChecks(machine, reading.source.dialect, single))
+    for stretch in branches.gone(one, timeline):
+        one.add(stretch)
+        if progress is not None and one.last is not None:
+            progress(one.last.n)
+    report = one.report(timeline, reading.source)
+    return branches.proved(report, progress)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import replace
+from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
@@ -22,6 +24,14 @@ from core.proving.passing import Passing
 from core.proving.stretches import Moved, Rested, TimedBlock
 
 _AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any digit that is shown
+
+
+class Standing(NamedTuple):
+    """A place between two blocks at rest: time, spindle, and whether a feed has to wait for its speed."""
+
+    t: float
+    spindle: SpindleForecast
+    speed_wanted: bool
 
 
 class Timeline:
@@ -57,6 +67,15 @@ class Timeline:
         """The timeline of a program's text, or of its reading."""
         reading = program if isinstance(program, Reading) else Reading(program, strict=setup.strict)
         return cls(reading.begin(setup), setup, machine, ideal=ideal)
+
+    @property
+    def standing(self) -> Standing:
+        """What a way that leaves this one here goes on with."""
+        return Standing(self.t, copy(self.spindle), self._speed_wanted)
+
+    def go_on(self, standing: Standing) -> None:
+        """Begin where another timeline has stood at rest, not at the start of the program."""
+        self.t, self.spindle, self._speed_wanted = standing.t, copy(standing.spindle), standing.speed_wanted
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

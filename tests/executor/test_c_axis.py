@@ -149,7 +149,7 @@ def test_reset_in_a_plane_and_a_new_start() -> None:
 def test_no_flat_beyond_the_travel_of_x() -> None:
     """X at the entry lies inside, a corner of the figure does not."""
     rig = Rig()
-    source = Source("FAR", "G90G94F300\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
+    source = Source("FAR", "G90G94F300M27\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
     setup = setup_for(rig.machine, tools={}, secondary={})
     assert [(d.line, d.code) for d in prove(source, setup, rig.machine).errors] == [(5, "soft-limit")]
     rig.start(source.text)

@@ -1,0 +1,55 @@
+"""Block delete: a program with ``/`` is proved with the switch on and off, for it may stand either way."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from core.interpreter.needs import first_needs
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import Dialect
+from core.language.source import Source
+from core.proving.report import Report, Ways
+
+# / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.
+_DELETED = {
+    Dialect.OMNITURN: re.compile(r"^[^\S\n]*/", re.MULTILINE),
+    Dialect.SINUMERIK: re.compile(r"^[^\S\n]*(?:[N:][^\S\n]*[0-9]+[^\S\n]*)?/", re.MULTILINE | re.IGNORECASE),
+    Dialect.KLARTEXT: re.compile(r"^[^\S\n]*(?:[0-9]+[^\S\n]*)?/", re.MULTILINE),
+}
+
+
+def deletes_blocks(source: Source) -> bool:
+    """Whether ``/`` stands before a line of the program or of its subprograms."""
+    return ("/" in source.text and _DELETED[source.dialect].search(source.text) is not None) or any(
+        map(deletes_blocks, source.subprograms)
+    )
+
+
+def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
+    """The report of the switch as it stands, with what was found with it the other way."""
+    known = {(found.line, found.code, found.severity) for found in report.diagnostics}
+    with_switch = f"With block delete {'on' if deleted else 'off'}"
+    found = [
+        replace(each, message=f"{with_switch}: {each.message}")
+        for each in other.diagnostics
+        if each.severity is not Severity.NOTE and (each.line, each.code, each.severity) not in known
+    ]
+    (low, high), (other_low, other_high) = report.ways.cycle, other.ways.cycle
+    return replace(
+        report,
+        diagnostics=in_order([*report.diagnostics, *found]),
+        tools=tuple(sorted({*report.tools, *other.tools})),
+        missing_tools=tuple(sorted({*report.missing_tools, *other.missing_tools})),
+        needs=first_needs((*report.needs, *other.needs)),
+        ways=Ways(
+            report.ways.gone + other.ways.gone,
+            report.ways.left + other.ways.left,
+            (min(low, other_low), max(high, other_high)),
+        ),
+    )
+
+
+def in_order(found: list[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Findings in the order of lines."""
+    return tuple(sorted(found, key=lambda each: (each.line, each.column)))

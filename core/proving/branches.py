@@ -1,0 +1,232 @@
+"""Every way through a program: at M95 and M97 both states of the input are proved, before anything moves.
+
+The first way is that of the inputs as they are given. At each conditional call a copy of the pass waits to be
+sent the other way; it ends where it comes to a line in a state in which another way has been there before,
+because all that follows has been gone through then. What is not gone through is told by name.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterator
+from dataclasses import dataclass, field, replace
+from itertools import count
+
+from core.interpreter.actions import AskInput
+from core.interpreter.branching import Branching
+from core.interpreter.count import terminal
+from core.interpreter.dialects import Reading
+from core.interpreter.needs import first_needs
+from core.interpreter.setup import Setup
+from core.interpreter.statement import Statement
+from core.language.diagnostics import Diagnostic, Severity
+from core.machine.model import Machine
+from core.proving.block_delete import in_order
+from core.proving.cutting_checks import CuttingChecks
+from core.proving.cycle_range import Fork, Way, cycle_range
+from core.proving.forecast import SETTLING
+from core.proving.one_pass import MAX_FINDINGS, Pass
+from core.proving.report import Report, Ways
+from core.proving.stretches import Moved, Rested
+from core.proving.timeline import Standing, Timeline
+from core.proving.uncalled import uncalled
+
+MOST_WAYS = 400
+MOST_WORK = 200_000
+"""Blocks of all ways but the first together; three times those of the first where that is more. A motion from
+rest to rest is as much work as a hundred blocks."""
+
+_STRETCH = 100
+
+_MOST_WAITING = 2000
+_MOST_STATES = 500_000
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One input at one line."""
+
+    line: int
+    terminal: str
+    on: bool
+
+    @property
+    def words(self) -> str:
+        """As an operator reads it."""
+        name = "7" if self.terminal == "TB2-9" else self.terminal
+        return f"input {name} {'on' if self.on else 'off'} at line {self.line}"
+
+
+@dataclass(slots=True)
+class _Going:
+    """A way that is gone, or waits to be."""
+
+    way: Way
+    source: Branching | None
+    choices: tuple[Choice, ...] = ()
+    standing: Standing | None = None  # None: nothing comes there, because the way before it has errors
+    checks: CuttingChecks | None = None
+    asked: list[_Going | None] = field(default_factory=list)  # in the order of its questions
+    answered: int = 0
+
+
+class Branches:
+    """Goes all ways of one program; the first of them in ``gone``, the others in ``proved``."""
+
+    def __init__(self, reading: Reading, setup: Setup, machine: Machine, *, ideal: bool) -> None:
+        self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
+        self.root = reading.branching(setup, self)
+        self._now = _Going(Way(), self.root)
+        self._known: dict[Hashable, tuple[Way, int]] = {}
+        self._waiting: list[tuple[tuple[int, ...], _Going]] = []
+        self._seen: Counter[tuple[int, bool]] = Counter()  # how often the other way of a line was kept
+        self._covered: set[tuple[int, bool]] = set()  # lines, and the states of their inputs that were proved
+        self._turn = count()
+        self._left = 0
+        self._gone = 1
+        self._found: list[Diagnostic] = []
+        self._told: set[tuple[int, str]] = set()
+        self._tools: set[int] = set()
+        self._missing: set[int] = set()
+        self._work = 0
+
+    # what the interpreter asks
+
+    def known(self, way: Branching) -> bool:
+        """Whether another way has been in this state."""
+        key = way.key
+        found = self._known.get(key)
+        if found is not None and found[0] is not self._now.way:
+            self._now.way.merged = found
+            return True
+        if len(self._known) < _MOST_STATES:
+            self._known[key] = self._now.way, way.count
+        return False
+
+    def asked(self, way: Branching, made: Statement, takes: bool) -> None:
+        """Keep a copy for the other way."""
+        on = takes == (made.flow == "M95" or made.value("C") == 1)
+        self._covered.add((made.line, on))
+        if way.stopped:
+            return
+        seen = self._seen[made.line, not on]
+        if len(self._waiting) >= _MOST_WAITING and seen:
+            self._left += 1
+            self._now.asked.append(None)
+            return
+        self._seen[made.line, not on] += 1
+        choice = Choice(made.line, terminal(made), not on)
+        other = way.other(made, takes)
+        going = _Going(Way(first=way.count), other, (*self._now.choices, choice), asked=[None])
+        self._now.asked.append(going)
+        rank = (int(other.unlikely), seen, len(going.choices), next(self._turn))
+        heapq.heappush(self._waiting, (rank, going))
+
+    # what proving asks
+
+    def gone(self, one: Pass, timeline: Timeline) -> Iterator[Moved | Rested]:
+        """The stretches of a way, which is gone while they are taken."""
+        if self.root is None:
+            yield from timeline.spans()
+            return
+        now = self._now
+        for stretch in timeline.spans():
+            yield stretch
+            if isinstance(stretch, Moved):
+                shift = stretch.t0 - stretch.chunk.t
+                self._work += _STRETCH + len(stretch.chunk.t1)
+                now.way.ends.extend((stretch.chunk.t1 + shift).tolist())
+            elif stretch.block is not None:
+                now.way.ends.append(stretch.t1)
+                if isinstance(stretch.block.action, AskInput):
+                    self._stands(now, one, timeline)
+        now.way.duration = timeline.t
+        if now.way.merged is not None and one.last is one.last_move:
+            now.way.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
+        now.way.failed = timeline.errors
+
+    def _stands(self, now: _Going, one: Pass, timeline: Timeline) -> None:
+        """The way has come to its next question: from here the copy goes on."""
+        going = now.asked[now.answered] if now.answered < len(now.asked) else None
+        now.answered += 1
+        if going is not None:
+            going.standing, going.checks = timeline.standing, one.checks.twin()
+            going.way.start = timeline.t
+            now.way.forks.append(Fork(going.way.first, timeline.t, going.way))
+
+    def proved(self, report: Report, progress: Callable[[float], None] | None) -> Report:
+        """The report of the first way, with what was found in all the others."""
+        found = [*report.diagnostics, *uncalled(self._reading)]
+        if self.root is None:
+            return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
+        self._told = {(each.line, each.code) for each in report.diagnostics}
+        first = self._now.way
+        needs = report.needs
+        most, self._work = max(MOST_WORK, 3 * self._work), 0
+        while self._waiting and self._gone < MOST_WAYS and self._work < most:
+            _, going = heapq.heappop(self._waiting)
+            if going.standing is not None:
+                other = self._go(going, most, progress)
+                needs = first_needs((*needs, *other.needs))
+        found += [*self._found[:MAX_FINDINGS], *self._unreached()]
+        return replace(
+            report,
+            diagnostics=in_order(found),
+            tools=tuple(sorted(self._tools.union(report.tools))),
+            missing_tools=tuple(sorted(self._missing.union(report.missing_tools))),
+            needs=needs,
+            ways=Ways(self._gone, self._left + len(self._waiting), cycle_range(first)),
+        )
+
+    def _go(self, going: _Going, most: int, progress: Callable[[float], None] | None) -> Report:
+        assert going.source is not None
+        assert going.standing is not None
+        assert going.checks is not None
+        self._now, self._gone = going, self._gone + 1
+        self._covered.add((going.choices[-1].line, going.choices[-1].on))
+        timeline = Timeline(going.source, self._setup, self._machine, ideal=self._ideal)
+        timeline.go_on(going.standing)
+        one = Pass(self._machine, going.checks)
+        for stretch in self.gone(one, timeline):
+            one.add(stretch)
+            if progress is not None and one.last is not None:
+                progress(one.last.n)
+            if self._work > most:
+                self._left += 1
+                going.way.failed = True  # its time is not known
+                break
+        going.way.gone = True
+        report = one.report(timeline, self._reading.source)
+        self._tools.update(report.tools)
+        self._missing.update(report.missing_tools)
+        self._tell(going, report)
+        going.source = None
+        return report
+
+    def _tell(self, going: _Going, report: Report) -> None:
+        unlikely = going.source is not None and going.source.unlikely
+        shown = going.choices if len(going.choices) <= 2 else going.choices[-2:]
+        place = " and ".join(choice.words for choice in shown)
+        for each in report.diagnostics:
+            if each.severity is Severity.NOTE or (each.line, each.code) in self._told:
+                continue
+            self._told.add((each.line, each.code))
+            weight = Severity.WARNING if unlikely else each.severity
+            self._found.append(replace(each, severity=weight, message=f"With {place}: {each.message}"))
+
+    def _unreached(self) -> Iterator[Diagnostic]:
+        """What was not gone through, by name."""
+        left = self._left + len(self._waiting)
+        if not left:
+            return
+        last = [going.choices[-1] for _, going in self._waiting]
+        never = {choice.words for choice in last if (choice.line, choice.on) not in self._covered}
+        text = f"{left} ways through the program by its inputs were not proved; {self._gone} were."
+        if never:
+            text = f"{text} Never proved: {', '.join(sorted(never)[:5])}."
+        hint = (
+            "Fewer conditional calls in loops, or subroutines that end where they begin, make all provable."
+        )
+        line = min((choice.line for choice in last), default=0)
+        yield Diagnostic(line, 0, Severity.WARNING, "unreached-branch", text, hint, check="unreached-branch")

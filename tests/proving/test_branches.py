@@ -1,0 +1,262 @@
+"""Conditional calls and block delete: what the program may do is proved, not only what it would do now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.cli.offset_file import read_offsets
+from app.compose.machine import setup_for
+from core.interpreter.dialects import Reading
+from core.interpreter.run import Interpreter
+from core.interpreter.setup import Setup, ToolOffset
+from core.language.source import Source, load_source
+from core.machine.load import load_machine
+from core.proving import branches
+from core.proving.prove import prove
+from core.proving.report import Report
+from core.proving.travel import travel_findings
+from tests.screen.desks import SAMPLES
+
+MACHINE = load_machine(None)
+HEAD = ("G90G94F300", "T1", "X.5Z.1")
+
+
+def circumstances(**inputs: bool) -> Setup:
+    """All tools on part zero; inputs by number, such as ``i10=True``."""
+    states = {name.removeprefix("i"): on for name, on in inputs.items()}
+    return setup_for(MACHINE, tools={1: ToolOffset(), 2: ToolOffset()}, secondary={}, inputs=states)
+
+
+def proved(*lines: str, deleted: bool = False, **inputs: bool) -> Report:
+    setup = replace(circumstances(**inputs), block_delete=deleted)
+    return prove(Source("A", "\n".join((*HEAD, *lines, ""))), setup, MACHINE)
+
+
+def errors(report: Report) -> list[tuple[int, str]]:
+    return [(d.line, d.code) for d in report.errors]
+
+
+BEYOND = "Z-9"  # the travel ends at -6
+SUB = ("M30", "}1", BEYOND, "Z.1", "M99")
+
+
+@pytest.mark.parametrize("call", ["M95", "M97I10C1P1", "M97I10C0P1"])
+@pytest.mark.parametrize("on", [False, True])
+def test_a_branch_that_leaves_the_travel_refuses_the_start_whatever_the_input_is_now(
+    call: str, on: bool
+) -> None:
+    report = proved(call, *SUB, **{"i10": on, "iTB2-9": on})
+    assert errors(report) == [(7, "soft-limit")]
+
+
+def test_the_branch_and_its_input_are_named() -> None:
+    (found,) = proved("M97I10C1P1", *SUB).errors
+    assert found.message.startswith("With input 10 on at line 4: Z would go to -9.0000 in")
+    (found,) = proved("M97I10C0P1", *SUB, i10=True).errors
+    assert found.message.startswith("With input 10 off at line 4: ")
+    (found,) = proved("M95", *SUB).errors
+    assert found.message.startswith("With input 7 on at line 4: ")
+
+
+def test_the_branch_that_the_inputs_give_is_told_plainly() -> None:
+    (found,) = proved("M97I10C1P1", *SUB, i10=True).errors
+    assert found.message.startswith("Z would go to")
+
+
+def test_what_a_branch_leaves_behind_is_proved_in_the_lines_that_follow() -> None:
+    # the subroutine is harmless; the lines behind its call are not
+    report = proved("M97I1C1P1", "G91Z-5", "G90", "M30", "}1", "Z-2", "M99")
+    assert errors(report) == [(5, "soft-limit")]
+
+
+def test_two_inputs_that_are_harmful_only_together() -> None:
+    sub = ("G90", "M30", "}1", "G91Z-4", "M99")
+    assert errors(proved("M97I1C1P1", "M97I2C1P1", *sub)) == [(9, "soft-limit")]
+    (found,) = proved("M97I1C1P1", "M97I2C1P1", *sub).errors
+    assert "With input 1 on at line 4 and input 2 on at line 5: " in found.message
+    assert errors(proved("M97I1C1P1", *sub)) == []
+
+
+def test_an_input_that_comes_on_in_a_later_pass_of_a_loop() -> None:
+    # each pass goes .5 in deeper; only late in the loop does the subroutine lead out
+    report = proved("LS6", "G91Z-.5", "M97I3C1P1", "G90", "LF", "M30", "}1", "Z-3.5", "Z3.5", "M99")
+    assert errors(report) == [(11, "soft-limit")]
+
+
+def test_a_subroutine_that_asks_inside_a_subroutine() -> None:
+    report = proved("M98P1", "M30", "}1", "M97I4C0P2", "M99", "}2", "M97I5C1P3", "M99", "}3", BEYOND, "M99")
+    assert errors(report) == [(13, "soft-limit")]
+
+
+def test_a_branch_that_ends_the_job() -> None:
+    assert errors(proved("M95", "G91Z-5", "M30", "}1", "Z-5", "M30")) == []
+    assert errors(proved("M95", "G91Z-5", "M30", "}1", "Z-5", "M99")) == [(5, "soft-limit")]
+
+
+@pytest.mark.parametrize("deleted", [False, True])
+def test_block_delete_is_proved_on_and_off(deleted: bool) -> None:
+    # without the line the next one leaves the travel
+    report = proved("/Z-1", "G91Z-5.5", "Z1", "M30", deleted=deleted)
+    assert errors(report) == [(5, "soft-limit")]
+    shown = report.errors[0].message
+    assert shown.startswith("Z would") if not deleted else shown.startswith("With block delete off: Z would")
+
+
+def test_block_delete_and_an_input_together() -> None:
+    report = proved("/Z-3", "M97I1C1P1", "M30", "}1", "G91Z-4", "G90", "M99", deleted=True)
+    (found,) = report.errors
+    assert found.message.startswith("With block delete off: With input 1 on at line 5: Z would")
+
+
+def test_a_first_line_that_block_delete_takes_away() -> None:
+    report = prove(Source("A", "/G90G94F300\nG04F1\nM30\n"), circumstances(), MACHINE)
+    assert [(d.line, d.code) for d in report.errors] == [(2, "first-line")]
+
+
+def test_klartext_and_sinumerik_lines_with_a_slash_are_proved_both_ways() -> None:
+    machine = load_machine(None)
+    text = "N10 G18 G90 G54 G94\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
+    report = prove(Source("a.mpf", text), replace(circumstances(), block_delete=True), machine)
+    assert [(d.line, d.code) for d in report.errors] == [(3, "soft-limit")]
+
+
+def test_a_tool_that_only_a_branch_uses_is_demanded_before_the_start() -> None:
+    report = proved("M97I1C1P1", "M30", "}1", "T7", "X.5Z.1", "M99")
+    assert report.missing_tools == (7,)
+    assert report.tools == (1, 7)
+
+
+def test_the_checks_of_cutting_hold_in_branches() -> None:
+    report = proved("M03S500", "M97I1C1P1", "G95F.004Z-.2", "M30", "}1", "M13", "M99")
+    found = {(d.line, d.check, str(d.severity)) for d in report.diagnostics}
+    assert (6, "collet-open", "error") in found  # the cut, after a subroutine that has left it open
+
+
+def test_an_input_that_changes_between_two_questions_is_a_warning() -> None:
+    # if and else of one input: neither or both is possible only when it changes in between
+    lines = ("M97I1C1P1", "M97I1C0P2", "G91Z-4", "G90", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
+    assert errors(proved(*lines)) == []
+    lines = ("G91Z-4", "G90", "M97I1C1P1", "M97I1C0P2", "G91Z-4", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
+    found = [d for d in proved(*lines).diagnostics if d.code == "soft-limit"]
+    assert [(str(d.severity), d.line) for d in found] == [("warning", 8)]
+
+
+def test_the_range_of_the_cycle_time_is_that_of_the_inputs() -> None:
+    lines = ("LS4", "Z-1F20", "M97I1C1P1", "Z.1F300", "LF", "M30", "}1", "X1F10", "G04F2", "X.5", "M99")
+    off, on = proved(*lines), proved(*lines, i1=True)
+    assert off.times.cycle < on.times.cycle - 10
+    for report in (off, on):
+        assert report.ways.cycle == pytest.approx((off.times.cycle, on.times.cycle), abs=0.05)
+        assert report.ways.gone == 5
+
+
+def test_block_delete_counts_in_the_range() -> None:
+    lines = ("/G04F3", "G04F1", "M30")
+    off, on = proved(*lines), proved(*lines, deleted=True)
+    assert off.times.cycle == pytest.approx(on.times.cycle + 3)
+    assert off.ways.cycle == on.ways.cycle == (on.times.cycle, off.times.cycle)
+
+
+def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
+    reading = Reading(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
+    assert branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
+    report = proved("Z-1", "M30")
+    assert (report.ways.gone, report.ways.left) == (1, 0)
+    assert report.ways.cycle == (report.times.cycle,) * 2
+
+
+def many(count: int) -> tuple[str, ...]:
+    """Calls whose outcomes leave the slide at as many places as there are sets of them."""
+    calls = [line for k in range(count) for line in (f"M97I{k % 16 + 1}C1P{k + 1}", "G91X.0001", "G90")]
+    subs = [line for k in range(count) for line in (f"}}{k + 1}", f"G91Z-{0.0001 * 2**k:.4f}", "G90", "M99")]
+    return (*calls, "M30", *subs)
+
+
+def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [d.code for d in proved(*many(5)).diagnostics] == []
+    monkeypatch.setattr(branches, "MOST_WAYS", 3)
+    report = proved(*many(5))
+    (found,) = report.diagnostics
+    assert (found.code, found.check, str(found.severity)) == (
+        "unreached-branch",
+        "unreached-branch",
+        "warning",
+    )
+    assert "Never proved: input " in found.message
+    assert report.ways.gone == 3
+
+
+def test_outcomes_that_no_proof_could_go_through_one_by_one_end() -> None:
+    report = proved(*many(14))
+    assert report.ways.left > 0
+    assert [d.code for d in report.diagnostics] == ["unreached-branch"]
+    assert "Never proved" not in report.diagnostics[0].message  # every subroutine was
+
+
+def test_a_loop_of_bar_work_with_many_passes_is_proved() -> None:
+    sub = ("LF", "M30", "}1", "X.6Z.2", "X.5Z.1", "M99")
+    report = proved("LS900", "Z-.1F50", "M97I1C1P1", "Z.1", *sub)
+    assert errors(report) == []
+    assert report.ways.gone == branches.MOST_WAYS
+
+
+def test_a_subroutine_that_nothing_calls_is_told() -> None:
+    report = proved("M98P1", "M30", "}1", "Z.2", "M99", "}2", BEYOND, "P3", "M99", "}3", "Z.3", "M99")
+    notes = [(d.line, str(d.severity), d.code) for d in report.diagnostics]
+    assert notes == [(9, "note", "unreached-branch"), (13, "note", "unreached-branch")]
+
+
+def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
+    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    source = load_source(SAMPLES / "barfeed.nc")
+    setup = setup_for(MACHINE, tools=tools, secondary=secondary)
+    assert prove(source, setup, MACHINE).ways.gone == 2
+    worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
+    (found,) = prove(worse, setup, MACHINE).errors
+    assert (found.line, found.code) == (35, "soft-limit")
+    assert found.message.startswith("With input 7 on at line 31: Z would go to 6.3000 in")
+
+
+# every set of answers, one after the other, against what the proof finds
+
+STEP = st.sampled_from(["G91Z-1.2", "G91Z.9", "Z-1", "X.5", "/G91Z-.8", "G92Z0", "M98P3"])
+CALL = st.sampled_from(["M97I1C1P1", "M97I2C0P2", "M95", "/M97I3C1P2"])
+BODY = st.lists(STEP | CALL, min_size=1, max_size=5)
+SHORT = st.lists(STEP, min_size=1, max_size=3)
+
+
+def text_of(main: list[str], one: list[str], two: list[str], three: list[str]) -> str:
+    subs = (("}1", *one, "M99"), ("}2", *two, "M99"), ("}3", *three, "M99"))
+    return "\n".join((*HEAD, *(("LS2", *main[:2], "LF", *main[2:])), "M30", *sum(subs, ()), ""))
+
+
+def by_every_answer(text: str, questions: int) -> Iterator[int]:
+    """The lines that leave the travel, with each set of answers to so many questions in turn."""
+    reading = Reading(Source("A", text))
+    for deleted, answers in product((False, True), product((False, True), repeat=questions)):
+        interpreter = reading.begin(replace(circumstances(), block_delete=deleted))
+        assert isinstance(interpreter, Interpreter)
+        asked = iter(answers)
+        state = interpreter._state
+        state.setup = replace(state.setup, inputs=lambda _terminal, asked=asked: next(asked))
+        moves = [block for block in interpreter.blocks() if block.moves]
+        yield from (found.line for found in travel_findings(moves, MACHINE))
+
+
+@settings(max_examples=40, deadline=None)
+@given(BODY, SHORT, SHORT, SHORT)
+def test_the_proof_finds_what_some_set_of_answers_does_and_nothing_else(
+    main: list[str], one: list[str], two: list[str], three: list[str]
+) -> None:
+    text = text_of(main, one, two, three)
+    questions = sum((1 + (at < 2)) * (each.lstrip("/")[:3] in {"M97", "M95"}) for at, each in enumerate(main))
+    expected = set(by_every_answer(text, questions))
+    report = prove(Source("A", text), circumstances(), MACHINE)
+    assert {d.line for d in report.diagnostics if d.code == "soft-limit"} == expected
+    assert report.ways.left == 0
