@@ -52,6 +52,9 @@ class Desk(DeskParts):
             return prompts.CONTROL_SILENT
         if self.answers.outlived(snapshot):
             self.clear()
+        return prompts.announced(snapshot) + self._prompt(snapshot, loaded, page)
+
+    def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if self.notice:
             return self.notice
         if page:

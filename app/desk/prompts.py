@@ -37,6 +37,11 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
 
 
+def announced(snapshot: Snapshot) -> str:
+    """What goes before everything else: what will start with the next start; empty when nothing will."""
+    return "".join(f"{text} · " for text in snapshot.announced)
+
+
 def alarm_of(snapshot: Snapshot) -> str:
     """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
     if snapshot.state is State.FAULT and snapshot.alarms:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from core.alarms import Reaction
 from core.executor import gate
 from core.executor.alarms import TroubleError, alarm_of, log_alarm
+from core.executor.announced import SPINDLE, Announcement, Starting
 from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
@@ -21,7 +22,7 @@ from core.executor.job import Job
 from core.executor.rounds import Rounds
 from core.executor.safe_stop import SafeStop
 from core.executor.snapshot import Event, State
-from core.executor.states import ACTIVE, CYCLE, STOPPED, demand_allowed
+from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
@@ -49,6 +50,8 @@ class Conductor:
         self.jogger = jogger_of(bench)
         self.wheel = Handwheel(bench, self.jogger)
         self.homing = Homing(bench)
+        self.announcement = Announcement()
+        self.announcement.sources.append(self._spindle_starts)
         self._giving_up = False
 
     @property
@@ -82,9 +85,11 @@ class Conductor:
         if state in ACTIVE or self._giving_up:
             return
         if state in STOPPED and cycle is not None:
-            if not self.refuse(gate.busy(self._bench) or cycle.why_not_on()):
+            if not self.refuse(gate.busy(self._bench) or cycle.why_not_on() or self._unannounced()):
+                self.announcement.begin()
                 cycle.go_on()
-        elif not self.refuse(self.rounds.refusal(state)):
+        elif not self.refuse(self.rounds.refusal(state) or self._unannounced()):
+            self.announcement.begin()
             self.rounds.begin()
 
     def refuse(self, why: str) -> bool:
@@ -93,6 +98,30 @@ class Conductor:
         if why:
             self._bench.say("refused", why)
         return bool(why)
+
+    def spindle_switch(self) -> None:
+        """From OFF to AUTO by hand: between programs that starts the spindle, under one the palms do."""
+        spindle = self._bench.spindle
+        if self.state not in BY_HAND or not spindle.waits:
+            return
+        why = gate.unclamped(self._bench) or self.announcement.refusal(self._bench.now, SPINDLE)
+        if why:
+            self._bench.say("refused", why)
+        else:
+            self.announcement.begin(SPINDLE)
+
+    def _unannounced(self) -> str:
+        unclamped = gate.unclamped(self._bench) if self._bench.spindle.waits else ""
+        return unclamped or self.announcement.refusal(self._bench.now)
+
+    def _spindle_starts(self) -> Iterator[Starting]:
+        """One that waits: in a cycle for the palms alone, between programs for its switch too."""
+        spindle = self._bench.spindle
+        rpm, by_hand = spindle.would_turn, self.state in BY_HAND
+        if rpm and (by_hand or (self.state in STOPPED and not spindle.kept_still)):
+            way = "FORWARD" if rpm > 0.0 else "REVERSE"
+            text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
+            yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)
 
     def feed_hold(self, reason: str) -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away."""

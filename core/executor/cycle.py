@@ -11,7 +11,8 @@ from core.executor.limits import check_block
 from core.executor.moving import Moving, Progress
 from core.executor.snapshot import State
 from core.executor.standstill import Next, Standstill
-from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.executor.waits import Wait, at_speed
+from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
 
@@ -19,6 +20,7 @@ _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a l
 _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _GOING = frozenset({State.RUN, State.WAIT})
+_SPINDLE_WORDS = (SpindleRun, SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
 
 
 class Cycle:
@@ -44,18 +46,22 @@ class Cycle:
         self._feed = BlockFeed(source, lambda block: check_block(block, bench.machine))
         self._state = State.RUN
         self._still = Standstill(bench, self._feed)
+        self._spin_up: Wait | None = None  # before motion that was stopped goes on
         self._held_at = 0.0
         self._retreating = False
         self._reason = ""  # why the cycle was held, when not by the button
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
         self.modal = begins
+        self._behind: Block | None = None  # single block goes on behind this one
 
     @property
     def waiting_for(self) -> str:
         """In words, what the cycle waits for."""
         if self._state is State.HOLD:
             return self._reason
+        if self._spin_up is not None:
+            return self._spin_up.label()
         if self._still.label is not None:
             return self._still.label
         return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
@@ -104,12 +110,8 @@ class Cycle:
 
     def why_not_on(self) -> str:
         """Why a stopped cycle cannot go on now; empty when it can."""
-        bench, block = self._bench, self.current
-        if not self._mover.active or block is None or not needs_speed(block) or block.rpm == 0.0:
-            return ""
-        if self._mover.complete or bench.spindle.at_speed(bench.now):
-            return ""
-        return bench.spindle.why_slow.lower() or "the spindle is not at its speed"
+        spindle = self._bench.spindle
+        return spindle.kept_still.lower() if spindle.waits and self._turns_next() else ""
 
     def go_on(self) -> None:
         """Cycle Start after hold, single block, M00, M01."""
@@ -121,8 +123,12 @@ class Cycle:
             self._feed.pass_stop()
         self._still.held(self._bench.now - self._held_at)
         self._change(State.RUN)
+        self._spin_up = None
         if within:
-            self._mover.go_on(self.current if stopped is State.BLOCK_END else None)
+            self._behind = self.current if stopped is State.BLOCK_END else None
+            self._spin_up = self._slow_spindle()
+            if self._spin_up is None:
+                self._mover.go_on(self._behind)
 
     # --- every tick ---------------------------------------------------------------------------------------
 
@@ -151,6 +157,42 @@ class Cycle:
             self._change(State.HOLD)
 
     def _advance(self) -> None:
+        if self._bench.spindle.waits and self._turns_next():
+            self.hold(self._bench.spindle.waits)
+        elif self._spin_up is not None:
+            self._speed_up(self._spin_up)
+        else:
+            self._progress()
+
+    def _turns_next(self) -> bool:
+        """Whether what is done now, or comes next, is meant for a spindle that turns."""
+        within = self._mover.active and not self._mover.complete
+        if within or self._still.label is not None or self._feed.pending:
+            return True
+        stop = self._feed.stop
+        return stop is not None and not isinstance(stop.action, _SPINDLE_WORDS)
+
+    def _slow_spindle(self) -> Wait | None:
+        """What motion waits for that goes on: the spindle, when the program has it turning."""
+        spindle = self._bench.spindle
+        if not spindle.asked or spindle.at_speed(self._bench.now):
+            return None
+        return at_speed(self._bench)
+
+    def _speed_up(self, wait: Wait) -> None:
+        """A spindle that does not come to speed is a hold here: the program is not lost with it."""
+        try:
+            over = wait.over(self._bench.now)
+        except TroubleError:
+            self._spin_up = None
+            self.hold("SPINDLE NOT AT ITS SPEED")
+            return
+        if over:
+            self._spin_up = None
+            self._mover.go_on(self._behind)
+        self._change(State.RUN if over else State.WAIT)
+
+    def _progress(self) -> None:
         match self._mover.progress(self._feed):
             case Progress.MOVING:
                 self._change(State.RUN)
@@ -221,7 +263,7 @@ class Cycle:
             self._mover.retreat(block)
             self._retreating = True
             self._change(State.HOLDING)
-        elif block.per_rev and not block.modal.c_locked:
+        elif (block.per_rev and not block.modal.c_locked) or spindle.fails:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
 
     def _show(self, block: Block) -> None:

@@ -143,6 +143,8 @@ class Executor:
             conductor.feed_hold(heard.trouble)
         if heard.start:
             conductor.start()
+        if heard.turned_on:
+            conductor.spindle_switch()
         conductor.follow_wheel()
 
     def _posted(self) -> Iterator[Command]:

@@ -23,6 +23,13 @@ def busy(bench: Bench) -> str:
     return bench.heard.trouble.lower()
 
 
+def unclamped(bench: Bench) -> str:
+    """Why the spindle may not be started as the collet is; empty when it may."""
+    if bench.machine.interlocks.spindle_with_collet_open or bench.inputs.get("collet_closed", True):
+        return ""
+    return "the spindle is not started with the collet open: close it first"
+
+
 def hindrance(bench: Bench, state: State) -> str:
     """What keeps any cycle from being started at this machine now."""
     if state in _BUSY:

@@ -120,7 +120,11 @@ class Orders:
         if rpm is not None and not 0.0 < rpm <= highest:
             self._bench.say("refused", f"spindle limit {rpm:g} is not between 0 and {highest:g} rpm")
             return
-        self._bench.spindle.limit = rpm
+        spindle = self._bench.spindle
+        if spindle.command and (rpm or highest) > spindle.highest:
+            self._bench.say("refused", "the spindle limit is raised only while the spindle stands")
+            return
+        spindle.limit = rpm
         self._bench.say("override", f"spindle limit {rpm or highest:g} rpm")
 
     def _move(self, command: Jog | JogStep | Wheel) -> None:

@@ -92,6 +92,7 @@ class Publisher:
             interrupted=standing.interrupted,
             confirmed=conductor.rounds.interruption.answered,
             tool_open=standing.tool_open,
+            announced=conductor.announcement.publish(bench.now),
             start_refused=standing.start_refused,
             wheel=conductor.wheel.axis,
             wheel_ended=conductor.wheel.ended,

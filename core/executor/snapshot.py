@@ -113,6 +113,7 @@ class Snapshot:
     confirmed: bool = False  # that a start at the first line is meant all the same
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
+    announced: tuple[str, ...] = ()  # what the next Cycle Start will start, besides going on
     start_refused: str = ""  # why the last Cycle Start did nothing
     wheel: str = ""  # axis that the handwheel moves, empty for none
     wheel_ended: str = ""  # why the control has taken the handwheel away

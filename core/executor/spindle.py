@@ -17,6 +17,8 @@ from core.ports import Spindle, SpindleHold, code_of
 _GRACE = 1.0  # s in which a drive must have begun to obey a lower speed
 _OVER = 0.1  # fraction and
 _OVER_RPM = 50.0  # rpm above what ought to be
+_STOOD = 0.2  # s of standing still although it was told to turn: it has stopped, and
+_GONE = 2.0  # s after which its command is withdrawn; until then its drive can still tell why
 
 
 class Ask(NamedTuple):
@@ -36,7 +38,9 @@ class Ask(NamedTuple):
 class SpindleControl:
     """Turns the program's word into a command, every tick, and watches the drive obey it.
 
-    Nothing in here starts a spindle but ``ask``: after ``stop`` it stays still until the program asks again.
+    Nothing in here starts a spindle but ``ask`` and ``permit``: after ``stop`` it stays still until the
+    program asks again. One that was asked for and stands, because of the switch, the pot or by itself, waits:
+    it keeps what it was asked, its command is withdrawn, and it starts when it is permitted to.
     """
 
     def __init__(self, port: Spindle, model: SpindleModel, lock: SpindleHold | None = None) -> None:
@@ -49,10 +53,16 @@ class SpindleControl:
         self.turns = Turns()
         self.override = 1.0
         self.auto = True
+        self.waits = ""  # why it stands although it is asked to turn: it starts when it is permitted to
         self._ask: Ask | None = None
+        self._turned = False  # it has turned since its command was given
+        self._stands: float | None = None  # since when it stands, commanded and after it has turned
+        self._withdrawn = False  # what waits has no command any more
+        self._again = False  # the command is sent although it is the same: a driver may have dropped it
         self._coasting = False
         self._in_band_since: float | None = None
         self._fell: tuple[float, float] = (0.0, 0.0)  # when, and from what speed, the command fell
+        self._rose: tuple[float, float] = (0.0, 0.0)  # the same of a rise
 
     @property
     def highest(self) -> float:
@@ -83,18 +93,52 @@ class SpindleControl:
         return self.command == 0.0 or abs(self.measured) < 0.5 * abs(self.command)
 
     @property
+    def fails(self) -> bool:
+        """It is asked to turn, and is slower by half than a drive that obeys: nothing may be cut."""
+        if self._ask is None:
+            return False
+        since, speed = self._rose
+        ramp = speed + self._model.accel * max(self._now - since - _GRACE, 0.0)
+        return self.command == 0.0 or abs(self.measured) < 0.5 * min(abs(self.command), ramp)
+
+    @property
     def why_slow(self) -> str:
         """What keeps it from turning, when that is the operator."""
         if self._ask is None:
             return "SPINDLE STOPPED"
+        return self.kept_still or self.waits
+
+    @property
+    def kept_still(self) -> str:
+        """What keeps it from being started at all, at the station."""
         if not self.auto:
             return "SPINDLE SWITCH OFF"
         return "SPINDLE OVERRIDE AT 0" if self.override <= 0.0 else ""
+
+    @property
+    def would_turn(self) -> float:
+        """Signed rpm with which it starts when it is permitted to; 0 where it does not wait for that.
+
+        The switch is not asked here: it may be what permits.
+        """
+        return self._obeying() if self.waits else 0.0
+
+    def permit(self) -> None:
+        """Both palms, or the switch by hand: what waits may turn again."""
+        if self._ask is not None and not self.kept_still:
+            self._forget_waiting()
+            self._again, self._in_band_since = True, None
+
+    def dropped(self, why: str) -> None:
+        """What is between control and drive has stopped it: it waits, and has no command any more."""
+        if self._ask is not None:
+            self.waits, self._withdrawn = why, True
 
     def ask(self, ask: Ask) -> None:
         """M03, M04, S."""
         self._let_go()
         self._ask = ask
+        self._forget_waiting()
         self._in_band_since = None
 
     def follow(self, block: Block) -> None:
@@ -105,6 +149,7 @@ class SpindleControl:
     def stop(self) -> None:
         """M05, and every stop of the control: the word is forgotten."""
         self._ask = None
+        self._forget_waiting()
         self._let_go()
         self._send(0.0, self._now)
 
@@ -113,6 +158,7 @@ class SpindleControl:
         is let go, the drive is told to stop, also one that is believed to have been told.
         """
         self._ask, self._in_band_since = None, None
+        self._forget_waiting()
         if coast:
             self._coasting = True
         return [("C", self._let_go), ("the spindle", partial(self._tell_off, coast=coast))]
@@ -161,6 +207,7 @@ class SpindleControl:
         self._now = now
         self.measured = self._port.speed()
         self._radius = radius
+        self._watch_standing(now)
         self._send(self._wanted(), now)
         self._watch_band(now)
         fault = self._port.fault()
@@ -180,8 +227,11 @@ class SpindleControl:
         return now - self._in_band_since >= self._model.at_speed_time - 1e-9
 
     def _wanted(self) -> float:
+        return 0.0 if self._withdrawn or not self.auto else self._obeying()
+
+    def _obeying(self) -> float:
         ask = self._ask
-        if ask is None or not self.auto:
+        if ask is None:
             return 0.0
         rpm = min(self._rpm_of(ask, self.highest), self.highest) * self.override
         if 0.0 < rpm < self._model.rpm_min:
@@ -195,19 +245,42 @@ class SpindleControl:
         return surface_rpm(ask.surface, self._radius, ask.lowest, min(ask.highest or highest, highest))
 
     def _send(self, rpm: float, now: float) -> None:
-        if abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0):
+        same = abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0)
+        if same and not self._again:
             return
+        self._again = False
         self._note_fall(rpm, now)
         if abs(rpm - self.command) > self._model.at_speed * abs(rpm):
             self._in_band_since = None
+        if rpm * self.command <= 0.0:
+            self._turned, self._stands = False, None
         self.command = rpm
         self._port.run(rpm)
 
     def _note_fall(self, rpm: float, now: float) -> None:
-        """From where a lower speed begins; measured, since it may still coast from an E-stop."""
+        """From where another speed begins; measured, since it may still coast from an E-stop."""
         fastest = max(abs(self.measured), abs(self.command))
         if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
             self._fell = (now, fastest)
+        elif abs(rpm) > abs(self.command):
+            self._rose = (now, abs(self.measured))
+
+    def _watch_standing(self, now: float) -> None:
+        """A spindle that stands although it is asked to turn must not start when its cause goes away."""
+        if self._ask is None:
+            return
+        if self.kept_still:
+            self.dropped(self.kept_still)
+        elif not self.stopped or abs(self.command) < 2.0 * self._model.stop_below:
+            self._turned, self._stands = self._turned or not self.stopped, None
+        elif self._turned:
+            self._stands = now if self._stands is None else self._stands
+            if now - self._stands >= _STOOD:
+                self.waits = self.waits or "SPINDLE HAS STOPPED"
+            self._withdrawn = self._withdrawn or now - self._stands >= _GONE
+
+    def _forget_waiting(self) -> None:
+        self.waits, self._withdrawn, self._turned, self._stands = "", False, False, None
 
     def _watch_band(self, now: float) -> None:
         if abs(self.measured - self.command) > self._model.at_speed * abs(self.command):

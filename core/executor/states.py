@@ -26,6 +26,7 @@ TRANSITIONS: dict[State, frozenset[State]] = {
 ACTIVE = frozenset({State.RUN, State.WAIT, State.HOLDING})  # the cycle goes on by itself
 STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})  # Cycle Start goes on
 CYCLE = ACTIVE | STOPPED
+BY_HAND = frozenset({State.IDLE, State.JOG})  # the machine is worked by hand: its spindle switch is one
 
 
 class TransitionError(Exception):

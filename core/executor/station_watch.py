@@ -12,6 +12,7 @@ _JUMP = 0.2  # of the range within a tenth of a second: a wiper, not a hand
 _STAND = 0.3  # s that a risen pot must stand before it is believed
 _NOISY = 3  # jumps within a second that make a pot unbelievable
 _DEBOUNCE = 0.3  # s in which a second start is the same press
+_AWAY = 0.3  # s between two looks: what was pressed or turned in a longer one is old, and starts nothing
 
 
 class Heard(NamedTuple):
@@ -25,6 +26,7 @@ class Heard(NamedTuple):
     auto: bool
     trouble: str  # why the cycle must be held, empty when all is well
     wheel: int = 0  # what the handwheel has counted
+    turned_on: bool = False  # the spindle switch was turned from OFF to AUTO, this moment
 
 
 class Pot:
@@ -74,6 +76,8 @@ class StationWatch:
         self._spindle = Pot()
         self._started = True  # a start that is on when the control begins to look is no press
         self._last_start = -1e9
+        self._auto = True  # where the spindle switch stood when the station last spoke
+        self._heard = -1e9  # when it last spoke
 
     def hear(self, state: StationState, now: float) -> Heard:
         """One look at the station."""
@@ -81,8 +85,12 @@ class StationWatch:
         if not silent:
             self._feed.read(state.feed_pot, now)
             self._spindle.read(state.spindle_pot, now)
-        edge = state.start and not self._started and not silent
+        live = not silent and now - self._heard <= _AWAY
+        edge = live and state.start and not self._started
+        turned = live and state.spindle_auto and not self._auto
         self._started = state.start
+        if not silent:
+            self._auto, self._heard = state.spindle_auto, now
         noisy = self._feed.noisy or self._spindle.noisy
         trouble = "OPERATOR STATION SILENT" if silent else "OVERRIDE POT JUMPS" if noisy else ""
         return Heard(
@@ -91,9 +99,10 @@ class StationWatch:
             hold=state.hold,
             feed=self._feed.value,
             spindle=self._spindle.value,
-            auto=state.spindle_auto,
+            auto=self._auto,
             trouble=trouble,
             wheel=state.handwheel,
+            turned_on=turned,
         )
 
     def may_start(self, now: float) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.alarms import Code
+from core.executor import gate
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
 from core.executor.spindle import Ask
@@ -107,8 +108,7 @@ def carry_out(block: Block, bench: Bench) -> Wait | None:
 
 
 def _start_spindle(block: Block, bench: Bench) -> None:
-    open_allowed = bench.machine.interlocks.spindle_with_collet_open
-    if not open_allowed and not bench.inputs.get("collet_closed", True):
+    if gate.unclamped(bench):
         raise TroubleError("collet-open", line=block.line)
     bench.spindle.ask(Ask.of(block))
 

@@ -191,23 +191,35 @@ def test_a_spindle_that_does_not_reach_its_speed() -> None:
     assert rig.shot.actual[1] == 0.0
 
 
-def test_a_bogged_spindle_holds_feed_per_revolution_and_not_feed_per_minute() -> None:
-    for code, state in (("G95F.005", State.HOLD), ("G94F5", State.RUN)):
-        rig = Rig()
-        rig.start(f"G90G94F300\nM03S1000\nG01{code}Z-1\nM30\n")
-        rig.run(3.0)
-        rig.sim.machine.spindle_bog(0.4)
-        rig.run(1.5)
-        assert rig.state is state
-        if state is State.HOLD:
-            assert rig.shot.waiting_for == "SPINDLE BELOW HALF ITS SPEED"
-            rig.post(CycleStart())
-            assert rig.state is State.HOLD
-            assert rig.shot.start_refused == "the spindle is not at its speed"
-            rig.sim.machine.spindle_bog(1.0)
-            rig.run(2.0)
-            rig.post(CycleStart())
-            assert rig.state is State.RUN
+@pytest.mark.parametrize("code", ["G95F.005", "G94F5"])
+def test_a_bogged_spindle_holds_the_feed_and_going_on_waits_for_its_speed(code: str) -> None:
+    rig = Rig()
+    rig.start(f"G90G94F300\nM03S1000\nG01{code}Z-1\nM30\n")
+    rig.run(3.0)
+    rig.sim.machine.spindle_bog(0.4)
+    rig.run(1.5)
+    assert rig.state is State.HOLD
+    assert rig.shot.waiting_for == "SPINDLE BELOW HALF ITS SPEED"
+    at = rig.shot.actual
+    rig.post(CycleStart())
+    rig.until(State.HOLD, limit=rig.machine.spindle.timeout + 1.0)
+    assert rig.shot.waiting_for == "SPINDLE NOT AT ITS SPEED"
+    assert rig.shot.actual == at
+    rig.sim.machine.spindle_bog(1.0)
+    rig.run(2.0)
+    rig.post(CycleStart())
+    assert rig.state is State.RUN
+
+
+def test_a_pot_turned_up_in_a_cut_by_the_minute_holds_nothing() -> None:
+    """A drive that runs up as fast as it can obeys: only one that does not is a fault."""
+    rig = Rig()
+    rig.sim.machine.set_spindle_pot(0.1)
+    rig.start("G90G94F300\nM03S3000\nG01F1Z-1\nM30\n")
+    rig.until_true(lambda shot: shot.actual[1] < -0.1)
+    rig.sim.machine.set_spindle_pot(1.0)
+    rig.until_true(lambda shot: shot.rpm_actual > 2900.0)
+    assert rig.state is State.RUN
 
 
 def test_a_spindle_drive_fault() -> None:
@@ -237,20 +249,27 @@ def test_the_spindle_switch_stops_and_keeps_the_command() -> None:
     rig.run(2.0)
     assert rig.shot.rpm_actual == 0.0
     assert not rig.shot.spindle_auto
+    assert (rig.state, rig.shot.waiting_for) == (State.HOLD, "SPINDLE SWITCH OFF")
     rig.sim.machine.set_spindle_auto(True)
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == 0.0
+    rig.post(CycleStart())
     rig.run(2.0)
     assert rig.shot.rpm_actual == 1000.0
 
 
-def test_waiting_for_speed_with_the_switch_off_is_no_alarm() -> None:
+def test_a_start_of_the_spindle_with_its_switch_off_is_a_hold_and_no_alarm() -> None:
     rig = Rig()
     rig.sim.machine.set_spindle_auto(False)
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
     rig.run(20.0)
-    assert rig.state is State.WAIT
+    assert rig.state is State.HOLD
     assert rig.shot.waiting_for == "SPINDLE SWITCH OFF"
     assert rig.shot.actual[1] == 0.0
     rig.sim.machine.set_spindle_auto(True)
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == 0.0
+    rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[1] < -0.1)
 
 

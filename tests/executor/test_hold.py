@@ -138,8 +138,15 @@ def test_resume_into_a_cut_without_the_spindle_is_refused() -> None:
     assert rig.shot.start_refused == "spindle switch off"
     rig.sim.machine.set_spindle_auto(True)
     rig.run(2.0)
+    assert rig.shot.announced == ("THE SPINDLE STARTS AT 1000 RPM FORWARD",)
+    at = rig.shot.actual
     rig.post(CycleStart())
+    assert rig.shot.waiting_for == "AT SPEED"
+    while rig.state is State.WAIT:
+        assert rig.shot.actual == at
+        rig.tick()
     assert rig.state is State.RUN
+    assert rig.shot.rpm_actual == pytest.approx(1000.0, rel=0.1)
 
 
 def test_half_override_takes_twice_as_long() -> None:

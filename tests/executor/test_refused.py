@@ -227,12 +227,12 @@ def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
 def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
     rig = Rig()
     rig.post(SpindleLimit(1200.0))
-    rig.start("G90G94F300\nM03S3000\nG04F9\nM30\n")
+    rig.start("G90G94F300\nM03S3000\nG04F3\nM05\nG04F3\nM03S3000\nG04F9\nM30\n")
     rig.run(3.0)
     assert rig.shot.rpm_actual == 1200
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     rig.post(SpindleLimit(None))
-    rig.run(2.0)
-    assert rig.shot.rpm_actual == 3000
+    rig.until_true(lambda shot: shot.rpm_actual == 3000)
 
 
 @pytest.mark.parametrize("command", [CycleStart(), Jog("X", 10.0, 0.2)])

@@ -1,0 +1,281 @@
+"""What a start will start is announced before it; a spindle that waits turns for nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.executor.announced import READ
+from core.executor.commands import CycleStart, FeedHold, Reset, SpindleLimit
+from core.executor.snapshot import State
+from tests.executor.rig import TICK, Rig
+
+CUT = "G90G94F300\nM03S1500\nG01F10Z-1\nM30\n"
+SAID = "THE SPINDLE STARTS AT 1500 RPM FORWARD"
+
+
+def held(text: str = CUT) -> Rig:
+    """In feed hold in the middle of a cut, at rest, the spindle turning."""
+    rig = Rig()
+    rig.start(text)
+    rig.until_true(lambda shot: shot.actual[1] < -0.5)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.run(0.5)
+    assert abs(rig.shot.rpm_actual) == pytest.approx(1500.0)
+    return rig
+
+
+def switched_off(rig: Rig) -> None:
+    rig.sim.machine.set_spindle_auto(False)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+
+
+def never_turns(rig: Rig, seconds: float = 3.0) -> None:
+    until = rig.clock.now() + seconds
+    while rig.clock.now() < until:
+        rig.tick()
+        assert rig.sim.machine.spindle_rpm() == 0.0
+        assert rig.shot.rpm_command == 0.0
+
+
+def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do() -> None:
+    rig = held()
+    switched_off(rig)
+    assert rig.shot.announced == ()
+    rig.sim.machine.set_spindle_auto(True)
+    never_turns(rig)
+    assert rig.state is State.HOLD
+    assert rig.shot.announced == (SAID,)
+    rig.sim.machine.press_start()
+    rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
+    assert rig.shot.announced == ()
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+@pytest.mark.parametrize(("code", "way"), [("M03", "FORWARD"), ("M04", "REVERSE")])
+def test_the_announcement_names_the_way_it_turns(code: str, way: str) -> None:
+    rig = held(CUT.replace("M03", code))
+    switched_off(rig)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(0.1)
+    assert rig.shot.announced == (f"THE SPINDLE STARTS AT 1500 RPM {way}",)
+
+
+def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() -> None:
+    rig = held()
+    switched_off(rig)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.tick()
+    rig.run(READ - 2 * TICK)
+    rig.post(CycleStart())
+    assert rig.state is State.HOLD
+    assert rig.shot.start_refused == f"look first: {SAID}; then start again"
+    never_turns(rig, 1.0)
+    rig.post(CycleStart())
+    assert (rig.state, rig.shot.start_refused) == (State.WAIT, "")
+
+
+def test_a_start_and_the_switch_in_one_tick_turn_nothing() -> None:
+    rig = held()
+    switched_off(rig)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.post(CycleStart())
+    assert rig.state is State.HOLD
+    assert rig.shot.start_refused
+    never_turns(rig)
+
+
+def test_a_pot_turned_up_meanwhile_is_another_announcement() -> None:
+    rig = held()
+    rig.sim.machine.set_spindle_pot(0.0)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    rig.sim.machine.set_spindle_pot(0.1)
+    never_turns(rig)
+    assert rig.shot.announced == ("THE SPINDLE STARTS AT 150 RPM FORWARD",)
+    rig.sim.machine.set_spindle_pot(1.0)
+    rig.until_true(lambda shot: shot.announced == (SAID,))
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == f"look first: {SAID}; then start again"
+    never_turns(rig, 1.0)
+
+
+def test_a_pot_at_0_stops_and_more_turns_nothing_before_the_palms() -> None:
+    rig = Rig()
+    rig.start(CUT)
+    rig.until_true(lambda shot: shot.actual[1] < -0.5)
+    rig.sim.machine.set_spindle_pot(0.0)
+    rig.until(State.HOLD)
+    assert rig.shot.waiting_for == "SPINDLE OVERRIDE AT 0"
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "spindle override at 0"
+    rig.sim.machine.set_spindle_pot(1.0)
+    never_turns(rig)
+    assert rig.shot.announced == (SAID,)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_a_station_that_was_silent_while_the_switch_was_turned_turns_nothing() -> None:
+    rig = held()
+    switched_off(rig)
+    rig.sim.machine.station_silent(True)
+    rig.run(1.0)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(1.0)
+    rig.sim.machine.station_silent(False)
+    never_turns(rig)
+
+
+def test_a_spindle_that_stopped_by_itself_does_not_come_back_by_itself() -> None:
+    rig = held()
+    rig.sim.machine.spindle_bog(0.0)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    rig.run(2.5)
+    assert rig.shot.rpm_command == 0.0
+    rig.sim.machine.spindle_bog(1.0)
+    never_turns(rig)
+    assert rig.shot.announced == (SAID,)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+
+
+def test_estop_in_a_cut_leaves_nothing_that_could_start() -> None:
+    rig = held()
+    rig.sim.machine.press_estop()
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    rig.sim.machine.release_estop()
+    rig.sim.machine.set_spindle_auto(False)
+    rig.run(1.0)
+    rig.sim.machine.set_spindle_auto(True)
+    never_turns(rig)
+    assert rig.shot.announced == ()
+
+
+def test_reset_leaves_nothing_that_could_start() -> None:
+    rig = held()
+    switched_off(rig)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.sim.machine.set_spindle_auto(True)
+    never_turns(rig)
+    assert rig.shot.announced == ()
+
+
+def test_m05_with_the_switch_off_passes_and_a_cut_does_not() -> None:
+    rig = Rig()
+    rig.sim.machine.set_spindle_auto(False)
+    rig.start("G90G94F300\nM03S1500\nM05\nG01F10Z-.1\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_nothing_is_announced_where_the_spindle_turns() -> None:
+    rig = held()
+    assert rig.shot.announced == ()
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+
+
+def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
+    rig = held()
+    switched_off(rig)
+    rig.sim.machine.collet_sensor_stuck()
+    rig.sim.machine.set_input("collet_closed", False)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(1.0)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == "the spindle is not started with the collet open: close it first"
+    never_turns(rig)
+
+
+# --- between programs: M03 in MDI, then the switch, as the manual has it
+
+
+def left_turning() -> Rig:
+    """M02 leaves the spindle turning."""
+    rig = Rig()
+    rig.start("G90G94F300\nM03S1500\nG04F1\nM02\n")
+    rig.until_true(lambda shot: shot.ends == 1)
+    rig.run(0.5)
+    assert rig.state is State.IDLE
+    assert rig.shot.rpm_actual == pytest.approx(1500.0)
+    return rig
+
+
+def test_between_programs_the_switch_stops_it_and_starts_it_again() -> None:
+    rig = left_turning()
+    switched_off(rig)
+    assert rig.shot.announced == (f"SWITCH TO AUTO: {SAID}",)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
+    assert rig.shot.announced == ()
+
+
+def test_a_switch_that_only_flickered_does_not_start_it() -> None:
+    rig = left_turning()
+    rig.sim.machine.set_spindle_auto(False)
+    rig.run(0.1)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    never_turns(rig)
+    assert any(SAID in text for text in rig.said("refused"))
+
+
+def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
+    rig = left_turning()
+    rig.sim.machine.set_spindle_pot(0.0)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    rig.sim.machine.set_spindle_pot(1.0)
+    never_turns(rig)
+    switched_off(rig)
+    rig.run(READ)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
+
+
+def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_programs() -> None:
+    rig = left_turning()
+    switched_off(rig)
+    rig.run(READ)
+    rig.sim.machine.station_silent(True)
+    rig.run(1.0)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(1.0)
+    rig.sim.machine.station_silent(False)
+    never_turns(rig)
+
+
+def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
+    rig = left_turning()
+    switched_off(rig)
+    rig.run(READ)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.tick(0.5)
+    never_turns(rig)
+
+
+def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
+    rig = left_turning()
+    switched_off(rig)
+    rig.run(READ)
+    rig.sim.machine.collet_sensor_stuck()
+    rig.sim.machine.set_input("collet_closed", False)
+    rig.sim.machine.set_spindle_auto(True)
+    never_turns(rig)
+    assert "the spindle is not started with the collet open: close it first" in rig.said("refused")
+
+
+def test_a_limit_is_not_raised_under_a_spindle_that_turns() -> None:
+    rig = Rig()
+    rig.post(SpindleLimit(500.0))
+    rig.start("G90G94F300\nM03S1500\nG04F60\nM30\n")
+    rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(500.0))
+    rig.post(SpindleLimit(3000.0))
+    rig.run(2.0)
+    assert rig.shot.rpm_actual == pytest.approx(500.0)
+    assert any("while the spindle stands" in text for text in rig.said("refused"))
+    rig.post(SpindleLimit(300.0))
+    rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(300.0))
