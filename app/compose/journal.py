@@ -11,20 +11,25 @@ from app.desk.files.record import tell_cut_off
 from app.desk.home import home
 from app.desk.offsets.book import OffsetBook
 from app.desk.zero_offsets.book import ZeroBook
+from core.executor.interrupted import Interrupted, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store import backup
 from core.store.errors import StoreError
 from core.store.rows import EventRow, RunRow, VersionRow
 from core.store.store import Store
+from core.store.unwritten import Held
 
-HELD = 10_000  # events that are kept back while a backup takes the store's place
+HELD = 10_000  # events that are kept back while there is no store
+UNDER_WAY = "job under way"  # setting: what a power cut would leave interrupted
+AGAIN = 5.0  # s between two tries to open a store
 
 
 class Journal:
     """Writes by the store's own thread, so that neither executor nor screen ever waits for the disk.
 
-    Without a store (``trouble`` says why) the machine runs all the same, and nothing is kept.
+    Without a store (``trouble`` says why) the machine runs all the same. What happens is held in memory, and
+    where the reason is one that passes, as a full disk is, the store is opened as soon as it does.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -35,11 +40,18 @@ class Journal:
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
+        self._noted: Interrupted | None = None  # what a power cut would leave interrupted
+        self._closing = threading.Event()
+        self.left: Interrupted | None = None  # what the last one has left
         try:
             self._store = Store.open(folder)
             tell_cut_off(self._store)
+            self.left = self._noted = of_plain(self._store.setting(UNDER_WAY))
         except StoreError as error:
             self._trouble = str(error)
+            self._held = deque(maxlen=HELD)
+            if error.passing:
+                threading.Thread(target=self._try_again, name="store-opener", daemon=True).start()
 
     @classmethod
     def at_home(cls) -> Journal:
@@ -50,6 +62,23 @@ class Journal:
     def trouble(self) -> str:
         """Why nothing is kept, or why the last write failed; empty while all is well."""
         return self._trouble or (self._store.trouble if self._store else "")
+
+    @property
+    def held(self) -> str:
+        """What is still to be written and waits in memory, in words; empty while nothing has to."""
+        store, held = self._store, self._held
+        if store is not None:
+            return store.held.words if store.held is not None else ""
+        if not held:
+            return ""
+        parts = sum(event.kind == "part" for event in tuple(held))
+        return Held("", events=len(held), parts=parts).words
+
+    def note(self, what: Interrupted | None) -> None:
+        """Keep what a power cut would leave interrupted now; None: nothing."""
+        self._noted = what
+        value = plain(what) if what is not None else None
+        self._post(lambda store: store.set_setting(UNDER_WAY, value))
 
     def book(self) -> OffsetBook:
         """The offsets of the store, for the screen to show and to change."""
@@ -86,7 +115,7 @@ class Journal:
         """The text that is about to be proved and run becomes a version of its program."""
         if self._store is not None:
             name = Path(source.name).name
-            self._store.save_program(name, source.text.encode("utf-8", "surrogateescape"), "loaded to run")
+            self._store.keep_program(name, source.text.encode("utf-8", "surrogateescape"), "loaded to run")
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
         """Every version of a program, newest first. Raises StoreError; not for the screen's thread."""
@@ -176,18 +205,29 @@ class Journal:
             self._open_again()
 
     def _open_again(self) -> None:
+        """What happened meanwhile is written; what is interrupted is this machine's, not that of a backup."""
         try:
-            store: Store | None = Store.open(self._folder)
-            self._trouble = ""
+            store = Store.open(self._folder)
         except StoreError as error:
-            store, self._trouble = None, str(error)
+            self._trouble = str(error)
+            for book in self._books:
+                book.reopen(None, self._trouble)
+            return
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
             for event in held:
-                if store is not None:
-                    self._write(store, event)
+                self._write(store, event)
+        self._trouble = ""
+        self.note(self._noted)
         for book in self._books:
-            book.reopen(store, self._trouble)
+            book.reopen(store, "")
+
+    def _try_again(self) -> None:
+        """A disk that was full at the start, or a file that was locked: some time it is not."""
+        while not self._closing.wait(AGAIN):
+            self._open_again()
+            if self._store is not None:
+                return
 
     def _post(self, write: Callable[[Store], object]) -> None:
         store = self._store
@@ -200,8 +240,12 @@ class Journal:
             raise StoreError(self._trouble or "the store is closed")
         return store
 
-    def close(self) -> None:
-        """Write what is queued and give the store free."""
-        if self._store is not None:
-            self._store.close()
-            self._store = None
+    def close(self) -> str:
+        """Write what is queued and give the store free; in words what could not be kept and is lost."""
+        self._closing.set()
+        if self._store is None:
+            return self.held
+        self._store.close()
+        lost = self.held
+        self._store = None
+        return lost

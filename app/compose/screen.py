@@ -32,6 +32,7 @@ from app.desk.session import Session, Workshop
 from app.desk.shelf import Shelf
 from app.desk.words import tr
 from core.executor.executor import Executor
+from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Event, Snapshot
 from core.executor.thread import ExecutorThread
 from core.interpreter.modal import Modal
@@ -63,11 +64,13 @@ def build_desk(
         thread.close()  # first: nothing may keep the machine from being stopped
         close_floor()
         let_go()
-        journal.close()
+        lost = journal.close()
+        if lost:
+            sys.stderr.write(f"turndesk: {lost} could not be kept and are lost: {journal.trouble}\n")
         log.close()
 
     desk.shut = shut
-    desk.unkept = lambda: journal.trouble or log.trouble
+    desk.unkept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     return desk
@@ -118,7 +121,13 @@ def desk_and_executor(
         if journal is not None:
             journal.hear(event)
 
-    executor = Executor(machine, connected.ports, hear)
+    executor = Executor(
+        machine,
+        connected.ports,
+        hear,
+        note=journal.note if journal is not None else _kept_nowhere,
+        left=journal.left if journal is not None else None,
+    )
 
     def say(kind: str, text: str) -> None:
         hear(Event(clock.now(), kind, text))
@@ -156,6 +165,10 @@ def desk_and_executor(
     if changed.barred:
         desk.say(changed.barred)
     return desk, executor
+
+
+def _kept_nowhere(_what: Interrupted | None) -> None:
+    """A desk without a store remembers nothing."""
 
 
 def _connected(machine: Machine, clock: Clock) -> Connected:

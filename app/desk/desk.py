@@ -8,18 +8,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
-from app.desk import prompts
+from app.desk import interrupted, prompts
 from app.desk.hands import OVERRIDE_MOST, stepped
 from app.desk.parts import DeskParts
 from app.desk.prompts import UNDER_WAY
 from app.desk.session import Loaded
 from app.desk.view import Tone, View, view_of
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
+from app.desk.words import tr
+from core.executor.commands import (
+    ConfirmStart,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    FeedOverride,
+    Reset,
+    SetSwitch,
+)
 from core.executor.snapshot import Snapshot, Starts, State
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
+MEANT = 1.0  # s after a question before the same hand can have read it
 
 
 class Desk(DeskParts):
@@ -84,9 +95,32 @@ class Desk(DeskParts):
         path = self.shelf.find(typed)
         if path is None:
             return False
-        self.clear()
-        self.session.load(path, self.session.now.block_delete)
+        self.put_on_desk(path)
         return True
+
+    def put_on_desk(self, path: Path) -> None:
+        """Load it; where it would take the place of an interrupted job that is asked first."""
+        found = self.snapshot().interrupted
+        self.clear()
+        if found is not None and found.program != path.name:
+            self.say(interrupted.instead(found, path.name))
+            self._instead = path
+        else:
+            self.session.load(path, self.session.now.block_delete)
+
+    def begin_with(self, named: str | None) -> None:
+        """At the start: the program that was interrupted, or else the one that is ``named``."""
+        found = self.snapshot().interrupted
+        path = str(Path(named).absolute()) if named is not None else ""
+        if found is None:
+            if named is not None and not self.choose(path):
+                self.say(f"FILE NOT FOUND: {named}")
+        elif named is not None and Path(named).name == found.program and self.choose(path):
+            return
+        elif not self.choose(found.program):
+            self.say(tr("THE INTERRUPTED PROGRAM {name} IS NOT IN THE FOLDER: F2").format(name=found.program))
+        elif named is not None:
+            self.say(tr("{name} IS NOT LOADED: A JOB WAS INTERRUPTED").format(name=Path(named).name))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -108,6 +142,18 @@ class Desk(DeskParts):
             self.clear()
             self.session.load(loaded.path, not loaded.block_delete)
 
+    def may_close(self) -> bool:
+        """Whether the control may be left; says once what would be lost, and means it a second later."""
+        waiting, now = self.waiting(), self.clock()
+        if not waiting or (self._closing is not None and now - self._closing >= MEANT):
+            return True
+        if self._closing is None:
+            self._closing = now
+        self.say(
+            tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR CLOSE ONCE MORE").format(what=waiting)
+        )
+        return False
+
     def feed_hold(self) -> None:
         """Feed hold, whatever else is going on."""
         self.post(FeedHold())
@@ -124,6 +170,24 @@ class Desk(DeskParts):
         else:
             self.clear()
             self.post(Reset())
+
+    def yes(self) -> None:
+        """Y: the answer to what is asked about an interrupted job, and to nothing else."""
+        path, snapshot = self._instead, self.snapshot()
+        found = snapshot.interrupted
+        if path is not None:
+            if self.may_choose():
+                self.clear()
+                self.session.load(path, self.session.now.block_delete)
+        elif found is None or not snapshot.interrupted_line:
+            self.clear()
+        elif (
+            snapshot.state is not State.IDLE or not self.starts_here or snapshot.starts is not Starts.PROGRAM
+        ):
+            self.say(tr("Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON"))
+        else:
+            self.clear()
+            self.post(ConfirmStart(found.at))
 
     def enable(self) -> None:
         """Switch the drives on, after E-stop or power-up."""
@@ -145,6 +209,8 @@ class Desk(DeskParts):
         """
         if self.notice:
             self.clear()
+        elif self.snapshot().confirmed:
+            self.post(ConfirmStart(""))
         elif self.snapshot().state in prompts.MOVING:
             self.feed_hold()
         else:

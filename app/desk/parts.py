@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk import prompts
@@ -64,6 +65,7 @@ class DeskParts:
     lathe: Machine | None = None  # what the machine file says, for moves by hand
     simulated: bool = True
     shut: Callable[[], None] = _nothing
+    waiting: Callable[[], str] = str  # what of it waits in memory, in words
     unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
@@ -86,6 +88,8 @@ class DeskParts:
     answers: Answers = field(init=False)
     rebuilding: Rebuilding = field(init=False)
     _giving_up: bool = False
+    _instead: Path | None = None  # a program that would take the place of an interrupted one
+    _closing: float | None = None  # when it was said what closing would lose
     _pulse: Pulse = field(default_factory=Pulse)
 
     def __post_init__(self) -> None:
@@ -106,6 +110,7 @@ class DeskParts:
         """Take the answer back."""
         self.answers.notice = ""
         self._giving_up = False
+        self._instead = None
 
     @property
     def notice(self) -> str:

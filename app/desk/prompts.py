@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from app.desk import interrupted
 from app.desk.session import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
+NONE_NAMED = "TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING"
 ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
 CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW"
 NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
@@ -59,10 +61,11 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
         return "PRESS F2 TO CHOOSE A PROGRAM"
     if snapshot.proof_wanted:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
+    asked = interrupted.prompt(snapshot, loaded, start)
     missing = missing_tools(loaded)
     if missing:
         return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
-    return f"TO START {start}"
+    return asked or f"TO START {start}"
 
 
 def missing_tools(loaded: Loaded) -> list[str]:

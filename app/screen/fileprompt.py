@@ -46,6 +46,13 @@ class FilePrompt(Panel):
         """What it has to say about the name; empty while all is well."""
         return NOT_FOUND if self.not_found else ""
 
+    @property
+    def wanted(self) -> str:
+        """What F3 edits: the row that was marked by hand, or else the name that was typed; empty: neither."""
+        if self._moved and self._entries:
+            return str(self._entries[self._row].path)
+        return self.edit.text().strip()
+
     def ask(self) -> None:
         """Come up empty, with the keyboard."""
         self.not_found = False

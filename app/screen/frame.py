@@ -113,7 +113,8 @@ class Frame(FrameParts):
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        if self.moved_dock:
+        more = self.standing.show_rows(self.rows_of(snapshot, loaded, here=self.page is self.automatic))
+        if self.moved_dock or more:
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self.lamps_of(snapshot, view)

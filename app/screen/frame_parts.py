@@ -8,9 +8,11 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
+from app.desk.interrupted import standing
 from app.desk.lamps import Lamp
 from app.desk.session import Loaded
 from app.desk.view import View
+from app.desk.words import tr
 from app.screen.bars import FunctionKeys, PromptLine, TitleLine
 from app.screen.dock import StationDock
 from app.screen.gauges import FeedGauge, SpindleGauge, TimesGauge, ToolGauge
@@ -20,8 +22,12 @@ from app.screen.look import Look
 from app.screen.overlay import AlarmList, Notice
 from app.screen.position import PositionPanel
 from app.screen.runline import RunLine
+from app.screen.standing import Row, StandingRows
 from app.screen.strip import Strip
 from core.executor.snapshot import Snapshot, State
+
+_KEYS = (("F6", "SEARCHTO"), ("Y", "LINE 1"))
+GAP = 4  # pixels under the rows that stand
 
 
 class FrameParts(QWidget):
@@ -39,6 +45,7 @@ class FrameParts(QWidget):
         self.tool = ToolGauge(look, "TOOL  ·  OFFSET", self)
         self.times = TimesGauge(look, "PARTS  ·  TIME", self)
         self.strip = Strip(look, press, self)
+        self.standing = StandingRows(look, press, self)
         self.dock = StationDock(look, desk, self) if desk.station else None
         self.prompt = PromptLine(look, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
@@ -53,7 +60,11 @@ class FrameParts(QWidget):
         with_dock = self.dock is not None and self.desk.settings.now.dock
         at, low = places(width, height, with_dock), low_places(width, height, with_dock)
         self._docked = with_dock
-        over = at.path if large else low.work
+        work = work_of(at) if large else low.work
+        rows = Rect(work.x, work.y, work.w, min(self.standing.high, work.h // 3))
+        work, over = _below(work, rows), _below(at.path if large else low.work, rows)
+        stand(self.standing, rows)
+        self.standing.setVisible(bool(rows.h))
         self._stand_readouts(at, large)
         for part, rect in ((self.head, low.head), (self.run, low.run)):
             stand(part, rect)
@@ -68,7 +79,7 @@ class FrameParts(QWidget):
         stand(self.keys, at.keys)
         stand(self.notice, over)
         stand(self.log, over)
-        return work_of(at) if large else low.work
+        return work
 
     @property
     def moved_dock(self) -> bool:
@@ -108,7 +119,27 @@ class FrameParts(QWidget):
     def lamps_of(self, snapshot: Snapshot, view: View) -> tuple[Lamp, ...]:
         """The lit words, from left to right."""
         on = snapshot.state not in {State.ESTOP, State.DISABLED}
-        return (*view.modes, *view.lamps, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
+        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.unkept() else ()
+        return (*view.modes, *view.lamps, *kept, Lamp("DRIVES ON", on, "D"), Lamp("RESET", False, "R"))
+
+    def rows_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[Row, ...]:
+        """What stands until somebody does something; its keys where they mean that (``here``)."""
+        desk, rows = self.desk, []
+        found = standing(snapshot, loaded, desk.settings.units)
+        if found is not None:
+            offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
+            rows.append(Row(found.text, found.figures, _KEYS if offered else ()))
+        if desk.unkept():
+            held = desk.waiting()
+            waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
+            rows.append(Row(tr("NOT KEPT: {why}").format(why=desk.unkept()), waits))
+        return tuple(rows)
+
+
+def _below(room: Rect, rows: Rect) -> Rect:
+    """What of a room is left under the rows."""
+    taken = rows.h + GAP if rows.h else 0
+    return Rect(room.x, room.y + taken, room.w, room.h - taken)
 
 
 def stand(part: QWidget, rect: Rect) -> None:

@@ -36,6 +36,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Plus, NONE): "+",
     (Key.Key_Minus, NONE): "-",
     (Key.Key_T, NONE): "T",
+    (Key.Key_Y, NONE): "Y",
     (Key.Key_Escape, NONE): "Esc",
     (Key.Key_Z, NONE): "Zoom in",
     (Key.Key_Z, SHIFT): "Zoom out",

@@ -6,7 +6,6 @@ import logging
 import signal
 import sys
 from collections.abc import Callable
-from pathlib import Path
 from types import TracebackType
 
 from PySide6.QtCore import QTimer
@@ -73,8 +72,7 @@ class _Start:
         with _Carry(self._failed):
             desk = self._desk = self._build()
             self._window.open_desk(desk)
-            if self._program is not None and not desk.choose(str(Path(self._program).absolute())):
-                desk.say(f"FILE NOT FOUND: {self._program}")
+            desk.begin_with(self._program)
 
     def _failed(self, error: Exception) -> None:
         """Nothing may be raised into Qt's loop: it is carried past its end."""

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
 from app.desk.drawing.spots import measuring_words
-from app.desk.prompts import MOVING
+from app.desk.prompts import MOVING, NONE_NAMED
 from app.desk.session import Loaded
 from app.desk.swivel.telling import plane_words, running
 from app.desk.view import View
@@ -100,8 +100,8 @@ class AutomaticPage(Page):
         self._moving = snapshot.state in MOVING
         self._show_program(loaded)
         self.comment.show_text(view.comment)
-        self.listing.show_run(view.line, view.block_text, view.next_text)
-        self._show_path(snapshot)
+        self.listing.show_run(view.line or snapshot.interrupted_line, view.block_text, view.next_text)
+        self._show_path(snapshot, loaded)
 
     def _show_program(self, loaded: Loaded) -> None:
         if loaded is self._loaded:
@@ -114,12 +114,12 @@ class AutomaticPage(Page):
         self.space.setVisible(scene is not None)
         self.path.show_picture(loaded.picture if scene is None else None)
 
-    def _show_path(self, snapshot: Snapshot) -> None:
+    def _show_path(self, snapshot: Snapshot, loaded: Loaded) -> None:
         scene = self.space.scene
         if scene is not None:
             self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
             return
-        self.path.show_tip(tip_of(snapshot))
+        self.path.show_tip(tip_of(snapshot, loaded.job))
         self.path.advance()
 
     @property
@@ -162,9 +162,12 @@ class AutomaticPage(Page):
 
     def _edit(self) -> None:
         """The program on the desk, or whatever name stands in the question for a file."""
-        if self.desk.editor is not None:
-            self.desk.editor.wanted = self.files.edit.text() if self.files.isVisible() else ""
-        self._go(pages.EDITOR)
+        wanted = self.files.wanted if self.files.isVisible() else ""
+        if self.files.isVisible() and not wanted:
+            self.desk.say(NONE_NAMED)
+        elif self.desk.editor is not None:
+            self.desk.editor.wanted = wanted
+            self._go(pages.EDITOR)
 
     def ask_file(self) -> None:
         """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""

@@ -86,6 +86,7 @@ class MainWindow(QWidget):
             "+": partial(desk.override, 1),
             "-": partial(desk.override, -1),
             "T": self.other_theme,
+            "Y": desk.yes,
             "Esc": self._escape,
         }
 
@@ -187,7 +188,7 @@ class MainWindow(QWidget):
             self.refresh()
             event.ignore()
             return
-        if frame is not None and not frame.page.leave():
+        if frame is not None and not (frame.page.leave() and frame.desk.may_close()):
             self.refresh()
             event.ignore()
             return

@@ -43,6 +43,8 @@ def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tupl
     active: dict[str, list[Condition]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
         active[_place(alarm, keys)].append((FAULT, str(alarm.number), f"{alarm.text}: {alarm.cause}"))
+    if snapshot.interrupted is not None:
+        active[SYSTEM].append((WARNING, "interrupted", snapshot.interrupted.words))
     if snapshot.state is State.HOLD and snapshot.waiting_for:
         active[SYSTEM].append((WARNING, "hold", snapshot.waiting_for))
     return {key: tuple(found) for key, found in active.items()}

@@ -9,6 +9,7 @@ from pathlib import Path
 from app.desk.pulse import Pulse
 from app.shopfloor.conditions import Condition, conditions_of
 from app.shopfloor.execution import Execution, mode_of
+from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Snapshot, State
 from core.machine.model import Machine
 
@@ -25,6 +26,7 @@ class Reading:
 
     values: Mapping[str, Value]
     conditions: Mapping[str, tuple[Condition, ...]] = field(default_factory=dict)
+    interrupted: Interrupted | None = None
 
     @property
     def available(self) -> bool:
@@ -65,7 +67,7 @@ class FloorReader:
             **self._spindle(snapshot),
             **self._wired(snapshot),
         }
-        return Reading(values, conditions_of(snapshot, self.keys))
+        return Reading(values, conditions_of(snapshot, self.keys), snapshot.interrupted)
 
     def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
         """Machine frame, X a radius; an axis that has no home does not know where it is."""

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.shopfloor.reading import Reading
+from core.executor.interrupted import Interrupted
 
 NAME = "status.json"
 _LOOK = 1.0  # s
@@ -29,12 +30,20 @@ def status_of(machine: str, reading: Reading) -> Status:
         "estop": values.get("estop"),
         "program": values.get("program"),
         "parts": int(values["pcount"] or 0) if reading.available else None,
+        "interrupted": _interrupted(reading.interrupted),
         "alarms": [
             {"of": key, "level": level, "code": code, "text": text}
             for key, active in reading.conditions.items()
             for level, code, text in active
         ],
     }
+
+
+def _interrupted(found: Interrupted | None) -> Status | None:
+    """The job that did not come to its end; ``at`` is UTC, ISO 8601."""
+    if found is None:
+        return None
+    return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
 
 
 class StatusFile:
@@ -89,11 +98,13 @@ class StatusKeeper:
             self._thread.join()
 
     def _keep(self) -> None:
+        last: Status = {}
         try:
-            self._file.show(self._look())
+            self._file.show(last := self._look())
             while not self._closing.wait(_LOOK):
-                self._file.show(self._look())
+                self._file.show(last := self._look())
+            last = self._look()  # what closing has interrupted stays so
         finally:
             if not self._closing.is_set():
                 _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)
-            self._file.show(self._gone)
+            self._file.show({**self._gone, "interrupted": last.get("interrupted")})

@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from core.store import checking, database
+from core.store.causes import Cause, cause_of, why
 from core.store.errors import StoreError
 from core.store.lock import WriterLock
 from core.store.opening import make_folder
@@ -103,4 +104,6 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:
+    if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) is not Cause.OTHER:
+        return why(target, error)
     return StoreError(f"{target} cannot be written ({error}); check the folder, its space and rights")

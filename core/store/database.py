@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import sqlite3
 from collections.abc import Sequence
+from contextlib import closing
 from importlib.resources import files
 from pathlib import Path
 
+from core.store.causes import Cause, why
 from core.store.errors import StoreError
 
 FILE_NAME = "turndesk.db"
@@ -31,9 +33,7 @@ def check_header(path: Path) -> None:
         with path.open("rb") as file:
             header = file.read(100)
     except OSError as error:
-        raise StoreError(
-            f"{path} cannot be read ({error.strerror}); check the file and its rights"
-        ) from error
+        raise why(path, error) from error
     if len(header) < 100 or not header.startswith(_MAGIC):
         raise StoreError(
             f"{path} is not a database; it is left as it is. Restore a backup: turndesk store restore FILE"
@@ -55,7 +55,7 @@ def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
         )
         return configured(connection)
     except sqlite3.Error as error:
-        raise damaged(path, error) from error
+        raise why(path, error) from error
 
 
 def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
@@ -63,14 +63,6 @@ def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
     connection.execute("PRAGMA synchronous = FULL")
     connection.execute("PRAGMA foreign_keys = ON")
     return connection
-
-
-def damaged(path: Path, error: object) -> StoreError:
-    """The sentence for a store that SQLite itself refuses."""
-    return StoreError(
-        f"{path} is damaged or cannot be used ({' '.join(str(error).split())}); it is left as it is. "
-        "Restore a backup: turndesk store restore FILE"
-    )
 
 
 def version_of(connection: sqlite3.Connection) -> int:
@@ -89,7 +81,7 @@ def check_file(path: Path, *, thorough: bool) -> int:
         version = version_of(connection)
         told = connection.execute("PRAGMA quick_check(1)").fetchone()[0] if thorough else "ok"
     except sqlite3.Error as error:
-        raise damaged(path, error) from error
+        raise why(path, error) from error
     finally:
         connection.close()
     if version > newest:
@@ -98,7 +90,7 @@ def check_file(path: Path, *, thorough: bool) -> int:
             "it is left as it is. Use the newer TurnDesk"
         )
     if told != "ok":
-        raise damaged(path, told)
+        raise Cause.DAMAGED.told(path, told)
     return version
 
 
@@ -113,23 +105,30 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
             if connection.in_transaction:
                 connection.rollback()
             raise StoreError(
-                f"the store cannot be brought to version {number} ({error}); it stays at the one before"
+                f"the store cannot be brought to version {number}, and stays at the one before: "
+                f"{why(_path_of(connection), error)}"
             ) from error
 
 
+def _path_of(connection: sqlite3.Connection) -> Path:
+    """The file that a connection is to."""
+    return Path(str(connection.execute("PRAGMA database_list").fetchone()[2]))
+
+
 def create(path: Path) -> None:
-    """A new, empty store; it appears under its name only when it is whole."""
+    """A new, empty store; it appears under its name only when it is whole. Raises StoreError."""
     unfinished = path.with_name(path.name + ".new")
-    for leftover in (unfinished, *companions(unfinished)):
-        leftover.unlink(missing_ok=True)
-    connection = configured(sqlite3.connect(unfinished, isolation_level=None))
     try:
-        connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-        connection.execute("PRAGMA journal_mode = WAL")
-        migrate(connection, migrations())
-    finally:
-        connection.close()
-    put_in_place(unfinished, path)
+        for leftover in (unfinished, *companions(unfinished)):
+            leftover.unlink(missing_ok=True)
+        with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
+            configured(connection)
+            connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+            connection.execute("PRAGMA journal_mode = WAL")
+            migrate(connection, migrations())
+        put_in_place(unfinished, path)
+    except (OSError, sqlite3.Error) as error:
+        raise why(path, error) from error
 
 
 def put_in_place(finished: Path, path: Path) -> None:

@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from core.store.causes import Cause, cause_of, why
 from core.store.errors import StoreError
 from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import EventRow, Kind, RunRow, Value, inches
@@ -30,6 +31,8 @@ def export(store: Store, folder: Path) -> int:
             count = _write_all(store, unfinished)
             unfinished.replace(folder)
     except OSError as error:
+        if cause_of(folder, error) is Cause.FULL:
+            raise why(folder, error) from error
         raise StoreError(
             f"{folder} cannot be written ({error}); check the folder, its space and rights"
         ) from error

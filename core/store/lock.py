@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import fcntl
 import os
+from contextlib import suppress
 from pathlib import Path
 
+from core.store.causes import why
 from core.store.errors import StoreError
 
 
@@ -17,9 +19,7 @@ class WriterLock:
         try:
             self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
-            raise StoreError(
-                f"{folder} cannot be written ({error.strerror}); check its rights, or set TURNDESK_HOME"
-            ) from error
+            raise why(self._path, error) from error
         try:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
@@ -29,8 +29,9 @@ class WriterLock:
             raise StoreError(
                 f"the store in {folder} is in use by another TurnDesk{who}; close that one, or enter it there"
             ) from error
-        os.ftruncate(self._file, 0)
-        os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
+        with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
+            os.ftruncate(self._file, 0)
+            os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
 
     def close(self) -> None:
         """Give the store free. Calling it again does nothing."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.store import database
+from core.store.causes import Cause, cause_of, why
 from core.store.errors import StoreError
 from core.store.lock import WriterLock
 
@@ -64,6 +65,8 @@ def make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
+        if cause_of(folder, error) is Cause.FULL:
+            raise why(folder, error) from error
         raise StoreError(
             f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours"
         ) from error
@@ -87,7 +90,7 @@ def _writing(path: Path, version: int) -> sqlite3.Connection:
         database.migrate(connection, database.migrations())
     except sqlite3.Error as error:
         connection.close()
-        raise database.damaged(path, error) from error
+        raise why(path, error) from error
     except StoreError:
         connection.close()
         raise

@@ -91,12 +91,7 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 def count_part(connection: sqlite3.Connection, program: str) -> int:
     """One part more; answers the new count."""
-    connection.execute(
-        "INSERT INTO part_counts VALUES (?, 1, ?)"
-        " ON CONFLICT (program) DO UPDATE SET count = count + 1, last = excluded.last",
-        (program, utc_now()),
-    )
-    return parts(connection, program)
+    return add_parts(connection, program, 1, utc_now())
 
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
@@ -105,12 +100,13 @@ def parts(connection: sqlite3.Connection, program: str) -> int:
     return int(row[0]) if row else 0
 
 
-def correct_parts(connection: sqlite3.Connection, program: str, by: int) -> int:
-    """Parts added or taken away by hand, never below nought; answers the new count."""
+def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> int:
+    """Parts made, added or taken away, never below nought; answers the new count."""
     count = max(0, parts(connection, program) + by)
     connection.execute(
-        "INSERT INTO part_counts VALUES (?1, ?2, ?3) ON CONFLICT (program) DO UPDATE SET count = ?2",
-        (program, count, utc_now()),
+        "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
+        " ON CONFLICT (program) DO UPDATE SET count = ?2, last = ?3",
+        (program, count, last),
     )
     return count
 

@@ -8,7 +8,8 @@ from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from core.store import database, offsets, programs, records, runs, zero
+from core.store import offsets, programs, records, runs, zero
+from core.store.causes import why
 from core.store.errors import StoreError
 from core.store.rows import Change, EventRow, Kind, ProgramRow, RunRow, SecondaryRow, ToolRow, VersionRow
 from core.store.zero import ZeroChange, ZeroRow
@@ -31,7 +32,7 @@ class StoreReader:
             except sqlite3.ProgrammingError as error:
                 raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
             except sqlite3.Error as error:
-                raise database.damaged(self.path, error) from error
+                raise why(self.path, error) from error
 
     def tools(self) -> dict[int, ToolRow]:
         """The tool offsets that have been set."""

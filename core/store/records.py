@@ -42,11 +42,16 @@ def set_setting(connection: sqlite3.Connection, key: str, value: object) -> None
     if value is None:
         connection.execute("DELETE FROM settings WHERE key = ?", (key,))
         return
-    try:
-        text = json.dumps(value, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise StoreError(f"the setting {key} cannot be stored: {error}") from error
+    text = setting_text(key, value)
     connection.execute(
         "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
         (key, text),
     )
+
+
+def setting_text(key: str, value: object) -> str:
+    """As it is stored. Raises StoreError for what JSON cannot hold."""
+    try:
+        return json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise StoreError(f"the setting {key} cannot be stored: {error}") from error

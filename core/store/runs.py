@@ -20,10 +20,12 @@ def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
     return tuple(RunRow(*row) for row in rows)
 
 
-def started(connection: sqlite3.Connection, program: str) -> None:
-    """A run begins now."""
+def started(connection: sqlite3.Connection, program: str, at: str = "") -> None:
+    """A run begins, now if not said otherwise."""
     _row(connection, program)
-    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (utc_now(), program))
+    connection.execute(
+        "UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at or utc_now(), program)
+    )
 
 
 def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
@@ -42,22 +44,31 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
     return tuple(sorted(program for (program,) in rows))
 
 
-def finished(connection: sqlite3.Connection, program: str, seconds: float) -> None:
-    """One whole cycle, with its time."""
+def finished(
+    connection: sqlite3.Connection,
+    program: str,
+    seconds: float,
+    *,
+    count: int = 1,
+    best: float | None = None,
+) -> None:
+    """Whole cycles: the time of the last one, and the best of all of them."""
     _row(connection, program)
     connection.execute(
-        "UPDATE runs SET cycles = cycles + 1, latest = ?1, best = min(coalesce(best, ?1), ?1)"
+        "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(best, ?4), ?4)"
         " WHERE program = ?2",
-        (seconds, program),
+        (seconds, program, count, seconds if best is None else best),
     )
 
 
-def proved(connection: sqlite3.Connection, program: str, result: str, planned: float | None) -> None:
+def proved(
+    connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str = ""
+) -> None:
     """What proving found, and the cycle time that it reckons with; None: none."""
     _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
-        (utc_now(), result, planned, program),
+        (at or utc_now(), result, planned, program),
     )
 
 

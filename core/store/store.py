@@ -16,7 +16,8 @@ from core.store.opening import Opened, open_to_read, open_to_write
 from core.store.reading import StoreReader
 from core.store.rows import Change, EventRow, Kind, Row, SecondaryRow, ToolRow, Value, utc_now
 from core.store.toolset import Touch
-from core.store.writer import Operation, StoreWriter
+from core.store.unwritten import Held, Unwritten
+from core.store.writer import Keeping, Operation, StoreWriter
 from core.store.zero import ZeroChange, ZeroRow
 
 __all__ = ["Store", "StoreError"]
@@ -28,13 +29,15 @@ class Store(StoreReader):
     """Programs, offsets, events, part counts and settings of one folder; see ``open``.
 
     A future of a write is answered when the change is on the disk, and with StoreError when it is refused or
-    fails; nobody but a command line need wait for it. All methods may be called from any thread.
+    fails; nobody but a command line need wait for it. Offsets and programs are then as before; events,
+    counts, runs and settings are held in memory and written when the disk takes them (``held``).
+    All methods may be called from any thread.
     """
 
     def __init__(self, opened: Opened) -> None:
         super().__init__(opened.path, opened.reader)
         self._opened = opened
-        self._writer = StoreWriter(opened.writer) if opened.writer else None
+        self._writer = StoreWriter(opened.writer, opened.path) if opened.writer else None
 
     @classmethod
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
@@ -62,14 +65,34 @@ class Store(StoreReader):
 
     @property
     def trouble(self) -> str:
-        """Why the last write that failed did so, for the alarm line; empty while all is well."""
+        """Why the last write failed; empty while all is well."""
         return self._writer.trouble if self._writer else ""
+
+    @property
+    def held(self) -> Held | None:
+        """What waits in memory for a disk that takes nothing; None while nothing has to."""
+        return self._writer.held if self._writer else None
+
+    def parts(self, program: str) -> int:
+        """Parts of this program that were counted, those that are still to be written too."""
+        stored, held = super().parts(program), self.held
+        reset, more = held.counts.get(program, (False, 0)) if held is not None else (False, 0)
+        return max(0, (0 if reset else stored) + more)
 
     def write(self, operation: Operation[T]) -> Future[T]:
         """Posts one transaction to the writer. Raises StoreError in a read-only store."""
         if self._writer is None:
             raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
         return self._writer.post(operation)
+
+    def keep(self, keeping: Keeping) -> Future[None]:
+        """Hands something on that must be written, sooner or later. Raises StoreError in a read-only store.
+
+        The future is answered when it is on the disk, and with StoreError when it is held for later.
+        """
+        if self._writer is None:
+            raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
+        return self._writer.keep(keeping)
 
     def set_offset(
         self, kind: Kind, number: int, why: str, values: Mapping[str, Value], *, who: str = "operator"
@@ -128,54 +151,78 @@ class Store(StoreReader):
         """Keeps a version; answers its number, that of the newest when the text is the same."""
         return self.write(lambda c: programs.save(c, name, text, why))
 
-    def log_event(self, kind: str, text: str, line: int = 0) -> Future[int]:
-        """One line of the log, at this moment."""
-        return self.log_events([EventRow(utc_now(), kind, text, line)])
-
-    def log_events(self, events: Iterable[EventRow]) -> Future[int]:
-        """Several lines of the log in one transaction."""
-        rows = tuple(events)
-        return self.write(lambda c: records.log(c, rows))
-
-    def count_part(self, program: str) -> Future[int]:
-        """One part more of this program; answers the count."""
-        return self.write(lambda c: programs.count_part(c, program))
-
-    def correct_parts(self, program: str, by: int) -> Future[int]:
-        """Parts added or taken away by hand; the new count."""
-        return self.write(lambda c: programs.correct_parts(c, program, by))
-
-    def reset_parts(self, program: str) -> Future[None]:
-        """The part count of this program to nought."""
-        return self.write(lambda c: programs.reset_parts(c, program))
-
-    def run_started(self, program: str) -> Future[None]:
-        """A run of this program begins now."""
-        return self.write(lambda c: runs.started(c, program))
-
-    def run_ended(self, program: str, outcome: str) -> Future[None]:
-        """How it ended."""
-        return self.write(lambda c: runs.ended(c, program, outcome))
-
-    def runs_cut_off(self, outcome: str) -> Future[tuple[str, ...]]:
-        """How those ended whose end was never told; their programs."""
-        return self.write(lambda c: runs.cut_off(c, outcome))
-
-    def cycle_finished(self, program: str, seconds: float) -> Future[None]:
-        """One whole cycle of this program and its time."""
-        return self.write(lambda c: runs.finished(c, program, seconds))
-
-    def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
-        """What proving found, and the cycle time it reckons with."""
-        return self.write(lambda c: runs.proved(c, program, result, planned))
-
     def rename_program(self, old: str, new: str) -> Future[None]:
         """Versions, part count and record go with a program that gets another name."""
         return self.write(lambda c: runs.renamed(c, old, new))
 
+    # --- what must be kept, sooner or later: a disk that is full gets it when there is room again ----------
+
+    def keep_program(self, name: str, text: bytes, why: str) -> Future[None]:
+        """A version that nobody waits for."""
+        return self._keep_latest(f"text {name}", lambda c: programs.save(c, name, text, why))
+
+    def log_event(self, kind: str, text: str, line: int = 0) -> Future[None]:
+        """One line of the log, at this moment."""
+        return self.log_events([EventRow(utc_now(), kind, text, line)])
+
+    def log_events(self, events: Iterable[EventRow]) -> Future[None]:
+        """Several lines of the log."""
+        rows = tuple(events)
+
+        def keeping(unwritten: Unwritten) -> None:
+            for row in rows:
+                unwritten.event(row)
+
+        return self.keep(keeping)
+
+    def count_part(self, program: str) -> Future[None]:
+        """One part more of this program."""
+        return self.correct_parts(program, 1)
+
+    def correct_parts(self, program: str, by: int) -> Future[None]:
+        """Parts added or taken away by hand; there are never fewer than none."""
+        return self.keep(lambda unwritten: unwritten.count_parts(program, by))
+
+    def reset_parts(self, program: str) -> Future[None]:
+        """The part count of this program to nought."""
+        return self.keep(lambda unwritten: unwritten.reset_parts(program))
+
+    def run_started(self, program: str) -> Future[None]:
+        """A run of this program begins now."""
+        at = utc_now()
+        return self._keep_latest(f"start {program}", lambda c: runs.started(c, program, at))
+
+    def run_ended(self, program: str, outcome: str) -> Future[None]:
+        """How it ended."""
+        return self._keep_latest(f"end {program}", lambda c: runs.ended(c, program, outcome))
+
+    def runs_cut_off(self, outcome: str, words: str) -> Future[None]:
+        """How those ended whose end was never told; a warning for each, its name before ``words``."""
+
+        def operation(connection: sqlite3.Connection) -> None:
+            cut_off = runs.cut_off(connection, outcome)
+            records.log(connection, (EventRow(utc_now(), "warning", f"{name}{words}") for name in cut_off))
+
+        return self._keep_latest("cut off", operation)
+
+    def cycle_finished(self, program: str, seconds: float) -> Future[None]:
+        """One whole cycle of this program and its time."""
+        return self.keep(lambda unwritten: unwritten.cycle(program, seconds))
+
+    def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
+        """What proving found, and the cycle time it reckons with."""
+        at = utc_now()
+        return self._keep_latest(f"proof {program}", lambda c: runs.proved(c, program, result, planned, at))
+
     def set_setting(self, key: str, value: object) -> Future[None]:
-        """Keeps anything JSON can hold; None forgets it."""
-        return self.write(lambda c: records.set_setting(c, key, value))
+        """Keeps anything JSON can hold; None forgets it. Raises StoreError for what it cannot hold."""
+        records.setting_text(key, value)
+        return self._keep_latest(f"setting {key}", lambda c: records.set_setting(c, key, value))
+
+    def _keep_latest(self, name: str, operation: Operation[object]) -> Future[None]:
+        return self.keep(lambda unwritten: unwritten.latest(name, operation))
+
+    # --- all at once ----------------------------------------------------------------------------------------
 
     def import_all(
         self,

@@ -132,7 +132,8 @@ def back_to_automatic(day: Day) -> None:
     """F1 and F2, from any page; the program is proved anew by then."""
     day.key(Key.Key_F1, Key.Key_F2)
     assert day.page == pages.AUTOMATIC
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    asks = f"LINE {day.shot.interrupted_line} WAS INTERRUPTED" if day.shot.interrupted_line else "TO START"
+    day.sees(lambda: day.prompt.startswith(asks))
 
 
 def correct(day: Day, x: str, z: str = "") -> None:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from app.shopfloor.reading import Reading
 from app.shopfloor.status import Status, StatusFile, StatusKeeper, status_of
+from tests.interrupted import broken_off
 
 RUNNING = Reading(
     {
@@ -40,6 +42,11 @@ def read(path: Path) -> dict[str, object]:
     return told
 
 
+def test_an_interrupted_job_is_told_with_line_tool_part_and_time() -> None:
+    status = status_of("GT-75", replace(RUNNING, interrupted=broken_off(line=8, tool=3, part=5)))
+    assert status["interrupted"] == {"line": 8, "tool": 3, "part": 5, "at": "2026-05-04T09:30:00Z"}
+
+
 def test_what_it_says(tmp_path: Path) -> None:
     path = tmp_path / "home" / "status.json"
     StatusFile(path, Hours()).show(status_of("GT-75", RUNNING))
@@ -53,6 +60,7 @@ def test_what_it_says(tmp_path: Path) -> None:
         "estop": "ARMED",
         "program": "pin.nc",
         "parts": 12,
+        "interrupted": None,
         "alarms": [{"of": "Xservo", "level": "FAULT", "code": "102", "text": "FOLLOWING ERROR: X"}],
     }
     assert [each.name for each in path.parent.iterdir()] == ["status.json"]

@@ -60,8 +60,8 @@ def test_spoilt_text_is_not_handed_out(store: Store) -> None:
 
 
 def test_parts_are_counted_by_program(store: Store) -> None:
-    assert store.count_part("a").result() == 1
-    assert store.count_part("a").result() == 2
+    store.count_part("a")
+    store.count_part("a")
     store.count_part("b").result()
     assert (store.parts("a"), store.parts("b"), store.parts("c")) == (2, 1, 0)
     store.reset_parts("a").result()
@@ -71,7 +71,7 @@ def test_parts_are_counted_by_program(store: Store) -> None:
 def test_events_newest_first_and_searched(store: Store) -> None:
     rows = [EventRow("2026-01-01T00:00:00.000Z", "alarm", "X following error", 12)]
     rows.append(EventRow("2026-01-01T00:00:01.000Z", "start", "PIN.nc"))
-    assert store.log_events(rows).result() == 2
+    store.log_events(rows)
     store.log_event("stop", "feed hold").result()
     assert [row.kind for row in store.events()] == ["stop", "start", "alarm"]
     assert store.events(search="FOLLOWING") == (rows[0],)
@@ -101,7 +101,7 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
         store.write(breaks).result()
     with pytest.raises(StoreError, match="nothing was stored"):
         store.write(lambda c: c.execute("INSERT INTO settings VALUES ('k', NULL)").close()).result()
-    assert "nothing was stored" in store.trouble
+    assert store.trouble == ""  # nothing is wrong with the disk
     assert store.save_program("a", b"", "x").result() == 1
     assert store.setting("k") is None
 
@@ -119,8 +119,11 @@ def test_closed_store_refuses_writes(store: Store) -> None:
 
 
 def test_a_count_is_corrected_by_hand_and_never_below_nought(store: Store) -> None:
-    assert store.correct_parts("a", 2).result() == 2
-    store.count_part("a").result()
-    assert store.correct_parts("a", -1).result() == 2
-    assert store.correct_parts("a", -5).result() == 0
+    store.correct_parts("a", 2).result()
+    assert store.parts("a") == 2
+    store.count_part("a")
+    store.correct_parts("a", -1).result()
+    assert store.parts("a") == 2
+    store.correct_parts("a", -5).result()
+    assert store.parts("a") == 0
     assert store.parts("b") == 0

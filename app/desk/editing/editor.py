@@ -30,16 +30,25 @@ class Stage(StrEnum):
     SAVING = "saving"
 
 
-def _nowhere(_path: Path) -> None:
+@dataclass(frozen=True, slots=True)
+class Left:
+    """Which program was left, whether it was saved meanwhile with changes, and whether it is to be run."""
+
+    path: Path
+    changed: bool
+    to_desk: bool
+
+
+def _nowhere(_left: Left) -> None:
     """Nobody wants to know what was saved."""
 
 
 @dataclass(slots=True)
 class Editor:
-    """One document at a time. ``left`` hears of the program that was left in good order, to load it."""
+    """One document at a time. ``left`` hears of the program that was left in good order."""
 
     bench: Bench
-    left: Callable[[Path], None] = _nowhere
+    left: Callable[[Left], None] = _nowhere
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""
@@ -53,6 +62,8 @@ class Editor:
     worker: Worker = field(default_factory=Worker)
     _offered: str = ""
     _leaving: bool = False
+    _to_desk: bool = False
+    _changed: bool = False  # something of it was saved since it was opened
     _replace: bool = False  # a file changed by somebody else was shown and is replaced all the same
     _abandoning: bool = False
     _unnamed: str = ""  # text whose saving waits for a name
@@ -111,7 +122,7 @@ class Editor:
             self._shut()
 
     def _opened(self, document: Document) -> None:
-        self.document, self.stage = document, Stage.OPEN
+        self.document, self.stage, self._changed = document, Stage.OPEN, False
         self._put(document.text)
         self.drafts.recover(document, self._recovered)
 
@@ -193,9 +204,12 @@ class Editor:
             self.clear()
             self.stage, self._leaving = Stage.OPEN, False
 
-    def leave(self, text: str) -> None:
-        """Save what has changed, then go; an untouched new file is forgotten."""
-        document = self.document
+    def leave(self, text: str, *, to_desk: bool = False) -> None:
+        """Save what has changed, then go; an untouched new file is forgotten.
+
+        ``to_desk``: it was left to be the program of the desk. Who has only looked changes nothing there.
+        """
+        document, self._to_desk = self.document, to_desk
         if document is None or self.stage is not Stage.OPEN:
             return
         if document.fresh and not text.strip():
@@ -231,6 +245,7 @@ class Editor:
         for each in (document, self.document or document):  # under its new name, and its old one
             self.drafts.forget(each)
         self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
+        self._changed = True
         self.notice = words.NOT_KEPT.format(trouble) if trouble else ""
         if self._leaving:
             self._go(self.document)
@@ -242,7 +257,7 @@ class Editor:
 
     def _go(self, document: Document) -> None:
         self._shut()
-        self.left(document.path)
+        self.left(Left(document.path, self._changed, self._to_desk))
 
     def _shut(self) -> None:
         if self.document is not None:

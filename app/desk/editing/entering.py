@@ -8,13 +8,13 @@ until the spindle stands.
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 
 from app.desk import prompts
 from app.desk.desk import Desk
 from app.desk.editing import words
-from app.desk.editing.editor import Editor
+from app.desk.editing.editor import Editor, Left
 from app.desk.lamps import TURNING
+from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 
 UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
@@ -42,7 +42,7 @@ def enter(desk: Desk, editor: Editor) -> bool:
         desk.say(why or words.NO_PROGRAM)
         return False
     desk.clear()
-    editor.left = partial(_reload, desk)
+    editor.left = partial(_take_up, desk)
     if path is None:
         editor.offer(name)
     else:
@@ -50,9 +50,22 @@ def enter(desk: Desk, editor: Editor) -> bool:
     return True
 
 
-def _reload(desk: Desk, path: Path) -> None:
-    """What was edited becomes the program on the desk, read and proved anew."""
-    if desk.snapshot().state in UNDER_WAY:
-        desk.say(words.RELOAD)  # somebody started a cycle at the station meanwhile
+def _take_up(desk: Desk, left: Left) -> None:
+    """The program on the desk is read and proved anew when its text has changed.
+
+    Another one comes there only when it was written and left for that; to look at it changes nothing.
+    """
+    path, now = left.path, desk.session.now
+    if path != now.path and not (left.to_desk and (left.changed or now.path is None)):
+        stays = words.SAVED_ONLY if left.changed else words.LOOKED
+        if now.path is None:
+            stays = words.SAVED_NONE
+        desk.say(tr(stays).format(name=path.name, other=now.name))
+    elif path == now.path and not left.changed:
+        return
+    elif desk.snapshot().state in UNDER_WAY:
+        desk.say(tr(words.RELOAD))  # somebody started a cycle at the station meanwhile
+    elif path == now.path:
+        desk.session.load(path, now.block_delete)
     else:
-        desk.session.load(path, desk.session.now.block_delete)
+        desk.put_on_desk(path)

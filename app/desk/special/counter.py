@@ -8,7 +8,7 @@ from pathlib import Path
 
 from app.desk.keep import Keep, NothingKept
 from app.desk.words import tr
-from core.executor.commands import Command, SetSwitch
+from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
 
@@ -29,6 +29,7 @@ class PartCounter:
     target: int = 0
     _seen: int | None = None
     _last_told: int = -1
+    _made: int = -1  # as the executor was told
 
     @property
     def words(self) -> str:
@@ -55,7 +56,14 @@ class PartCounter:
                     )
                 )
         self._seen = snapshot.parts
+        self._tell(snapshot, post)
         self._stop_at(snapshot, post, say)
+
+    def _tell(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
+        """The executor numbers the part under way by this count."""
+        if self.program and self.count not in {snapshot.made, self._made}:
+            post(PartsMade(self.count))
+        self._made = self.count
 
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]

@@ -53,7 +53,8 @@ class EditorPage(EditorParts):
         if self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         if self.editor.stage is not Stage.CLOSED:
-            self.leave_to(pages.AUTOMATIC)
+            self._target = pages.AUTOMATIC
+            self.editor.leave(self.draft.now())
         return self.editor.stage is Stage.CLOSED
 
     def labels(self) -> tuple[str, ...]:
@@ -183,7 +184,7 @@ class EditorPage(EditorParts):
     def leave_to(self, page: str) -> None:
         """Save and go to another page."""
         self._target = page
-        self.editor.leave(self.draft.now())
+        self.editor.leave(self.draft.now(), to_desk=page == pages.AUTOMATIC)
 
     def abandon(self) -> None:
         """Go without saving."""

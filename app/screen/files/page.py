@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.files.changing import NONE
 from app.desk.files.files import FilesDesk
 from app.desk.session import Loaded
 from app.desk.swivel.telling import at_line
@@ -70,9 +71,12 @@ class FilesPage(ListPage):
         self.model.keys()[name].action()
 
     def _edit(self) -> None:
+        """The marked program, and no other one; to look at it there does not load it."""
         here = self.model.here
-        if here is not None and self.desk.editor is not None:
-            self.desk.editor.wanted = here.name
+        if here is None or self.desk.editor is None:
+            self.desk.say(NONE)
+            return
+        self.desk.editor.wanted = str(here.path)
         self.host.go(pages.EDITOR)
 
     def _chosen(self, row: int) -> None:

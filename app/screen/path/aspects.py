@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from app.desk.drawing.trail import Trail
     from app.desk.picture import Picture
+    from core.executor.job import Job
     from core.executor.snapshot import Snapshot
 
 
@@ -30,18 +31,26 @@ class Tip(NamedTuple):
     x: float = 0.0
     c: float | None = None
     h: float = 0.0
+    stood: tuple[float, float] | None = None  # Z and X where the block was broken off, when elsewhere
 
 
 View = tuple[Aspect, ...]
 
 
-def tip_of(snapshot: Snapshot) -> Tip:
-    """The tip as the machine stands now."""
+def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
+    """The tip as the machine stands now; of the interrupted ``job`` what was done of it stays."""
     modal = snapshot.modal
     x, z, *rotary = snapshot.actual
     turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
     h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
-    return Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, turned, h)
+    tip = Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, turned, h)
+    found = snapshot.interrupted
+    if snapshot.block or found is None or job is None or found.job != job.digest:
+        return tip
+    tool = job.setup.tools.get(found.tool)
+    if tool is None:
+        return tip
+    return tip._replace(block=found.block, stood=(found.where[1] - tool.z, found.where[0] - tool.x))
 
 
 def trail_of(picture: Picture | None, aspect: Aspect) -> Trail | None:

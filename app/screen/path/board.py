@@ -142,7 +142,7 @@ class PathBoard(Panel):
     def _stand(self) -> None:
         if self._tip is not None:
             for pane in self.panes:
-                pane.stand(self._tip.block, self._place_in(pane, self._tip))
+                pane.stand(self._tip.block, self._place_in(pane, self._tip), self._tip.stood)
 
     def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
         """Where the tip is seen in a pane."""

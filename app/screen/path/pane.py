@@ -33,6 +33,7 @@ class Pane(Sight):
         self._layers: Layers | None = None
         self._block = 0
         self._place: Place | None = None  # of the tip; nobody has told it yet
+        self._stood: Place | None = None
         self.marked: list[tuple[int, int]] = []  # ranges of points
 
     # --- what is seen --------------------------------------------------------------------------------
@@ -81,11 +82,12 @@ class Pane(Sight):
 
     # --- what moves ----------------------------------------------------------------------------------
 
-    def stand(self, block: int, place: Place | None) -> None:
-        """The tip, in the trail's own z and x."""
+    def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
+        """The tip, in the trail's own z and x; ``stood``: where the block was broken off."""
         if self._layers is not None and block != self._block:
             self._layers.want(block - 1)
         self._block, self._place = block, place
+        self._stood = stood
 
     def end_of(self, block: int) -> Place | None:
         """Where a block ends, or the last one before it that draws anything here."""
@@ -147,7 +149,9 @@ class Pane(Sight):
         """The part of the present block that lies behind the tip."""
         if not self._block or self._place is None:
             return
-        found = travelled(self.trail, frame, self._block, *self._place)
+        if self._stood is not None and self.aspect is not Aspect.PATH:
+            return  # on a face or a side nobody knows any more where C stood
+        found = travelled(self.trail, frame, self._block, *(self._stood or self._place))
         if found is not None:
             painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
             painter.setBrush(Qt.BrushStyle.NoBrush)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.editing import words
-from app.desk.editing.editor import Editor, Stage
+from app.desk.editing.editor import Editor, Left, Stage
 from app.desk.editing.history import History
 from tests.desk.editing.shop import GOOD, Memory, bench_in
 
@@ -19,12 +19,12 @@ def memory() -> Memory:
 
 
 @pytest.fixture
-def left() -> list[Path]:
+def left() -> list[Left]:
     return []
 
 
 @pytest.fixture
-def editor(tmp_path: Path, memory: Memory, left: list[Path]) -> Iterator[Editor]:
+def editor(tmp_path: Path, memory: Memory, left: list[Left]) -> Iterator[Editor]:
     editor = Editor(bench_in(tmp_path, memory), left.append)
     yield editor
     editor.close()
@@ -44,26 +44,26 @@ def own(editor: Editor, name: str, text: str = GOOD) -> Path:
     return path
 
 
-def test_an_unchanged_program_is_loaded_again_without_a_version(
-    editor: Editor, left: list[Path], memory: Memory
+def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
+    editor: Editor, left: list[Left], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
     editor.leave(editor.text)
-    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [path], {})
+    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [Left(path, False, False)], {})
 
 
 def test_leaving_saves_and_keeps_the_old_and_the_new(
-    editor: Editor, left: list[Path], memory: Memory
+    editor: Editor, left: list[Left], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
     editor.leave(GOOD + "(END)\n")
     settle(editor)
-    assert left == [path]
+    assert left == [Left(path, True, False)]
     assert path.read_text() == GOOD + "(END)\n"
     assert len(memory.kept["part.nc"]) == 2
 
 
-def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[Path]) -> None:
+def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[Left]) -> None:
     path = own(editor, "part.nc")
     editor.leave("X1\0\n")
     settle(editor)
@@ -107,7 +107,7 @@ def test_a_new_file_does_not_take_a_name_that_is_there(editor: Editor) -> None:
     assert editor.stage is Stage.OFFERED
 
 
-def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Path]) -> None:
+def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Left]) -> None:
     own(editor, "mine.nc", "M02\n")
     editor.abandon(editor.text)
     sample = editor.bench.samples / "knob.nc"
@@ -120,7 +120,7 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Pat
     assert not editor.take_name("a/b")
     assert editor.take_name("other")
     settle(editor)
-    assert left == [editor.bench.programs / "other.nc"]
+    assert left == [Left(editor.bench.programs / "other.nc", True, False)]
     assert sample.read_text() == GOOD
 
 

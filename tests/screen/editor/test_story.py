@@ -10,8 +10,9 @@ from PySide6.QtCore import Qt
 
 from app.desk import pages
 from app.desk.editing import words
+from app.desk.editing.editor import Stage
 from app.desk.session import Phase
-from core.executor.commands import CycleStart, FeedHold
+from core.executor.commands import CycleStart, FeedHold, LoadJob
 from core.executor.snapshot import State
 from core.language.diagnostics import Severity
 from tests.desk.editing.shop import GOOD, Memory
@@ -276,7 +277,83 @@ def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> 
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == pages.MENU)
     assert (tmp_path / "menu.nc").exists()
+    assert writer.desk.session.now.phase is Phase.EMPTY  # that is what F3 is for
+    assert writer.desk.notice == "menu.nc IS SAVED; F2 PUTS IT ON THE DESK"
+
+
+def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer, tmp_path: Path) -> None:
+    for name in ("mine.nc", "other.nc"):
+        (tmp_path / name).write_text(GOOD)
+    assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    on_desk, posted, model = writer.desk.session.now, len(writer.machine.posted), writer.desk.files
+    assert model is not None
+    for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
+        writer.frame.go(pages.PROGRAMS)
+        writer.sees(lambda: "other.nc" in [program.name for program in model.shown])
+        model.choose([program.name for program in model.shown].index("other.nc"))
+        writer.key(Key.Key_F3)
+        writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.name == "other.nc")
+        writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+        writer.key(leaves)
+        writer.sees(lambda: writer.front != pages.EDITOR)
+        assert writer.desk.session.now is on_desk
+        if leaves is not Key.Key_Escape:
+            assert writer.desk.notice == "other.nc WAS ONLY LOOKED AT: mine.nc STAYS ON THE DESK"
+    assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
+
+
+def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
+    writer: Writer, tmp_path: Path
+) -> None:
+    (tmp_path / "mine.nc").write_text(GOOD)
+    assert writer.desk.choose("mine")
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    before = writer.desk.session.loads
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.front == pages.MENU)
+    assert writer.desk.session.loads == before
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.stage is Stage.OPEN)
+    writer.write("(CHANGED)\n")
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.front == pages.MENU)
+    writer.sees(lambda: writer.desk.session.loads == before + 1)
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+
+
+def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp_path: Path) -> None:
+    (tmp_path / "mine.nc").write_text(GOOD)
+    assert writer.desk.choose("mine")
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    writer.frame.go(pages.PROGRAMS)
+    model = writer.desk.files
+    assert model is not None
+    writer.sees(lambda: bool(model.shown))
+    writer.type("NOSUCHNAME")
+    writer.sees(lambda: not model.shown)
+    writer.key(Key.Key_F3)
+    assert writer.front == pages.PROGRAMS
+    assert writer.desk.notice == "NO PROGRAM IS MARKED"
+
+
+def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Writer, tmp_path: Path) -> None:
+    for name in ("mine.nc", "other.nc"):
+        (tmp_path / name).write_text(GOOD)
+    assert writer.desk.choose("mine")
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    writer.key(Key.Key_F2)
+    writer.key(Key.Key_F3)
+    assert writer.front == pages.AUTOMATIC
+    assert writer.desk.notice.startswith("TYPE A NAME, OR MARK A PROGRAM")
+    files = writer.page.files
+    names = [entry.name for entry in files._entries]
+    for _ in range(names.index("other.nc")):
+        writer.key(Key.Key_Down)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.name == "other.nc")
 
 
 def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None:

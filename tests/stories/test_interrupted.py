@@ -1,0 +1,133 @@
+"""A part that was broken off: by the E-stop, by R R, by a killed control; and the next start."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+from tests.stories.conftest import Story
+from tests.stories.operator import Operator
+
+PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.005Z-.2\nZ-1.4\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
+TOOLS = {3: (-0.5, -2.0)}
+CUT = (-2.0 - 0.3) * 25.4  # machine Z in the middle of line 7
+
+
+def in_the_cut(operator: Operator) -> None:
+    operator.drives_on()
+    operator.starts()
+    operator.until(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
+
+
+def shows_the_job_on_every_page(operator: Operator) -> None:
+    for keys, page in (
+        (("F1", "F2"), "AUTOMATIC"),
+        (("F1", "F4"), "MDI"),
+        (("F1", "F5"), "JOG"),
+        (("F1", "F6"), "PROGRAMS"),
+        (("F1", "F8"), "TOOL OFFSETS"),
+        (("F1", "F10"), "SPECIAL FUNCTIONS"),
+        (("F1", "F2"), "AUTOMATIC"),
+    ):
+        operator.keys(*keys)
+        operator.opens(page)
+        operator.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
+        operator.sees("FROM HOME")
+
+
+def is_not_begun_by_the_palms(operator: Operator) -> None:
+    stands = operator.rests()
+    operator.cycle_start()
+    operator.until(lambda: "was interrupted" in operator.machine["refused"], "a sentence")
+    operator.keeps(lambda: operator.is_at(stands) and operator.state == "READY", 1.0, "nothing begins")
+
+
+def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    operator.key("e", "shift")
+    operator.drives_on()
+    shows_the_job_on_every_page(operator)
+    is_not_begun_by_the_palms(operator)
+    stood = operator.rests()
+    told = operator.status["interrupted"]
+    assert (told["line"], told["tool"], told["part"]) == (7, 3, 1)
+    with operator.store() as store:
+        kept = store.setting("job under way")
+    assert isinstance(kept, dict)
+    assert kept["where"][:2] == pytest.approx(stood[:2], abs=0.05)
+    assert kept["why"] == "E-STOP"
+    assert operator.events("interrupted") == ["part.nc line 7, T3, part 1: E-STOP"]
+
+
+def test_r_twice_leaves_the_same_job_and_y_then_the_palms_begin_it_anew(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("h")
+    operator.reaches("FEED HOLD")
+    operator.key("r")
+    operator.sees("GIVE THE PROGRAM UP")
+    operator.key("r")
+    operator.reaches("READY")
+    is_not_begun_by_the_palms(operator)
+    operator.key("y")
+    operator.sees("BEGINS AT LINE 1")
+    operator.key("Escape")
+    operator.sees("WAS INTERRUPTED: F6")
+    is_not_begun_by_the_palms(operator)
+    operator.key("y")
+    operator.sees("BEGINS AT LINE 1")
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    operator.reaches("READY")
+    operator.until(lambda: operator.status["interrupted"] is None, "status.json")
+    assert [text for text in operator.events("cleared") if text.endswith("the program begins anew")]
+
+
+def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.during(1.5)  # a note of the place is a second old at most
+    killed = operator.slides
+    os.kill(operator.popen.pid, signal.SIGKILL)
+    operator.popen.wait()
+    again = story.begins(PART)
+    again.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
+    again.sees("THE CONTROL LOST ITS POWER OR WAS KILLED")
+    with again.store() as store:
+        kept = store.setting("job under way")
+    assert isinstance(kept, dict)
+    assert kept["where"][1] == pytest.approx(killed[1], abs=900 / 60 * 0.005 * 25.4 * 3)  # 3 s of this feed
+    again.drives_on()
+    is_not_begun_by_the_palms(again)
+    again.key("F6")
+    again.opens("SEARCHTO")
+    again.sees("LINE 7 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    assert again.status["interrupted"]["line"] == 7
+
+
+def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    (story.home / "programs").mkdir(exist_ok=True)
+    (story.home / "programs" / "other.nc").write_text("G90G94F300\nT3\nX2Z2\nM30\n")
+    in_the_cut(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    operator.key("F2")
+    operator.enters("other.nc")
+    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
+    operator.key("Escape")
+    operator.keeps(lambda: operator.shows("INTERRUPTED: part.nc LINE 7"), 0.5, "the job")
+    operator.key("F2")
+    operator.enters("other.nc")
+    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
+    operator.key("y")
+    operator.until(lambda: not operator.shows("INTERRUPTED:"), "it is given up")
+    assert operator.events("cleared") == [
+        "part.nc line 7, T3, part 1: E-STOP; other.nc was loaded in its place"
+    ]
