@@ -155,4 +155,40 @@ AXES: Entries = {
         ("the computer was busy with something else for too long", "the bus was disturbed"),
         "Reset, Drives On; end other programs on this computer, and restart at the line",
     ),
+    "standstill": Entry(
+        116,
+        OFF,
+        "an axis is not where it ought to stand",
+        (
+            "the slide is jammed, or something pushes against it",
+            "its encoder or the encoder's cable",
+            "the drive holds it too softly, or its motor cable is off",
+        ),
+        "keep clear of the slide, it may jump when it comes free; look what holds it, Reset, Drives On",
+        tells=True,
+    ),
+    "encoder-still": Entry(
+        117,
+        OFF,
+        "an axis is sent and its encoder does not count",
+        (
+            "the encoder, its cable or its coupling: the slide may have moved all the same",
+            "the slide is jammed, or the tool has run into something",
+            "the motor cable is off",
+        ),
+        "look where the slide really stands; check encoder and coupling, Reset, Drives On, home the axis",
+        tells=True,
+    ),
+    "moved-unasked": Entry(
+        118,
+        OFF,
+        "an axis has moved and nobody asked for it",
+        (
+            "it was moved by hand while the drives are off",
+            "it sinks: no brake, or the brake slips",
+            "somebody else moves the drive: its own software, a pendant",
+        ),
+        "look where the slide stands and that nothing is in its way, Reset, Drives On",
+        tells=True,
+    ),
 }

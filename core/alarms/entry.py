@@ -12,6 +12,9 @@ from core.faults import FaultCode
 OwnCode = Literal[
     # axes, spindle, thread
     "in-position",
+    "standstill",
+    "encoder-still",
+    "moved-unasked",
     "at-speed",
     "spindle-still",
     "c-is-spindle",

@@ -256,6 +256,7 @@ class Conductor:
         bench.ports.axes.clear_fault()
         standing.power_off, standing.alarms = False, ()
         self.safe.forget()
+        self.supervisor.acknowledged()
         bench.sample = bench.ports.axes.sample()
         if self.state is State.FAULT:
             self.enter(State.IDLE if bench.sample.enabled else State.DISABLED)

@@ -159,7 +159,7 @@ class Executor:
                 yield command
 
     def _supervise(self) -> None:
-        self._conductor.supervisor.look()
+        self._conductor.supervisor.look(self._conductor.state)
         if self._conductor.state in _POWERED and not self._bench.sample.enabled:
             raise TroubleError("power-lost")
 

@@ -17,6 +17,7 @@ _DRIVE = 40.0  # Hz, position loop of a slow servo drive; it lags 2 / (2 pi f) s
 _LAG = 2.0 / (2.0 * math.pi * _DRIVE)
 _C_STARTS = 3.0  # 1/s: a third of a second to full speed, which a spindle drive without a C ramp can do
 _C_SPEED, _C_COUNT = 200 * 6.0, 0.02  # degrees/s and degrees: the C option of a GT-75
+_STILL, _STILL_DEGREES = 0.2, 1.0  # mm, degrees: what an axis at rest may be off
 _CLOSES = 0.5  # s; collets of this class take 0.2 to 0.4, and the switch decides
 _SLIDES = ("X", "Y", "Z")
 
@@ -94,6 +95,20 @@ def _arrived(reading: Reading, place: str) -> Derived:
     return _neighbour(values, place) or (counts * count if count else None)
 
 
+def _stands(reading: Reading, place: str) -> Derived:
+    """The neighbour's; else .2 mm, by which no cutting force moves a slide that is held, or a degree.
+
+    But no less than it needs to be in position, and no more than its fault window.
+    """
+    values = reading.values
+    window = _number(values, place.replace("still_window", "fe_window"))
+    arrived = _number(values, place.replace("still_window", "in_pos"))
+    if window is None or arrived is None:
+        return None
+    usual = _STILL if place.split(".")[1] in _SLIDES else _STILL_DEGREES
+    return _neighbour(values, place) or min(max(usual, 4.0 * arrived), window)
+
+
 def _c_speed(reading: Reading, _place: str) -> Derived:
     return None if _c_is_used(reading) else _C_SPEED
 
@@ -118,7 +133,7 @@ def _number(values: Values, path: str) -> Derived:
 
 
 Rule = Callable[[Reading, str], Derived]
-OF_AN_AXIS: dict[str, Rule] = {"fe_window": _window, "in_pos": _arrived}
+OF_AN_AXIS: dict[str, Rule] = {"fe_window": _window, "in_pos": _arrived, "still_window": _stands}
 RULES: dict[str, Rule] = {
     "limits.max_feed": _slowest,
     "limits.manual_rapid": _by_hand,

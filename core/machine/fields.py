@@ -35,6 +35,7 @@ LIMITS = (
     Field("resolution", _NUMBER, Unit.LENGTH, 1e-5, 0.02, derived=True),
     Field("clearance", _NUMBER, Unit.LENGTH, 0.1, 100.0, default=31.75),
 )
+_STILL = Field("still_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 2.0, default=0.2)  # a servo settles in less
 SLIDE = (
     Field("travel", Kind.PAIR, Unit.LENGTH, -5000.0, 5000.0),
     Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0),
@@ -43,6 +44,8 @@ SLIDE = (
     Field("fe_window", _NUMBER, Unit.LENGTH, 0.005, 10.0, derived=True),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
     Field("in_pos", _NUMBER, Unit.LENGTH, 1e-5, 0.5, derived=True),
+    Field("still_window", _NUMBER, Unit.LENGTH, 0.005, 5.0, derived=True),
+    _STILL,
     Field("absolute", _FLAG, default=False),
 )
 _METHOD = Field("method", _WHOLE, low=-128, high=37, default=0.0)  # of CiA 402; the simulation needs none
@@ -68,6 +71,8 @@ C_AXIS = (
     Field("fe_window", _NUMBER, Unit.DEGREES, 0.05, 90.0, default=5.0),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
     Field("in_pos", _NUMBER, Unit.DEGREES, 0.0001, 5.0, derived=True),
+    Field("still_window", _NUMBER, Unit.DEGREES, 0.001, 45.0, derived=True),
+    _STILL,
     Field("absolute", _FLAG, default=False),
     Field("modulo", _FLAG, default=True),  # SINUMERIK: 0..<360; false: -360..+360
     Field("own_drive", _FLAG, default=False),  # false: the spindle is C, and cannot turn meanwhile
@@ -80,6 +85,8 @@ ROTARY_AXIS = (
     Field("fe_window", _NUMBER, Unit.DEGREES, 0.001, 90.0, derived=True),
     Field("fe_time_ms", _NUMBER, Unit.MILLISECONDS, 0.001, 0.5, default=0.02),
     Field("in_pos", _NUMBER, Unit.DEGREES, 1e-6, 5.0, derived=True),
+    Field("still_window", _NUMBER, Unit.DEGREES, 0.0005, 45.0, derived=True),
+    _STILL,
     Field("absolute", _FLAG, default=False),
 )
 C_OPTION = (Field("feedback", _FLAG, default=False),)

@@ -159,6 +159,8 @@ def _axis(reading: Reading, name: str) -> Axis:
         home_order=int(values.number(f"{path}.home.order")) if homed else 0,
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
         rotary=name not in fields.SLIDES[reading.kind],
+        still_window=values.number(f"{path}.still_window"),
+        still_time=values.number(f"{path}.still_ms"),
     )
 
 

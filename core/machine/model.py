@@ -25,6 +25,13 @@ class Axis:
     home_order: int = 0
     home_speed: float = 0.0
     rotary: bool = False
+    still_window: float = 0.2  # how far it may be off where it rests
+    still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
+
+    def following_limit(self, speed: float) -> float:
+        """How far it may be off its setpoint at a commanded speed: as at rest, and what a drive trails."""
+        share = min(abs(speed) / self.vmax, 1.0)
+        return self.still_window + (self.following_window - self.still_window) * share
 
 
 @dataclass(frozen=True, slots=True)

@@ -142,6 +142,13 @@ def _slide(axis: str) -> tuple[Rule, ...]:
         _below(
             f"{path}.in_pos", f"{path}.fe_window", "in position lies inside the fault window", Unit.LENGTH
         ),
+        _below(
+            f"{path}.in_pos",
+            f"{path}.still_window",
+            "in position lies inside what it may be off",
+            Unit.LENGTH,
+        ),
+        _below(f"{path}.still_window", f"{path}.fe_window", "at rest it trails behind nothing", Unit.LENGTH),
     )
 
 
@@ -155,6 +162,13 @@ def _rotary(axis: str) -> tuple[Rule, ...]:
         _below(
             f"{path}.in_pos", f"{path}.fe_window", "in position lies inside the fault window", Unit.DEGREES
         ),
+        _below(
+            f"{path}.in_pos",
+            f"{path}.still_window",
+            "in position lies inside what it may be off",
+            Unit.DEGREES,
+        ),
+        _below(f"{path}.still_window", f"{path}.fe_window", "at rest it trails behind nothing", Unit.DEGREES),
     )
 
 

@@ -97,6 +97,18 @@ class SimMachine:
             servo = self._servo(axis)
             servo.stuck = servo.reading if on else None
 
+    def runaway(self, axis: str, speed: float) -> None:
+        """Its drive goes its own way at this speed, mm/s or degrees/s, while it has power; 0 mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).runaway = speed
+
+    def push(self, axis: str, way: float) -> None:
+        """Somebody moves a slide that has no power, or forces one that has."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).p += way
+
     def drive_fault(self, axis: str, text: str = "drive fault") -> None:
         """A drive trips."""
         with self._plant.lock:

@@ -20,6 +20,7 @@ class Servo:
         self.v = 0.0
         self.jammed = False
         self.stuck: float | None = None  # reading of an encoder that no longer counts
+        self.runaway = 0.0  # speed at which a drive that has gone mad drives it while it has power
         self.over = 0.0  # seconds outside the following window
         self._wn = 2 * math.pi * axis.bandwidth
 
@@ -46,6 +47,9 @@ class Servo:
         seen = self.p if self.stuck is None else self.stuck
         if self.jammed:
             self.v = 0.0
+        elif self.runaway:
+            self.v = self.runaway
+            self.p += self.v * dt
         else:
             limit = axis.amax * axis.reserve
             force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
@@ -68,7 +72,7 @@ class Servo:
 
     def settle(self, p: float) -> bool:
         """At a resting setpoint: snap on it when as good as there; False while still moving."""
-        if self.jammed or self.stuck is not None:
+        if self.jammed or self.stuck is not None or self.runaway:
             return False
         if abs(self.p - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
             self.p, self.v, self.over = p, 0.0, 0.0

@@ -177,7 +177,7 @@ def test_reset_does_not_clear_a_fault_that_stays() -> None:
     rig.run(0.4)
     rig.confirm()
     rig.post(CycleStart())
-    alarm(rig, "axis")
+    alarm(rig, "encoder-still")  # from rest it has not moved at all
 
 
 # --- spindle and collet -------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ SPINDLE_DRIVERS = ("sim", "cia402", "vfd", "grblhal")
 SIM_FAULTS = (
     "jam",
     "encoder_stuck",
+    "runaway",
     "drive_fault",
     "spindle_bog",
     "spindle_wander",
@@ -22,7 +23,7 @@ SIM_FAULTS = (
     "pot_noise",
     "estop",
 )
-AXIS_FAULTS = frozenset(("jam", "encoder_stuck", "drive_fault"))
+AXIS_FAULTS = frozenset(("jam", "encoder_stuck", "runaway", "drive_fault"))
 
 _NUMBER, _WHOLE, _FLAG, _TEXT, _CHOICE = Kind.NUMBER, Kind.WHOLE, Kind.FLAG, Kind.TEXT, Kind.CHOICE
 
