@@ -8,10 +8,11 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
 
+from app.cli.arguments import Parser, add_screen_options, settled
 from app.cli.crash import report_crash
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.home import HomeError, check_home
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial", "alarms")
@@ -26,27 +27,15 @@ turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no op
 WITHOUT = "prove, expand, trace and run --headless need none"
 
 
-class _Parser(argparse.ArgumentParser):
-    """An argument parser that says what is wrong in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(EXIT_USAGE, f"turndesk: {message}; see '{self.prog} --help'\n")
-
-
 def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     """The parser with these subcommands."""
-    parser = _Parser(
+    parser = Parser(
         prog="turndesk",
         description="The operator desk for OmniTurn-style lathes. Without a command: the operator screen.",
     )
-    parser.add_argument("--version", action="store_true", help="print the version")
-    parser.add_argument(
-        "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
-    )
-    parser.add_argument("--program", metavar="FILE", help="program that the screen loads at the start")
-    parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
+    add_screen_options(parser)
     subparsers = parser.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", parser_class=_Parser
+        title="commands", metavar="COMMAND", dest="command", parser_class=Parser
     )
     for name in commands:
         importlib.import_module(f"app.cli.{name}").add_parser(subparsers)
@@ -63,8 +52,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else argv
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
-        return _dispatch(args)
-    except CommandError as error:
+        check_home()
+        return _dispatch(settled(args))
+    except (CommandError, HomeError) as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_USAGE
     except KeyboardInterrupt:

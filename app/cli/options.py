@@ -56,7 +56,7 @@ def circumstances(args: argparse.Namespace) -> Circumstances:
 
     machine = read_machine(args.machine)
     tools, secondary = chosen_offsets(args.offsets)()
-    inputs = input_states(args.inputs)
+    inputs = input_states(args.inputs, machine.inputs)
     setup = setup_for(
         machine,
         tools=tools,
@@ -83,6 +83,9 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     from core.language.source import SourceError, load_source
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
+    for option, what in (("strict", "they have no tolerated lines"), ("inputs", "they ask no inputs")):
+        if getattr(args, option) and dialect is not Dialect.OMNITURN:
+            raise CommandError(f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}")
     try:
         source = load_source(path, dialect)
     except SourceError as error:

@@ -42,16 +42,18 @@ def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
 
 
 def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
-    from app.cli.shown import report_json
+    from app.cli.shown import report_json, stops_of
     from core.proving.prove import prove
 
     source = read_source(path, args)
     with Progress(f"proving {path.name}") as progress:
         report = prove(source, around.setup, around.machine, progress.reach, ideal=args.ideal)
     if args.json:
-        sys.stdout.write(json.dumps(report_json(str(path), report)) + "\n")
+        sys.stdout.write(json.dumps(report_json(str(path), report, optional_stop=args.optional_stop)) + "\n")
     else:
         sys.stdout.write(_sheet(path, report))
+        stops = stops_of(report, optional_stop=args.optional_stop)
+        sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
     return report
 
 

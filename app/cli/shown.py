@@ -69,7 +69,12 @@ def diagnostic_json(diagnostic: Diagnostic) -> Json:
     }
 
 
-def report_json(file: str, report: Report) -> Json:
+def stops_of(report: Report, *, optional_stop: bool) -> int:
+    """How often a cycle waits for the operator."""
+    return report.stops + (report.optional_stops if optional_stop else 0)
+
+
+def report_json(file: str, report: Report, *, optional_stop: bool = False) -> Json:
     """A proof with the keys and units of interfaces.md; ``stock`` is null until removal is computed.
 
     Lengths are inches for OmniTurn programs, mm for the others.
@@ -93,6 +98,7 @@ def report_json(file: str, report: Report) -> Json:
         "rapid_time_s": seconds(times.rapid),
         "dwell_time_s": seconds(times.dwell),
         "wait_time_s": seconds(times.wait),
+        "stops": stops_of(report, optional_stop=optional_stop),
         "cutting_length": length(report.cutting_length),
         "rapid_length": length(report.rapid_length),
         "tools": list(report.tools),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -48,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
     from core.proving.timeline import Timeline
 
     path = Path(args.file)
+    if args.json and args.out is None:
+        raise CommandError("--json needs --out FILE: without it the setpoints themselves go to stdout")
     around = circumstances(args)
     source = read_source(path, args)
     timeline = Timeline.of(source, around.setup, around.machine)
@@ -56,7 +59,23 @@ def run(args: argparse.Namespace) -> int:
         _write(timeline, table, args.dt, sys.stdout.write, path)
     else:
         _write_file(timeline, table, args, path)
+    if args.json:
+        _write_json(timeline, args, path)
     return report_diagnostics(path, timeline)
+
+
+def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
+    """What was written, in one object."""
+    from app.cli.shown import diagnostic_json, seconds
+
+    told = {
+        "file": str(path),
+        "out": None if timeline.errors else args.out,
+        "dt": args.dt,
+        "cycle_time_s": seconds(timeline.t),
+        "diagnostics": [diagnostic_json(each) for each in timeline.diagnostics],
+    }
+    sys.stdout.write(json.dumps(told) + "\n")
 
 
 class _Table:

@@ -8,6 +8,25 @@ from pathlib import Path
 from platformdirs import user_data_path
 
 
+class HomeError(Exception):
+    """TURNDESK_HOME names no folder; ``str()`` is the sentence for whoever set it."""
+
+
+def check_home() -> None:
+    """Refuse a TURNDESK_HOME that is a file or lies below one; one that is not there yet will be made.
+
+    Raises HomeError.
+    """
+    named = os.environ.get("TURNDESK_HOME", "")
+    if not named:
+        return
+    folder = home()
+    there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
+    if there.exists() and not there.is_dir():
+        what = "is" if there == folder else f"lies below {there}, which is"
+        raise HomeError(f"TURNDESK_HOME: {folder} {what} a file and no folder; name a folder, or unset it")
+
+
 def home() -> Path:
     """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder."""
     named = os.environ.get("TURNDESK_HOME", "")

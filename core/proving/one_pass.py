@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from core.interpreter.actions import Dwell
+from core.interpreter.actions import Dwell, ProgramStop
 from core.interpreter.blocks import Block
 from core.interpreter.needs import Need, first_needs, needs_of
 from core.interpreter.series import Series
@@ -43,6 +43,7 @@ class Pass:
         self.last: Block | None = None
         self.last_move: Block | None = None
         self.elementary = 0
+        self._stops = self._optional_stops = 0
 
     @property
     def checks(self) -> CuttingChecks:
@@ -100,6 +101,9 @@ class Pass:
         self.last = stretch.block
         self._checks.look([stretch.block])
         self._need([stretch.block])
+        if isinstance(stretch.block.action, ProgramStop):
+            self._optional_stops += stretch.block.action.optional
+            self._stops += not stretch.block.action.optional
         if isinstance(stretch.block.action, Dwell):
             self._dwell += spent
         else:
@@ -129,6 +133,8 @@ class Pass:
             machine_final=end.machine_end if end else timeline.start,
             mill=self._mill(),
             needs=self._needs,
+            stops=self._stops,
+            optional_stops=self._optional_stops,
         )
 
     def _mill(self) -> MillFigures | None:

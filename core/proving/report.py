@@ -82,6 +82,8 @@ class Report:
     mill: MillFigures | None = None
     needs: tuple[Need, ...] = ()
     ways: Ways = field(default_factory=Ways)
+    stops: int = 0  # M00
+    optional_stops: int = 0  # M01
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:

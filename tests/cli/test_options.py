@@ -1,0 +1,265 @@
+"""No option is ignored: each acts or is refused, before or behind the command, once and in full."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.cli.arguments import BEFORE
+from app.cli.main import COMMANDS, build_parser, main
+from tests.cli.conftest import Turndesk
+
+PART = (
+    "G90G94F300\nT1\nM03S1000\nX.5Z.1\n/G95F.004Z-.2\nM97I10C1P1\nM01(LOOK)\nG94F300Z1\nM30\n}1\nG04F2\nM99\n"
+)
+FAR = "[tool.1]\nx = 0.0\nz = -9.0\n"
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    path = tmp_path / "part.nc"
+    path.write_text(PART)
+    return path
+
+
+@pytest.fixture
+def far(tmp_path: Path) -> Path:
+    path = tmp_path / "far.toml"
+    path.write_text(FAR)
+    return path
+
+
+def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """Each command with each of its actions, such as ``offsets set``."""
+
+    def below(name: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+        actions = [each for each in parser._actions if isinstance(each, argparse._SubParsersAction)]
+        if not actions:
+            yield name, parser
+        for each in actions:
+            for word, sub in each.choices.items():
+                yield from below(f"{name} {word}".strip(), sub)
+
+    return below("", build_parser(COMMANDS))
+
+
+def options() -> list[tuple[str, str]]:
+    return [
+        (name, each.option_strings[-1])
+        for name, parser in parsers()
+        for each in parser._actions
+        if each.option_strings and "--help" not in each.option_strings
+    ]
+
+
+# Each option of each command, and the test of this suite that sees what it does or what refuses it.
+COVERED = {
+    **{(command, option): "test_the_options_of_a_program_act"
+       for command in ("prove", "expand", "trace", "run")
+       for option in ("--machine", "--offsets", "--inputs", "--block-delete", "--strict", "--dialect",
+                      "--optional-stop", "--json")},
+    ("prove", "--ideal"): "test_the_options_of_a_program_act",
+    ("expand", "--ideal"): "test_the_options_of_a_program_act",
+    ("trace", "--dt"): "tests/cli/test_trace.py",
+    ("trace", "--out"): "tests/cli/test_trace.py",
+    ("run", "--headless"): "tests/cli/test_run.py",
+    ("run", "--realtime"): "tests/cli/test_run.py",
+    ("offsets show", "--json"): "tests/cli/test_offsets.py",
+    ("offsets history", "--json"): "tests/cli/test_offsets.py",
+    ("offsets history", "--limit"): "tests/cli/test_offsets.py",
+    ("offsets set", "--why"): "tests/cli/test_offsets.py",
+    ("offsets clear", "--why"): "tests/cli/test_offsets.py",
+    ("offsets undo", "--why"): "tests/cli/test_offsets.py",
+    ("store verify", "--json"): "tests/cli/test_store.py",
+    ("machine check", "--json"): "tests/cli/test_machine.py",
+    ("alarms", "--json"): "tests/cli/test_alarms.py",
+    **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
+       for option in ("--machine", "--port", "--baud", "--bits", "--parity", "--stop", "--flow", "--wrap",
+                      "--dc-codes")},
+    ("serial receive", "--out"): "tests/drivers/transfer",
+    ("serial send", "--eol"): "tests/drivers/transfer",
+    ("serial send", "--wait"): "tests/drivers/transfer",
+    ("serial send", "--leader"): "tests/drivers/transfer",
+}  # fmt: skip
+
+
+def test_every_option_of_every_command_is_in_the_table() -> None:
+    assert sorted(options()) == sorted(COVERED)
+
+
+@pytest.mark.parametrize("name", [name for name, _ in parsers()])
+@pytest.mark.parametrize("option", BEFORE)
+def test_an_option_before_a_command_acts_or_is_refused(
+    name: str, option: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """With a file that is not there: whoever takes the option says so, everybody else refuses the option."""
+    has = {each for command, each in options() if command == name}
+    rest = {"offsets set": ["T1", "x=1"], "offsets clear": ["D"], "machine peer": ["gt75-bench"]}
+    words = rest.get(name, [str(tmp_path / "part.nc")] if name.rpartition(' ')[2] not in
+                     {"show", "history", "undo", "verify", "ports", "receive", "alarms"} else [])  # fmt: skip
+    (tmp_path / "part.nc").write_text(PART)
+    headless = ["--headless"] if name == "run" else []
+    status = main([f"--{option}", str(tmp_path / "missing"), *name.split(), *words, *headless])
+    said = capsys.readouterr().err
+    assert status == 2
+    if f"--{option}" in has:
+        assert "missing" in said
+    else:
+        assert said == f"turndesk: --{option} stands before {name}, which has no such option" + (
+            said[said.index(";") :] if ";" in said else "\n"
+        )
+
+
+def test_machine_and_offsets_before_prove_do_what_they_do_behind_it(
+    turndesk: Turndesk, part: Path, far: Path
+) -> None:
+    behind = turndesk("prove", part, "--offsets", far, "--json")
+    before = turndesk("--offsets", far, "prove", part, "--json")
+    assert behind.status == before.status == 1  # T1 nine inches out
+    assert behind.lines == before.lines
+    lathe = ("--machine", "sinumerik-linear")  # no input 10, no T offsets beyond its travel
+    assert turndesk(*lathe, "prove", part, "--json").lines == turndesk("prove", part, *lathe, "--json").lines
+    assert turndesk("prove", part, "--json").lines != turndesk("prove", part, *lathe, "--json").lines
+
+
+@pytest.mark.parametrize("words", [
+    ["prove", "{part}", "--offsets", "{far}", "--offsets", "{far}"],
+    ["--offsets", "{far}", "prove", "{part}", "--offsets", "{far}"],
+    ["--offsets", "{far}", "--offsets", "{far}", "prove", "{part}"],
+    ["trace", "{part}", "--dt", ".1", "--dt=.2"],
+    ["expand", "{part}", "--machine", "gt75", "--machine", "gt75"],
+    ["serial", "send", "{part}", "--baud", "9600", "--baud", "4800"],
+    ["offsets", "set", "T1", "x=1", "--why", "a", "--why", "b"],
+])  # fmt: skip
+def test_an_option_that_is_given_twice_is_refused(
+    words: list[str], part: Path, far: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        status = main([word.format(part=part, far=far) for word in words])
+    except SystemExit as ended:
+        status = int(str(ended.code))
+    assert status == 2
+    assert "is given twice" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [
+    ["prove", "a.nc", "--off", "b"], ["--mach", "a"], ["run", "a.nc", "--head"],
+    ["prove", "a.nc", "--block"], ["trace", "a.nc", "--o", "b"],
+])  # fmt: skip
+def test_an_option_is_written_in_full(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert "unrecognized arguments" in said or "invalid choice" in said
+
+
+def test_version_with_anything_else_is_refused(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version", "prove", str(part)]) == 2
+    assert main(["--version", "--machine", "gt75"]) == 2
+    assert "--version stands alone" in capsys.readouterr().err
+
+
+def test_the_options_of_a_program_act(
+    turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    on = tmp_path / "on.toml"
+    on.write_text("[inputs]\n10 = true\n")
+    given = (part, "--offsets", offsets, "--json")
+
+    def figures(*more: object) -> tuple[float, int, int]:
+        (report,) = turndesk("prove", *given, *more).lines
+        return report["cycle_time_s"], report["elementary"], report["stops"]
+
+    plain = figures()
+    assert figures("--inputs", on)[0] == pytest.approx(plain[0] + 2.0, abs=0.1)
+    assert figures("--block-delete")[1] == plain[1] - 1
+    assert (plain[2], figures("--optional-stop")[2]) == (0, 1)
+    assert figures("--ideal")[0] < plain[0]
+    assert turndesk("prove", *given, "--strict").status == 0
+    part.write_text(PART.replace("T1", "T01"))
+    assert turndesk("prove", *given, "--strict").status == 1
+    assert turndesk("prove", *given, "--dialect", "klartext").status == 1
+
+
+@pytest.mark.parametrize("command", ["prove", "expand", "trace", "run"])
+@pytest.mark.parametrize("option", ["--machine", "--offsets", "--inputs", "--block-delete", "--strict",
+                                    "--dialect"])  # fmt: skip
+def test_every_command_about_a_program_does_something_else_with_its_options(
+    command: str, option: str, turndesk: Turndesk, part: Path, offsets: Path, far: Path, tmp_path: Path
+) -> None:
+    part.write_text(PART.replace("T1", "T01"))
+    on = tmp_path / "on.toml"
+    on.write_text("[inputs]\n10 = true\n")
+    value = {"--machine": "ac-table-mill", "--offsets": far, "--inputs": on, "--dialect": "klartext"}.get(
+        option
+    )
+    more = [option, value] if value else [option]
+    given = [] if option == "--offsets" else ["--offsets", offsets]
+    headless = ["--headless", "--json"] if command == "run" else []
+
+    def told(*words: object) -> tuple[int, object, str]:
+        ended = turndesk(command, part, *given, *words, *headless)
+        shown = [{**line, "events": ""} for line in ended.lines] if headless else ended.out
+        return ended.status, shown, ended.err
+
+    assert told(*more) != told()
+
+
+@pytest.mark.parametrize("command", ["prove", "expand", "trace"])
+@pytest.mark.parametrize("option", ["--strict", "--inputs"])
+def test_what_only_one_language_has_is_refused_in_the_others(
+    command: str, option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    part, inputs = tmp_path / "a.mpf", tmp_path / "i.toml"
+    part.write_text("N10 G90\nN20 M30\n")
+    inputs.write_text("[inputs]\n10 = true\n")
+    words = [option, str(inputs)] if option == "--inputs" else [option]
+    assert main([command, str(part), *words]) == 2
+    assert f"{option} is for OmniTurn programs alone" in capsys.readouterr().err
+
+
+def test_an_input_that_the_machine_has_not_is_refused(
+    part: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    inputs = tmp_path / "i.toml"
+    inputs.write_text("[inputs]\n99 = true\n")
+    assert main(["prove", str(part), "--inputs", str(inputs)]) == 2
+    assert "99" in capsys.readouterr().err
+
+
+def test_trace_in_json_needs_a_file_for_the_setpoints(
+    turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["trace", str(part), "--json"]) == 2
+    assert "--json needs --out" in capsys.readouterr().err
+    told = turndesk("trace", part, "--offsets", offsets, "--out", tmp_path / "a.csv", "--json")
+    (report,) = told.lines
+    assert (told.status, report["out"]) == (0, str(tmp_path / "a.csv"))
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert report["cycle_time_s"] == pytest.approx(float(rows[-1].split(",")[0]), abs=0.001)
+
+
+def test_json_and_headless_go_together(turndesk: Turndesk, part: Path, offsets: Path) -> None:
+    told = turndesk("run", part, "--headless", "--json", "--offsets", offsets)
+    assert json.loads(told.out.splitlines()[-1])["state"] == "complete"
+
+
+@pytest.mark.parametrize("command", [
+    ["prove", "{part}"], ["offsets", "show"], ["store", "verify"], ["alarms"],
+    ["run", "{part}", "--headless"], ["machine", "check"],
+])  # fmt: skip
+@pytest.mark.parametrize("below", ["", "/deeper/still"])
+def test_a_home_that_is_a_file_is_told(
+    command: list[str], below: str, part: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    monkeypatch.setenv("TURNDESK_HOME", f"{part}{below}")
+    assert main([word.format(part=part) for word in command]) == 2
+    said = capsys.readouterr().err
+    assert "TURNDESK_HOME" in said
+    assert "no folder" in said
