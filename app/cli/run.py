@@ -153,7 +153,14 @@ def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
     return {
         "elapsed_s": seconds(outcome.elapsed),
         "alarms": [
-            {"code": a.code, "text": a.text, "cause": a.cause, "remedy": a.remedy, "line": a.line}
+            {
+                "number": a.number,
+                "code": a.code,
+                "text": a.text,
+                "cause": a.cause,
+                "remedy": a.remedy,
+                "line": a.line,
+            }
             for a in snapshot.alarms
         ],
         "underruns": snapshot.underruns,

@@ -1,37 +1,76 @@
-"""The log of alarms: every one that a snapshot has shown, newest first, with the time of day."""
+"""What F7 lists: every alarm, E-stop and stop, newest first, with time, reason and what to do.
+
+Those of today come from the executor's events, those of before from the store's log of events.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections import deque
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import datetime
 
-from core.executor.snapshot import Alarm
+from core.alarms import CATALOGUE, Code
+from core.executor.alarms import told
+from core.executor.snapshot import Alarm, Event
+from core.store.rows import EventRow
 
 KEPT = 500
+KINDS = frozenset({"alarm", "estop", "stop"})  # of events
+_WRITTEN = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
+_BY_NUMBER: dict[int, Code] = {entry.number: code for code, entry in CATALOGUE.items()}
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
-    """One alarm and when it came, as a wall clock shows it."""
+class Stop:
+    """One alarm or stop and when it came, as a wall clock shows it."""
 
     at: str
     alarm: Alarm
 
 
-class AlarmLog:
-    """Remembers alarms by number; seeing the same alarm again in the next snapshot is not another one."""
+class StopLog:
+    """``hear`` may be called from the executor's thread, all else belongs to the screen's."""
 
     def __init__(self, clock: Callable[[], str]) -> None:
         self._clock = clock
-        self._last: tuple[Alarm, ...] = ()
-        self.entries: tuple[Entry, ...] = ()
+        self._heard: deque[Stop] = deque(maxlen=KEPT)
+        self._entries: tuple[Stop, ...] = ()
 
-    def see(self, alarms: tuple[Alarm, ...]) -> bool:
-        """Take the alarms of a snapshot; True when any of them is new."""
-        if alarms == self._last:
-            return False
-        new = [alarm for alarm in alarms if alarm not in self._last]
-        self._last = alarms
-        at = self._clock()
-        self.entries = (tuple(Entry(at, alarm) for alarm in reversed(new)) + self.entries)[:KEPT]
-        return bool(new)
+    def hear(self, event: Event) -> None:
+        """Remember what stopped the machine; other events are none of this log."""
+        if event.alarm is not None:
+            self._heard.append(Stop(self._clock(), event.alarm))
+
+    def recall(self, rows: Iterable[EventRow]) -> None:
+        """What the store has kept, newest first: it comes behind what was heard since."""
+        kept = tuple(Stop(_local(row.at), alarm) for row in rows if (alarm := read_back(row)) is not None)
+        self._entries = (*self.entries, *kept)[:KEPT]
+
+    @property
+    def entries(self) -> tuple[Stop, ...]:
+        """All of them, newest first."""
+        new: list[Stop] = []
+        while self._heard:
+            new.append(self._heard.popleft())
+        if new:
+            self._entries = (*reversed(new), *self._entries)[:KEPT]
+        return self._entries
+
+
+def read_back(row: EventRow) -> Alarm | None:
+    """An alarm as it was written into the log; None for what is none, or has no number."""
+    found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
+    code = _BY_NUMBER.get(int(found[1])) if found is not None else None
+    return None if found is None or code is None else told(code, found[3], row.line, 0.0)
+
+
+def _local(at: str) -> str:
+    """A time of the store, UTC, as a wall clock shows it; with its day when that is not today."""
+    try:
+        time = datetime.fromisoformat(at).astimezone()
+    except ValueError:
+        return at
+    today = datetime.now().astimezone().date()
+    return time.strftime("%H:%M:%S" if time.date() == today else "%Y-%m-%d %H:%M")

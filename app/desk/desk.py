@@ -42,7 +42,6 @@ class Desk(DeskParts):
         """One snapshot, and what the page shows of it; called once a frame."""
         self.hands.turn_knobs()
         snapshot = self.snapshot()
-        self.log.see(snapshot.alarms)
         self.answers.look(snapshot)
         self.rebuilding.look(snapshot, self.book, self.zero, self.post)
         loaded = self.session.now
@@ -69,7 +68,7 @@ class Desk(DeskParts):
         if self.notice:
             return self.notice
         if page:
-            return prompts.alarm_of(snapshot) or page
+            return prompts.alarm_of(snapshot, self.release_words) or page
         return prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk import prompts
-from app.desk.alarms import AlarmLog
+from app.desk.alarms import StopLog
 from app.desk.answers import Answers
 from app.desk.changes import FileChanges
 from app.desk.files.record import RunRecord
@@ -84,7 +84,7 @@ class DeskParts:
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
-    log: AlarmLog = field(init=False)
+    log: StopLog = field(init=False)
     answers: Answers = field(init=False)
     rebuilding: Rebuilding = field(init=False)
     _giving_up: bool = False
@@ -93,7 +93,7 @@ class DeskParts:
     _pulse: Pulse = field(default_factory=Pulse)
 
     def __post_init__(self) -> None:
-        self.log = AlarmLog(self.time_of_day)
+        self.log = StopLog(self.time_of_day)
         self.answers = Answers(self.snapshot, self._trouble)
         self.rebuilding = Rebuilding(self.session, self.say)
         starting = self.answers.starting
@@ -160,6 +160,7 @@ class DeskParts:
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""
         self.answers.hear(event)
+        self.log.hear(event)
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""

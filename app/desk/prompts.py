@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from app.desk import interrupted
 from app.desk.session import Loaded, Phase
-from core.executor.snapshot import Snapshot, State
+from app.desk.view import View
+from core.executor.snapshot import Alarm, Snapshot, State
 
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
@@ -25,7 +26,7 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
     """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here."""
     go_on = f"TO GO ON {start}; R GIVES THE PROGRAM UP"
     standing = {
-        State.ESTOP: f"E-STOP: MAKE THE MACHINE SAFE, {release}, THEN PRESS D FOR DRIVES ON",
+        State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
         State.FAULT: "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE",
         State.RUN: HOW_TO_HOLD,
@@ -44,12 +45,31 @@ def announced(snapshot: Snapshot) -> str:
     return "".join(f"{text} · " for text in snapshot.announced)
 
 
-def alarm_of(snapshot: Snapshot) -> str:
+def alarm_of(snapshot: Snapshot, release: str) -> str:
     """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
     if snapshot.state is State.FAULT and snapshot.alarms:
-        alarm = snapshot.alarms[-1]
-        return f"ALARM {alarm.number}: {alarm.text}: F7 LISTS IT, R ACKNOWLEDGES IT"
-    return "E-STOP: WHAT TO DO STANDS ON THE AUTOMATIC PAGE (F1, F2)" if snapshot.state is State.ESTOP else ""
+        return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R ACKNOWLEDGES, F7 LISTS"
+    return _estop(release) if snapshot.state is State.ESTOP else ""
+
+
+def _estop(release: str) -> str:
+    return f"E-STOP: MAKE THE MACHINE SAFE, {release}, THEN PRESS D FOR DRIVES ON"
+
+
+def reason(view: View) -> str:
+    """Below the prompt, on every page: why the machine stands; of a hold also what to do."""
+    if view.alarms:
+        return f"CAUSE: {exactly(view.alarms[0])}"
+    if view.stop is None:
+        return ""
+    cause = f"CAUSE: {exactly(view.stop)}"
+    return cause if view.stop.code == "estop" else f"{cause}  ·  WHAT TO DO: {view.stop.remedy}"
+
+
+def exactly(alarm: Alarm) -> str:
+    """What is known of this one, and the likeliest cause."""
+    likely = alarm.causes[0] if alarm.causes else ""
+    return alarm.cause if likely in {"", alarm.cause} else f"{alarm.cause}; {likely}"
 
 
 def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:

@@ -10,6 +10,7 @@ from app.desk.lamps import Lamp, lamps_of, modes_of
 from app.desk.motion import FeedView, SpindleView, feed_view, spindle_view
 from app.desk.readout import PositionView, Readout, position_view
 from app.desk.settings import Units
+from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
 
 
@@ -63,7 +64,8 @@ class View:
     next_text: str
     comment: str
     message: str
-    alarm: Alarm | None
+    alarms: tuple[Alarm, ...]  # that stand, the first one first: what came behind may only follow from it
+    stop: Alarm | None  # why it stands where no alarm says it, unless somebody asked for it
 
 
 def view_of(snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = Units.PROGRAM) -> View:
@@ -73,12 +75,10 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = U
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
-    state = snapshot.state.value
-    if snapshot.state is State.WAIT and snapshot.waiting_for:
-        state = f"WAITING: {snapshot.waiting_for}"
+    stop = unasked(snapshot)
     return View(
         program=snapshot.program,
-        state=state,
+        state=_state(snapshot, stop),
         tone=TONES[snapshot.state],
         position=position_view(snapshot, readout, with_c, metric),
         tool=f"G{modal.settable}" if modal.settable else f"T{modal.tool}",
@@ -96,8 +96,28 @@ def view_of(snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = U
         next_text=snapshot.next_text,
         comment=snapshot.comment,
         message=_message(snapshot),
-        alarm=snapshot.alarms[-1] if snapshot.alarms else None,
+        alarms=snapshot.alarms,
+        stop=stop,
     )
+
+
+def unasked(snapshot: Snapshot) -> Alarm | None:
+    """A hold that nobody pressed, or the E-stop: told with cause and remedy as an alarm is."""
+    stop = snapshot.stop
+    if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
+        return None
+    return stop
+
+
+def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
+    """In words, with the number of what is in the way."""
+    if snapshot.state is State.WAIT and snapshot.waiting_for:
+        return f"WAITING: {snapshot.waiting_for}"
+    if snapshot.state is State.FAULT and snapshot.alarms:
+        return f"{snapshot.state.value} {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
+    if snapshot.state is State.HOLD and stop is not None:
+        return f"{snapshot.state.value} {stop.number}: {stop.text}"
+    return snapshot.state.value
 
 
 def _message(snapshot: Snapshot) -> str:

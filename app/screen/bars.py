@@ -80,17 +80,17 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """One line that says what can be done now, or answers the last key."""
+    """What can be done now, or the answer to the last key; below it why the machine stands."""
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
-        self.text = ""
+        self.text = self.reason = ""
         self._answer = False
 
-    def show_text(self, text: str, answer: bool) -> None:
+    def show_text(self, text: str, answer: bool, reason: str = "") -> None:
         """``answer`` when it answers a key: it stands out then."""
-        if (text, answer) != (self.text, self._answer):
-            self.text, self._answer = text, answer
+        if (text, answer, reason) != (self.text, self._answer, self.reason):
+            self.text, self._answer, self.reason = text, answer, reason
             self.update()
 
     def draw(self, painter: QPainter) -> None:
@@ -98,9 +98,14 @@ class PromptLine(Panel):
         area = self.area()
         painter.fillRect(area, look.colour("pause" if self._answer else "panel"))
         painter.setPen(look.colour("on_state" if self._answer else "text"))
-        font = look.fit(self.text, 2.3, area.width() - 3 * u, bold=True)
-        painter.setFont(font)
-        put(painter, area.adjusted(1.4 * u, 0, -1.4 * u, 0), LEFT, self.text)
+        room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
+        if self.reason:
+            low = room.adjusted(0, 0.52 * room.height(), 0, 0)
+            painter.setFont(look.fit(self.reason, 1.9, room.width()))
+            put(painter, low, LEFT, self.reason)
+            room.setBottom(low.top())
+        painter.setFont(look.fit(self.text, 2.1 if self.reason else 2.3, room.width(), bold=True))
+        put(painter, room, LEFT, self.text)
 
 
 class CommentLine(Panel):

@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.desk import pages
+from app.desk import pages, prompts
 from app.desk.desk import Desk
 from app.desk.session import Loaded
 from app.desk.view import View
@@ -72,6 +72,15 @@ class Frame(FrameParts):
             "F1": partial(self._go, pages.MENU),
             "F7": self.toggle_log,
             **self.page.doings(),
+            **(self._log_doings() if self.log.isVisible() else {}),
+        }
+
+    def _log_doings(self) -> dict[str, Callable[[], None]]:
+        """Keys that look through the log while it lies over the page."""
+        log = self.log
+        return {
+            "Page up": lambda: log.look_at(-log.rows),
+            "Page down": lambda: log.look_at(log.rows),
         }
 
     def _go(self, name: str) -> None:
@@ -121,11 +130,11 @@ class Frame(FrameParts):
         self.strip.show_lamps(lamps, frozenset(lamp.key for lamp in lamps if self._is_text(lamp.key)))
         if self.page is self.automatic:
             self.show_readouts(snapshot, view, loaded)
-            self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarm)
+            self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarms)
         else:
             self.head.show_view(view)
             self.run.show_run(view, self.times_of(snapshot, view, loaded))
-            self.notice.show_notice("", "", None)  # the prompt line tells it: nothing covers an entry
+            self.notice.show_notice("", "")  # the prompt line tells it: nothing covers an entry
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:
             self.dock.show_station(snapshot)
@@ -147,4 +156,4 @@ class Frame(FrameParts):
         self.title.show_page(self.page.NAME)
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = desk.prompt(snapshot, loaded, self.page.prompt())
-        self.prompt.show_text(text, answer=bool(desk.notice))
+        self.prompt.show_text(text, answer=bool(desk.notice), reason=prompts.reason(view))

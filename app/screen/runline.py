@@ -8,10 +8,11 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk.view import View
+from app.desk.view import Tone, View
 from app.desk.words import tr
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
+from app.screen.shapes import draw_sign
 
 Times = Sequence[tuple[str, str]]
 COMMENT, BLOCK = 0.38, 0.24  # shares of the width; parts and times have the rest
@@ -26,17 +27,22 @@ class RunLine(Panel):
         super().__init__(look, parent)
         self.comment, self.block, self.message = "", "", ""
         self.times: Times = ()
+        self.stop = ""  # number and words of what stopped the machine
+        self._tone = ""
 
     def show_run(self, view: View, times: Times) -> None:
         """Redraw when something of it has changed."""
         block = f"L{view.line}  {view.block_text}" if view.line else ""
-        shown = (view.comment, block, view.message, times)
-        if shown != (self.comment, self.block, self.message, self.times):
-            self.comment, self.block, self.message, self.times = shown
+        shown = (view.comment, block, view.message, times, stop_words(view), view.tone.value)
+        if shown != (self.comment, self.block, self.message, self.times, self.stop, self._tone):
+            self.comment, self.block, self.message, self.times, self.stop, self._tone = shown
             self.update()
 
     def draw(self, painter: QPainter) -> None:
         u, wide, high = self.look.u, float(self.width()), float(self.height())
+        if self.stop:
+            self._alarm(painter)
+            return
         comment = QRectF(1.4 * u, 0, COMMENT * wide - 2 * u, high)
         block = QRectF(COMMENT * wide, 0, BLOCK * wide - u, high)
         if self.message:
@@ -45,6 +51,17 @@ class RunLine(Panel):
             self._text(painter, comment, "accent", self.comment)
             self._text(painter, block, "text", self.block)
         self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
+
+    def _alarm(self, painter: QPainter) -> None:
+        """Over all of it: nothing runs, and this has to be read from where the machine is."""
+        look, u = self.look, self.look.u
+        painter.fillRect(self.area(), look.colour(self._tone))
+        ink = look.colour("on_state")
+        draw_sign(painter, QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u), Tone(self._tone), ink)
+        painter.setPen(ink)
+        room = self.area().adjusted(4.4 * u, 0, -u, 0)
+        painter.setFont(look.fit(self.stop, 2.5, room.width(), bold=True))
+        put(painter, room, LEFT, self.stop)
 
     def _text(self, painter: QPainter, box: QRectF, ink: str, text: str) -> None:
         painter.setPen(self.look.colour(ink))
@@ -72,3 +89,15 @@ class RunLine(Panel):
             put_raw(
                 painter, QRectF(box.x() + half + u, 0, box.width() - half - u, box.height()), LEFT, figure
             )
+
+
+def stop_words(view: View) -> str:
+    """Number and words of the alarm that came first, of the E-stop, or of a hold that nobody pressed."""
+    if view.alarms:
+        first, more = view.alarms[0], len(view.alarms) - 1
+        where = f"  ·  LINE {first.line}" if first.line else ""
+        return f"ALARM {first.number}: {first.text}{where}{f'  ·  AND {more} MORE' if more else ''}"
+    if view.stop is None:
+        return ""
+    where = f"  ·  LINE {view.stop.line}" if view.stop.line else ""
+    return f"{view.stop.number}: {view.stop.text}{where}"

@@ -5,32 +5,20 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
+from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
 
 FAULT, WARNING = "FAULT", "WARNING"
 Condition = tuple[str, str, str]  # level, code, text
 SPINDLE, COMMS, LOGIC, SYSTEM, MOTION = "Sdrive", "comms", "logic", "system", "motion"
 
-# By the alarm's code. A slide's own condition ends in ``servo`` or ``travel`` and begins with its name.
+# By the first digit of the alarm's number, which is its subject; and those that belong elsewhere. A slide's
+# own condition ends in ``servo`` or ``travel`` and begins with its name.
 _SERVO, _TRAVEL = "servo", "travel"
-PLACES = {
-    "axis": _SERVO,
-    "following": _SERVO,
-    "in-position": _SERVO,
-    "driver": COMMS,
-    "spindle": SPINDLE,
-    "at-speed": SPINDLE,
-    "ignores-stop": SPINDLE,
-    "thread-lost": SPINDLE,
-    "spindle-still": MOTION,
-    "c-is-spindle": MOTION,
-    "collet-open": LOGIC,
-    "unclamp": LOGIC,
-    "collet": LOGIC,
-    "collet-lost": LOGIC,
-    "program": MOTION,
-    "travel": _TRAVEL,
-    "internal": SYSTEM,
+SUBJECTS = {1: _SERVO, 2: SPINDLE, 3: LOGIC, 4: MOTION, 5: COMMS}
+PLACES: dict[Code, str] = {
+    **{"driver": COMMS, "travel": _TRAVEL},
+    **{"spindle-still": MOTION, "c-is-spindle": MOTION},
 }
 _NOWHERE = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # where the alarm names no axis
 
@@ -45,13 +33,14 @@ def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tupl
         active[_place(alarm, keys)].append((FAULT, str(alarm.number), f"{alarm.text}: {alarm.cause}"))
     if snapshot.interrupted is not None:
         active[SYSTEM].append((WARNING, "interrupted", snapshot.interrupted.words))
-    if snapshot.state is State.HOLD and snapshot.waiting_for:
-        active[SYSTEM].append((WARNING, "hold", snapshot.waiting_for))
+    stop = snapshot.stop
+    if snapshot.state is State.HOLD and stop is not None and CATALOGUE[stop.code].reaction is Reaction.HOLD:
+        active[SYSTEM].append((WARNING, str(stop.number), stop.text))
     return {key: tuple(found) for key, found in active.items()}
 
 
 def _place(alarm: Alarm, keys: frozenset[str]) -> str:
-    place = PLACES.get(alarm.code, SYSTEM)
+    place = PLACES.get(alarm.code) or SUBJECTS.get(alarm.number // 100, SYSTEM)
     if place not in _NOWHERE:
         return place
     for word in re.findall(r"\b[A-Z]\b", alarm.cause):

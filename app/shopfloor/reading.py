@@ -10,7 +10,7 @@ from app.desk.pulse import Pulse
 from app.shopfloor.conditions import Condition, conditions_of
 from app.shopfloor.execution import Execution, mode_of
 from core.executor.interrupted import Interrupted
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.model import Machine
 
 Value = str | float | None  # None: not known
@@ -27,6 +27,11 @@ class Reading:
     values: Mapping[str, Value]
     conditions: Mapping[str, tuple[Condition, ...]] = field(default_factory=dict)
     interrupted: Interrupted | None = None
+    alarms: tuple[Alarm, ...] = ()  # what the catalogue says of what is active
+
+    def alarm(self, code: str) -> Alarm | None:
+        """Of a condition, by its code; None: it is none of the catalogue."""
+        return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
 
     @property
     def available(self) -> bool:
@@ -67,7 +72,9 @@ class FloorReader:
             **self._spindle(snapshot),
             **self._wired(snapshot),
         }
-        return Reading(values, conditions_of(snapshot, self.keys), snapshot.interrupted)
+        stop = (snapshot.stop,) if snapshot.stop is not None else ()
+        alarms = (*snapshot.alarms, *stop)
+        return Reading(values, conditions_of(snapshot, self.keys), snapshot.interrupted, alarms)
 
     def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
         """Machine frame, X a radius; an axis that has no home does not know where it is."""

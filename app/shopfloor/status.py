@@ -10,6 +10,7 @@ from pathlib import Path
 
 from app.shopfloor.reading import Reading
 from core.executor.interrupted import Interrupted
+from core.executor.snapshot import Alarm
 
 NAME = "status.json"
 _LOOK = 1.0  # s
@@ -32,7 +33,7 @@ def status_of(machine: str, reading: Reading) -> Status:
         "parts": int(values["pcount"] or 0) if reading.available else None,
         "interrupted": _interrupted(reading.interrupted),
         "alarms": [
-            {"of": key, "level": level, "code": code, "text": text}
+            {"of": key, "level": level, "code": code, "text": text, **_entry(reading.alarm(code))}
             for key, active in reading.conditions.items()
             for level, code, text in active
         ],
@@ -44,6 +45,14 @@ def _interrupted(found: Interrupted | None) -> Status | None:
     if found is None:
         return None
     return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
+
+
+def _entry(alarm: Alarm | None) -> Status:
+    """Number, cause and remedy, as the screen tells them."""
+    if alarm is None:
+        return {"number": None, "cause": "", "remedy": "", "line": None}
+    line = alarm.line or None
+    return {"number": alarm.number, "cause": alarm.cause, "remedy": alarm.remedy, "line": line}
 
 
 class StatusFile:

@@ -25,20 +25,30 @@ class TroubleError(Exception):
 
 def alarm_of(trouble: TroubleError, line: int, now: float) -> tuple[Alarm, Reaction]:
     """The alarm to show, and what it makes of the machine."""
-    entry = CATALOGUE[trouble.code]
-    told = trouble.detail if entry.tells else ""
-    alarm = Alarm(
+    alarm = told(trouble.code, trouble.detail, trouble.line or line, now)
+    return alarm, CATALOGUE[trouble.code].reaction
+
+
+def told(code: Code, detail: str, line: int, now: float) -> Alarm:
+    """What the catalogue says of an alarm, a hold or a stop, and what is known of this one."""
+    entry = CATALOGUE[code]
+    exactly = detail if entry.tells else ""
+    return Alarm(
         number=entry.number,
-        code=trouble.code,
+        code=code,
         text=entry.text.upper(),
-        cause=told or entry.causes[0],
+        cause=exactly or entry.causes[0],
         remedy=entry.remedy,
-        line=trouble.line or line,
+        line=line,
         time=now,
         causes=entry.causes,
-        detail=trouble.detail,
+        detail=detail,
     )
-    return alarm, entry.reaction
+
+
+def words(alarm: Alarm) -> str:
+    """One line for the log of events; it begins with the number, by which the catalogue is found again."""
+    return f"{alarm.number} {alarm.text}: {alarm.cause}"
 
 
 def log_alarm(alarm: Alarm) -> None:

@@ -6,8 +6,10 @@ import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from core.alarms import Code
+from core.executor.alarms import told, words
 from core.executor.guard import Attempt
-from core.executor.snapshot import Event
+from core.executor.snapshot import Alarm, Event
 from core.executor.spindle import SpindleControl
 from core.executor.station_watch import Heard
 from core.machine.model import Machine
@@ -43,6 +45,7 @@ class Bench:
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0
     line: int = 0  # of the block being executed, for the log
+    stop: Alarm | None = None  # why the machine stands, where no alarm says it
 
     @property
     def feed_override(self) -> float:
@@ -53,6 +56,12 @@ class Bench:
     def say(self, kind: str, text: str) -> None:
         """Put something into the log."""
         self.tell(Event(self.now, kind, text, self.line))
+
+    def stopped(self, code: Code, detail: str = "") -> None:
+        """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log."""
+        self.stop = stop = told(code, detail, self.line, self.now)
+        kind = "estop" if code == "estop" else "stop"
+        self.tell(Event(self.now, kind, words(stop), self.line, stop))
 
     def tell(self, event: Event) -> None:
         """Hand an event to who keeps the log; that it cannot be kept stops nothing."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from core.alarms import Reaction
 from core.executor import gate
-from core.executor.alarms import TroubleError, alarm_of, log_alarm
+from core.executor.alarms import TroubleError, alarm_of, log_alarm, words
 from core.executor.announced import SPINDLE, Announcement, Starting
 from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
@@ -27,6 +27,7 @@ from core.executor.supervisor import Supervisor
 from core.interpreter.modal import Modal
 from core.interpreter.setup import Setup
 
+_GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
 _STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 
 
@@ -75,6 +76,10 @@ class Conductor:
             return
         demand_allowed(self.state, state)
         self.standing.state = state
+        if state is State.BLOCK_END:
+            self._bench.stopped("single-block")
+        elif state in _GOES_ON:
+            self._bench.stop = None
         self._bench.say("state", state.value)
 
     # --- what is asked ------------------------------------------------------------------------------------
@@ -159,6 +164,7 @@ class Conductor:
         """The hardware has stopped everything; the control follows, and nothing starts on release."""
         if pressed and self.state is not State.ESTOP:
             self.safe.react(Reaction.OFF)
+            self._bench.stopped("estop")
             self._give_up(ESTOP)
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
@@ -214,7 +220,7 @@ class Conductor:
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
         log_alarm(alarm)
-        bench.tell(Event(bench.now, "alarm", f"{alarm.number} {alarm.text}: {alarm.cause}", alarm.line))
+        bench.tell(Event(bench.now, "alarm", words(alarm), alarm.line, alarm))
 
     def failed(self, error: BaseException) -> None:
         """A mistake of the control itself, whatever the table of states says about it."""

@@ -78,6 +78,7 @@ class Publisher:
             message=cycle.message if cycle else "",
             optionally_stopped=standing.state is State.PROGRAM_STOP and _optional(block),
             alarms=standing.alarms,
+            stop=bench.stop,
             cycle_elapsed=counters.cycle,
             last_cycle=counters.last_cycle,
             parts=counters.parts,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from core.alarms import Code
 from core.executor.interrupted import Interrupted
 from core.interpreter.modal import Modal
 from core.interpreter.swivel import Swivel
@@ -37,14 +38,14 @@ class Starts(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """Text, cause, what to do, and the line that was running (0: none).
+    """An alarm, a hold or a stop: text, cause, what to do, and the line that was running (0: none).
 
     ``cause`` is what exactly happened here where that is known, else the likeliest of ``causes``; ``detail``
     is for the log.
     """
 
     number: int
-    code: str
+    code: Code
     text: str
     cause: str
     remedy: str
@@ -98,7 +99,8 @@ class Snapshot:
     comment: str = ""
     message: str = ""  # of M00/M01 while the stop lasts
     optionally_stopped: bool = False  # at an M01 and not an M00
-    alarms: tuple[Alarm, ...] = ()
+    alarms: tuple[Alarm, ...] = ()  # that stand, the first one first
+    stop: Alarm | None = None  # why the machine stands, where no alarm says it: a hold, a stop, E-stop
     cycle_elapsed: float = 0.0  # of this cycle, stops not counted
     last_cycle: float = 0.0
     parts: int = 0  # completed and counted since the executor was started
@@ -135,8 +137,9 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    # state, alarm, start, restart, mdi, end, part, uncounted, stop,
+    # state, alarm, estop, start, restart, mdi, end, part, uncounted, stop,
     # interrupted, cleared, refused, override, switch, force, load, offsets
     kind: str
     text: str
     line: int = 0
+    alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it

@@ -230,7 +230,6 @@ def test_one_button_starts_only_where_the_machine_file_says_one(machine: FakeMac
 def test_the_log_keeps_an_alarm_that_is_over_and_counts_it_once(desk: Desk, machine: FakeMachine) -> None:
     machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "", "", line=4))
     desk.look()
-    desk.look()
     machine.now = replace(machine.now, alarms=())
     desk.look()
     assert [(entry.at, entry.alarm.number) for entry in desk.log.entries] == [("09:41:07", 102)]

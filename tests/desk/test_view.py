@@ -9,6 +9,7 @@ import pytest
 
 from app.desk.readout import Readout, coordinates
 from app.desk.view import Tone, view_of
+from core.executor.alarms import told
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal import Modal
 
@@ -165,9 +166,22 @@ def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
     assert view_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
 
 
-def test_the_newest_alarm_is_shown() -> None:
-    old, new = (Alarm(n, "axis", f"ALARM {n}", "", "") for n in (1, 2))
-    assert view_of(replace(AT, alarms=(old, new)), Readout.POSITION, True).alarm is new
+def test_the_alarm_that_came_first_is_named_first() -> None:
+    """What comes behind it follows from it more often than not."""
+    first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
+    view = view_of(replace(AT, state=State.FAULT, alarms=(first, then)), Readout.POSITION, True)
+    assert view.alarms == (first, then)
+    assert view.state == "ALARM 101: TROUBLE 101"
+
+
+def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
+    silent = told("station-silent", "", 4, 0.0)
+    view = view_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
+    assert view.stop is silent
+    assert view.state == "FEED HOLD 601: OPERATOR STATION SILENT"
+    pressed = told("feed-hold", "H at the keyboard", 4, 0.0)
+    view = view_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
+    assert (view.stop, view.state) == (None, "FEED HOLD")
 
 
 @pytest.mark.parametrize(

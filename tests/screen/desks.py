@@ -75,6 +75,7 @@ def desk_on(
     )
     furnish(desk, lathe, keep or NothingKept(), work, folders[0] if folders else None)
     built.append(desk)
+    machine.hear = desk.hear
     return desk
 
 

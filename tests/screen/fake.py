@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.executor.commands import (
@@ -19,7 +19,7 @@ from core.executor.commands import (
     SpindleLimit,
 )
 from core.executor.job import Job, Proof
-from core.executor.snapshot import Alarm, Snapshot, State
+from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.blocks import Block, Kind
 
@@ -39,6 +39,7 @@ class FakeMachine:
     palms: set[str] = field(default_factory=set)
     t: float = 0.0
     at: int = 0
+    hear: Callable[[Event], None] = lambda _: None
     alive: bool = True  # a dead control goes on showing its last snapshot
 
     def snapshot(self) -> Snapshot:
@@ -104,6 +105,7 @@ class FakeMachine:
 
     def fault(self, alarm: Alarm) -> None:
         """Something breaks."""
+        self.hear(Event(self.now.t, "alarm", alarm.text, alarm.line, alarm))
         self.now = replace(self.now, state=State.FAULT, alarms=(alarm,), velocity=0.0)
 
     def _run(self) -> None:

@@ -70,7 +70,7 @@ class Hands:
 
     def sees_state(self, state: State) -> None:
         """Wait for a state in the title line."""
-        self.sees(lambda: self.frame.title.state == state.value)
+        self.sees(lambda: self.frame.title.state.startswith(state.value))
 
     def prompt(self) -> str:
         """The prompt line."""

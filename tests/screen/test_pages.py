@@ -67,7 +67,10 @@ def test_a_palm_held_while_the_page_changes_is_let_go(hands: Hands) -> None:
 def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
-    hands.sees(lambda: hands.prompt().startswith("ALARM 102: FOLLOWING ERROR"))
+    hands.sees(lambda: hands.prompt().startswith("WHAT TO DO: free the slide"))
+    assert hands.frame.title.state == "ALARM 102: FOLLOWING ERROR"
+    assert hands.frame.prompt.reason == "CAUSE: blocked"
+    assert hands.frame.run.stop == "ALARM 102: FOLLOWING ERROR  ·  LINE 4"
     hands.key(Key.Key_F7)
     assert hands.frame.log.isVisible()
     hands.key(Key.Key_Escape)

@@ -9,7 +9,7 @@ import pytest
 
 from app.shopfloor.conditions import PLACES
 from app.shopfloor.reading import FloorReader, Value
-from core.executor.alarms import TroubleError, alarm_of
+from core.executor.alarms import TroubleError, alarm_of, told
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal import Modal
 from core.machine.load import load_machine
@@ -194,9 +194,10 @@ def test_two_faults_of_a_slide_stand_side_by_side() -> None:
 
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
-    held = replace(AT, state=State.HOLD, waiting_for="SETPOINTS RAN LOW")
-    assert active(held) == {"system": (("WARNING", "hold", "SETPOINTS RAN LOW"),)}
-    assert active(replace(held, waiting_for="")) == {}
+    held = replace(AT, state=State.HOLD, stop=told("low-queue", "", 4, 0.0))
+    assert active(held) == {"system": (("WARNING", "904", "SETPOINTS RAN LOW"),)}
+    assert active(replace(held, stop=told("feed-hold", "H at the keyboard", 4, 0.0))) == {}
+    assert active(replace(held, stop=None)) == {}
     assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}
 
 

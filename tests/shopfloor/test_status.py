@@ -11,6 +11,8 @@ import pytest
 
 from app.shopfloor.reading import Reading
 from app.shopfloor.status import Status, StatusFile, StatusKeeper, status_of
+from core.alarms import CATALOGUE
+from core.executor.alarms import told
 from tests.interrupted import broken_off
 
 RUNNING = Reading(
@@ -23,6 +25,7 @@ RUNNING = Reading(
         "pcount": "12",
     },
     {"system": (), "Xservo": (("FAULT", "102", "FOLLOWING ERROR: X"),)},
+    alarms=(told("following", "X", 4, 0.0),),
 )
 
 
@@ -61,7 +64,12 @@ def test_what_it_says(tmp_path: Path) -> None:
         "program": "pin.nc",
         "parts": 12,
         "interrupted": None,
-        "alarms": [{"of": "Xservo", "level": "FAULT", "code": "102", "text": "FOLLOWING ERROR: X"}],
+        "alarms": [
+            {
+                **{"of": "Xservo", "level": "FAULT", "code": "102", "text": "FOLLOWING ERROR: X"},
+                **{"number": 102, "cause": "X", "remedy": CATALOGUE["following"].remedy, "line": 4},
+            }
+        ],
     }
     assert [each.name for each in path.parent.iterdir()] == ["status.json"]
 
