@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from app.cli.errors import CommandError
@@ -22,6 +22,7 @@ from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special import furnish
 from app.compose.workshop import samples, workshop
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
+from app.desk.alarms import KEPT, KINDS
 from app.desk.desk import Desk
 from app.desk.editing.bench import Bench, NoArchive
 from app.desk.editing.editor import Editor
@@ -38,6 +39,8 @@ from core.executor.thread import ExecutorThread
 from core.interpreter.modal import Modal
 from core.machine.model import Machine
 from core.ports import Clock, DriverError
+from core.store.errors import StoreError
+from core.store.rows import EventRow
 from drivers.simulated import RealClock, StepClock
 
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
@@ -159,12 +162,22 @@ def desk_and_executor(
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)
     heard.append(desk)
+    if journal is not None:
+        desk.log.recall(_stops(journal))
     desk.shut = connected.close
     for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in changed.changes)):
         say("warning", warning)
     if changed.barred:
         desk.say(changed.barred)
     return desk, executor
+
+
+def _stops(journal: Journal) -> Sequence[EventRow]:
+    """Alarms and stops of the days before; without a store nobody knows of any."""
+    try:
+        return journal.events("", KINDS, KEPT)
+    except StoreError:
+        return ()
 
 
 def _kept_nowhere(_what: Interrupted | None) -> None:

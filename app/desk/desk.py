@@ -153,9 +153,9 @@ class Desk(DeskParts):
         )
         return False
 
-    def feed_hold(self) -> None:
+    def feed_hold(self, by: str = "key or finger at the screen") -> None:
         """Feed hold, whatever else is going on."""
-        self.post(FeedHold())
+        self.post(FeedHold(by))
         self.clear()
 
     def reset(self) -> None:
@@ -211,7 +211,7 @@ class Desk(DeskParts):
         elif self.snapshot().confirmed:
             self.post(ConfirmStart(""))
         elif self.snapshot().state in prompts.MOVING:
-            self.feed_hold()
+            self.feed_hold("Esc at the screen")
         else:
             return False
         return True

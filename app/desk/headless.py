@@ -69,7 +69,7 @@ class HeadlessRun:
         """The whole run of one cycle."""
         self._until(lambda s: s.state is not State.DISABLED, EnableDrives(), tries=100)
         if not self._home():
-            self._executor.post(FeedHold())
+            self._executor.post(FeedHold("the command line"))
             self._step()
             return self._outcome("waiting", f"the axes have not found home in {HOMING:.0f} s")
         self._executor.post(SetSwitch("optional_stop", optional_stop))
@@ -121,7 +121,7 @@ class HeadlessRun:
             elif snapshot.state is State.HOLD:
                 return self._outcome("hold", snapshot.waiting_for or "feed hold")
             elif self._stuck(snapshot):
-                self._executor.post(FeedHold())
+                self._executor.post(FeedHold("the command line"))
                 self._step()
                 hint = f"line {snapshot.line} waits for {snapshot.waiting_for}: give its state in --inputs"
                 return self._outcome("waiting", hint)

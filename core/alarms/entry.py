@@ -41,6 +41,9 @@ OwnCode = Literal[
     "spindle-pot",
     "controller-holds",
     "feed-lost",
+    "held",
+    "spindle-has-stopped",
+    "spindle-late",
     # stops that somebody asked for
     "estop",
     "feed-hold",

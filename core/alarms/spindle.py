@@ -137,6 +137,23 @@ SPINDLE: Entries = {
         ("the spindle switch stands at OFF",),
         "switch it to AUTO, let the spindle come to speed, then Cycle Start",
     ),
+    "spindle-has-stopped": Entry(
+        225,
+        HOLD,
+        "spindle has stopped",
+        (
+            "something between control and spindle has switched it off: safety circuit, guard, its drive",
+            "the feeder had no word of the control for a moment and made the machine safe",
+        ),
+        "look at spindle and tool; Cycle Start starts it again, as it says, and goes on",
+    ),
+    "spindle-late": Entry(
+        226,
+        HOLD,
+        "spindle not at its speed",
+        ("the spindle did not come back to its speed: load, belt, drive", "its pot was turned down"),
+        "look at spindle and tool; Cycle Start tries again, Reset gives the program up",
+    ),
     "spindle-pot": Entry(
         224,
         HOLD,

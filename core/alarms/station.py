@@ -5,6 +5,14 @@ from __future__ import annotations
 from core.alarms.entry import ASKED, HOLD, Entries, Entry
 
 STATION: Entries = {
+    "held": Entry(
+        600,
+        HOLD,
+        "held by the control",
+        ("what is told here",),
+        "put right what is named, then Cycle Start",
+        tells=True,
+    ),
     "station-silent": Entry(
         601,
         HOLD,

@@ -8,6 +8,9 @@ from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.snapshot import Alarm
 
 _log = logging.getLogger(__name__)
+HOLDS: dict[str, Code] = {
+    entry.text.upper(): code for code, entry in CATALOGUE.items() if entry.reaction is Reaction.HOLD
+}
 
 
 class TroubleError(Exception):
@@ -44,6 +47,14 @@ def told(code: Code, detail: str, line: int, now: float) -> Alarm:
         causes=entry.causes,
         detail=detail,
     )
+
+
+def held_by(reason: str, by: str) -> tuple[Code, str]:
+    """What of the catalogue a hold is: ``reason`` in its words, or ``by`` whom it was pressed."""
+    if not reason:
+        return "feed-hold", f"by {by}" if by else ""
+    code = HOLDS.get(reason)
+    return ("held", reason.lower()) if code is None else (code, "")
 
 
 def words(alarm: Alarm) -> str:

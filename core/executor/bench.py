@@ -59,9 +59,14 @@ class Bench:
 
     def stopped(self, code: Code, detail: str = "") -> None:
         """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log."""
-        self.stop = stop = told(code, detail, self.line, self.now)
+        self.stop = self.noted(code, detail)
+
+    def noted(self, code: Code, detail: str = "") -> Alarm:
+        """A stop that is over at once: it only goes into the log."""
+        stop = told(code, detail, self.line, self.now)
         kind = "estop" if code == "estop" else "stop"
         self.tell(Event(self.now, kind, words(stop), self.line, stop))
+        return stop
 
     def tell(self, event: Event) -> None:
         """Hand an event to who keeps the log; that it cannot be kept stops nothing."""

@@ -32,7 +32,7 @@ class ByHand:
                 self._bench.say("offsets", "the offsets of the tables are in force")
             case SpindleStop():
                 self._bench.spindle.stop()
-                self._bench.say("stop", "spindle stopped by hand")
+                self._bench.noted("by-hand", "the spindle was stopped by hand")
             case ForceOutput(name=name, on=on):
                 self._bench.ports.io.write(name, on)
                 self._bench.say("force", f"{name} {'on' if on else 'off'} by hand")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Starts
@@ -45,7 +45,9 @@ class CycleStart:
 
 @dataclass(frozen=True, slots=True)
 class FeedHold:
-    """Come to rest on the path within commit + v/a."""
+    """Come to rest on the path within commit + v/a. ``by`` tells the log who or what asked for it."""
+
+    by: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -128,8 +128,11 @@ class Conductor:
             text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
             yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)
 
-    def feed_hold(self, reason: str) -> None:
-        """Hold the cycle, end a jog, brake a homing, take the handwheel away."""
+    def feed_hold(self, reason: str, by: str = "") -> None:
+        """Hold the cycle, end a jog, brake a homing, take the handwheel away.
+
+        ``reason`` in the words of the catalogue, empty where somebody pressed it: ``by`` whom.
+        """
         if self.wheel.axis:
             self.wheel.end(reason.lower() or "feed hold", self.state)
         if self.state is State.JOG:
@@ -138,7 +141,7 @@ class Conductor:
             self._stop_homing()
         elif self.cycle is not None and self.state in ACTIVE:
             self._bench.spindle.break_off()
-            self.cycle.hold(reason)
+            self.cycle.hold(reason, by)
 
     def reset(self) -> None:
         """Give the program up, stop the spindle, acknowledge alarms."""
@@ -147,6 +150,8 @@ class Conductor:
         if self.standing.alarms:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
+            job = self.standing.job
+            self._bench.noted("reset", f"{job.source.name} was given up" if job is not None else "")
             self._giving_up = True
             self.cycle.abandon()
             self._leave()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.executor.alarms import TroubleError
+from core.executor.alarms import TroubleError, held_by
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, Pass, needs_speed
 from core.executor.limits import check_block
@@ -78,12 +78,15 @@ class Cycle:
 
     # --- what the operator asks ---------------------------------------------------------------------------
 
-    def hold(self, reason: str = "") -> None:
-        """Come to rest on the path; in a thread behind its pull-out."""
+    def hold(self, reason: str = "", by: str = "") -> None:
+        """Come to rest on the path; in a thread behind its pull-out.
+
+        ``reason`` in the words of the catalogue, empty where somebody pressed it: ``by`` whom.
+        """
         if self._state not in _GOING:
             return
         self._reason, self._held_at = reason, self._bench.now
-        self._bench.say("stop", reason or "feed hold")
+        self._bench.stopped(*held_by(reason, by))
         if self._mover.moving:
             self._mover.hold()
             self._change(State.HOLDING)
@@ -95,6 +98,7 @@ class Cycle:
         self._mover.let_stop()
         if self._state in _GOING:
             self._reason, self._held_at = "SETPOINTS RAN LOW", self._bench.now
+            self._bench.stopped("low-queue")
             self._change(State.HOLDING)
 
     def wait_for(self, label: str) -> None:
@@ -247,7 +251,7 @@ class Cycle:
             return False
         if isinstance(action, ProgramStop) and (bench.switches.optional_stop or not action.optional):
             self.message = action.message
-            bench.say("stop", action.message or ("optional stop" if action.optional else "program stop"))
+            bench.stopped("optional-stop" if action.optional else "program-stop", action.message)
             self._change(State.PROGRAM_STOP)
             return False
         self._still.carry_out(block)
@@ -259,7 +263,7 @@ class Cycle:
         if not needs_speed(block) or self._retreating or not spindle.lost:
             return
         if block.kind is Kind.THREAD:
-            self._bench.say("stop", "spindle lost in a thread")
+            self._bench.say("thread", "spindle lost in a thread")
             self._mover.retreat(block)
             self._retreating = True
             self._change(State.HOLDING)

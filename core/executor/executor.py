@@ -138,7 +138,7 @@ class Executor:
         for command in self._posted():
             self._guarded(partial(self._orders.obey, command))
         if heard.hold:
-            conductor.feed_hold("")
+            conductor.feed_hold("", "the button at the station")
         elif heard.trouble:
             conductor.feed_hold(heard.trouble)
         if heard.start:

@@ -51,7 +51,6 @@ class Orders:
         self._loading = Loading(bench, conductor)
         self._simple: dict[type[Command], Callable[[], None]] = {
             CycleStart: self._start,
-            FeedHold: self._hold,
             Reset: conductor.reset,
             EnableDrives: self._enable,
             JogStop: conductor.jogger.stop,
@@ -67,6 +66,8 @@ class Orders:
         match command:
             case LoadJob() | GiveProof() | Renew() | Prepare() | ConfirmStart() | PartsMade():
                 self._loading.obey(command)
+            case FeedHold(by=by):
+                self._conductor.feed_hold("", by)
             case SetSwitch(name=name, on=on):
                 self._switch(name, on)
             case FeedOverride(fraction=fraction):
@@ -87,9 +88,6 @@ class Orders:
             self._conductor.refuse("press both palm buttons")
         elif self._station.may_start(self._bench.now):
             self._conductor.start()
-
-    def _hold(self) -> None:
-        self._conductor.feed_hold("")
 
     def _enable(self) -> None:
         conductor = self._conductor

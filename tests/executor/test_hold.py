@@ -41,7 +41,7 @@ def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
     ramp = speed / (120 * INCH / 0.8)
     assert rig.clock.now() - pressed <= 0.03 + ramp + TICK + 1e-9
     assert max(seen) < STEP_OFF
-    assert rig.said("stop") == ["feed hold"]
+    assert rig.said("stop") == ["702 FEED HOLD: feed hold was pressed"]
 
 
 def test_the_stations_button_holds_too() -> None:

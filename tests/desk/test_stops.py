@@ -1,0 +1,91 @@
+"""What F7 lists: alarms, E-stops and stops, from the executor's events and from the store's log."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.desk.alarms import KEPT, StopLog, read_back
+from core.alarms import CATALOGUE, Code
+from core.executor.alarms import told, words
+from core.executor.snapshot import Event
+from core.store.rows import EventRow
+
+
+def event(code: Code, detail: str = "", line: int = 0) -> Event:
+    alarm = told(code, detail, line, 1.0)
+    kind = {"estop": "estop", "feed-hold": "stop"}.get(code, "alarm")
+    return Event(1.0, kind, words(alarm), line, alarm)
+
+
+def row(event: Event, at: str = "2020-02-03T04:05:06Z") -> EventRow:
+    return EventRow(at, event.kind, event.text, event.line)
+
+
+@pytest.fixture
+def log() -> StopLog:
+    return StopLog(lambda: "09:41:07")
+
+
+def test_the_newest_stands_on_top_with_its_time(log: StopLog) -> None:
+    log.hear(event("following", "X is 2.345 off its setpoint", 4))
+    log.hear(event("estop"))
+    assert [(entry.at, entry.alarm.number) for entry in log.entries] == [("09:41:07", 701), ("09:41:07", 102)]
+    assert log.entries[1].alarm.cause == "X is 2.345 off its setpoint"
+
+
+def test_what_is_no_stop_is_none_of_it(log: StopLog) -> None:
+    log.hear(Event(1.0, "switch", "single block on"))
+    assert log.entries == ()
+
+
+def test_it_keeps_as_many_as_it_says_and_no_more(log: StopLog) -> None:
+    for line in range(KEPT + 10):
+        log.hear(event("feed-hold", line=line))
+    assert len(log.entries) == KEPT
+    log.hear(event("estop"))
+    assert len(log.entries) == KEPT
+    assert log.entries[0].alarm.code == "estop"
+
+
+def test_the_days_before_come_behind_what_was_heard_since(log: StopLog) -> None:
+    log.hear(event("estop"))
+    log.recall([row(event("following", "Z is 1.2 off its setpoint", 7))])
+    today, before = log.entries
+    assert today.alarm.code == "estop"
+    assert before.at.startswith("2020-02-0")  # a day that is not today
+    alarm = before.alarm
+    assert (alarm.number, alarm.code, alarm.line) == (102, "following", 7)
+    assert alarm.cause == "Z is 1.2 off its setpoint"
+    assert alarm.remedy == CATALOGUE["following"].remedy
+
+
+@pytest.mark.parametrize("code", sorted(CATALOGUE))
+def test_every_alarm_comes_back_out_of_the_store(code: Code) -> None:
+    made = event(code, "what was seen: here", 3)
+    back = read_back(row(made))
+    assert back is not None
+    assert made.alarm is not None
+    assert (back.number, back.code, back.text, back.cause, back.line) == (
+        *(made.alarm.number, code, made.alarm.text),
+        *(made.alarm.cause, 3),
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        ("alarm", "FOLLOWING ERROR: X"),  # as older versions wrote it
+        ("stop", "feed hold"),
+        ("alarm", "999 NOTHING: of ours"),
+        ("part", "102 FOLLOWING ERROR: X"),
+        ("alarm", ""),
+    ],
+)
+def test_what_cannot_be_understood_is_left_out(log: StopLog, kind: str, text: str) -> None:
+    log.recall([EventRow("rubbish", kind, text, 0)])
+    assert log.entries == ()
+
+
+def test_a_time_that_is_none_is_shown_as_it_is(log: StopLog) -> None:
+    log.recall([row(event("estop"), at="yesterday")])
+    assert log.entries[0].at == "yesterday"

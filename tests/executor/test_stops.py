@@ -1,0 +1,122 @@
+"""Every stop has its reason in the snapshot and in the log: who held, what stood still, where."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from core.alarms import CATALOGUE, Reaction
+from core.executor.alarms import HOLDS, held_by
+from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
+from core.executor.snapshot import State
+from tests.executor.rig import Rig
+
+CUT = "G90G94F300\nM03S1000\nX0Z0\nG01F20\nX.5Z-.5\nM00\nX0Z0\nM01\nM30\n"
+ROOM = Path(__file__).parents[2] / "core" / "executor"
+
+
+def cutting() -> Rig:
+    rig = Rig()
+    rig.start(CUT)
+    rig.until_true(lambda shot: shot.velocity > 1.0 and not shot.rapid)
+    return rig
+
+
+def stop_of(rig: Rig) -> tuple[str, str]:
+    assert rig.shot.stop is not None
+    return rig.shot.stop.code, rig.shot.stop.cause
+
+
+def test_a_hold_says_who_pressed_it() -> None:
+    rig = cutting()
+    rig.post(FeedHold("Esc at the screen"))
+    rig.until(State.HOLD)
+    assert stop_of(rig) == ("feed-hold", "by Esc at the screen")
+    assert rig.said("stop") == ["702 FEED HOLD: by Esc at the screen"]
+    rig.post(CycleStart())
+    rig.until(State.RUN, State.WAIT)
+    assert rig.shot.stop is None
+
+
+def test_a_hold_by_the_station_says_so() -> None:
+    rig = cutting()
+    rig.sim.machine.press_hold()
+    rig.until(State.HOLD)
+    rig.sim.machine.release_hold()
+    assert stop_of(rig) == ("feed-hold", "by the button at the station")
+
+
+def test_an_estop_has_its_entry() -> None:
+    rig = cutting()
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    assert stop_of(rig)[0] == "estop"
+    assert len(rig.said("estop")) == 1
+    assert rig.said("estop")[0].startswith("701 E-STOP: ")
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    assert rig.shot.stop is None
+
+
+def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("optional_stop", True))
+    rig.start(CUT)
+    rig.until(State.PROGRAM_STOP)
+    assert stop_of(rig)[0] == "program-stop"
+    rig.post(SetSwitch("single_block", True))
+    rig.post(CycleStart())
+    rig.until(State.BLOCK_END)
+    assert stop_of(rig)[0] == "single-block"
+    rig.post(SetSwitch("single_block", False))
+    rig.run(0.5)
+    rig.post(CycleStart())
+    rig.until(State.PROGRAM_STOP)
+    assert stop_of(rig)[0] == "optional-stop"
+
+
+def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
+    rig = cutting()
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert [text[:9] for text in rig.said("stop")] == ["702 FEED ", "703 RESET"]
+    assert rig.shot.stop is None
+
+
+def test_a_silent_station_is_a_hold_of_its_own() -> None:
+    rig = cutting()
+    rig.sim.machine.station_silent()
+    rig.until(State.HOLD)
+    assert stop_of(rig)[0] == "station-silent"
+    assert rig.shot.waiting_for == "OPERATOR STATION SILENT"
+
+
+def test_a_hold_without_an_entry_tells_its_reason_all_the_same() -> None:
+    assert held_by("SOMETHING NEW", "") == ("held", "something new")
+    assert held_by("", "") == ("feed-hold", "")
+
+
+def reasons() -> list[str]:
+    """Every reason that the executor gives to a hold, and to a spindle that waits."""
+    calls = [
+        node
+        for path in ROOM.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+    ]
+    given = [arg for call in calls if call.func.attr in {"hold", "dropped"} for arg in call.args]  # type: ignore[attr-defined]
+    words = [part.value for arg in given for part in ast.walk(arg) if isinstance(part, ast.Constant)]
+    return [word for word in words if isinstance(word, str) and word.isupper()]
+
+
+def test_every_reason_of_a_hold_is_in_the_catalogue() -> None:
+    found = reasons()
+    assert len(found) >= 3
+    assert [reason for reason in found if reason not in HOLDS] == []
+
+
+def test_holds_are_found_by_their_words() -> None:
+    holds = [entry for entry in CATALOGUE.values() if entry.reaction is Reaction.HOLD]
+    assert len(HOLDS) == len(holds)
