@@ -14,7 +14,7 @@ from core.machine.model import Machine
 if TYPE_CHECKING:
     from core.interpreter.restart.rebuild import Rebuild
 
-_LAST = 0.2  # of the manual rapid: the leg that comes to the part
+_MODEST = 0.2  # of the manual rapid: legs within the part
 
 
 def rebuilt(job: Job, watch: Watch) -> Rebuild:
@@ -25,7 +25,7 @@ def rebuilt(job: Job, watch: Watch) -> Rebuild:
 
 
 def give_searchto(desk: Desk, machine: Machine) -> None:
-    """Give the desk its SEARCHTO; the way back goes at the manual rapid, its last leg slower."""
+    """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
     rapid = machine.manual_rapid
-    choices = Choices(rapid=rapid, last=_LAST * rapid)
+    choices = Choices(rapid=rapid, modest=_MODEST * rapid)
     desk.searchto = SearchDesk(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices)

@@ -8,6 +8,22 @@ from core.interpreter.actions import Action
 from core.interpreter.modal import Modal
 
 
+class Run(NamedTuple):
+    """The main program or a subroutine being executed. Positions are indices of lines, from 0.
+
+    ``back`` is where it goes on after a call, or the line that comes next; ``loops`` are the LS of each loop
+    under way, outermost first, and how often its LF will yet go back.
+    """
+
+    back: int
+    end: int
+    loops: tuple[tuple[int, int], ...] = ()
+
+
+FlowPlace = tuple[Run, ...]
+"""The main program, then each call in it that is under way; empty: the main program, and no loop."""
+
+
 class Checkpoint(NamedTuple):
     """Everything that a line inherits from the lines before it. mm, X a radius, degrees; program frame.
 
@@ -25,6 +41,7 @@ class Checkpoint(NamedTuple):
     title_rapid: int = 0  # line of a G00 (TITLE) after which no F has come
     coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
     blocks: int = 0  # elementary blocks before it
+    flow: FlowPlace = ()  # the loops and calls in which it stands
 
     @property
     def machine(self) -> tuple[float, float]:

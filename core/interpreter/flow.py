@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 
+from core.interpreter.begin import FlowPlace, Run
 from core.interpreter.count import DEEPEST_CALL
 from core.interpreter.log import refusal
 from core.interpreter.program import Program
@@ -17,7 +18,10 @@ class Flow:
 
     def __init__(self, program: Program) -> None:
         self.at = 0
-        self.end = program.structure.main_end
+        self.end = self._run_end = (
+            program.structure.main_end
+        )  # the latter of the subroutine under way, if any
+        self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
         self._structure = program.structure
         self._loops: list[list[int]] = []  # index of LS, passes left
         self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
@@ -29,14 +33,9 @@ class Flow:
         twin._calls = [(at, end, [loop[:] for loop in loops]) for at, end, loops in self._calls]
         return twin
 
-    @property
-    def place(self) -> tuple[object, ...]:
-        """The line and the ways back from it: equal where everything that comes is equal."""
-        calls = tuple((at, tuple(map(tuple, loops))) for at, _, loops in self._calls)
-        return self.at, tuple(map(tuple, self._loops)), calls
-
     def stop(self) -> None:
         """Nothing comes any more."""
+        self._stop = None
         self.end = self.at
 
     @property
@@ -45,8 +44,40 @@ class Flow:
         return bool(self._calls)
 
     def until(self, line: int) -> None:
-        """Let the main program end before this line, counted from 1."""
-        self.end = min(line - 1, self._structure.main_end)
+        """Stop before this line, counted from 1, in whatever pass or call it comes next."""
+        self._stop = line - 1
+        self._bound()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the line of ``until`` is what would be executed next."""
+        return self._stop is not None and self.at == self._stop
+
+    def pass_stop(self) -> None:
+        """Execute the line of ``until`` this time, and stop when it comes again."""
+        self.end = self._run_end
+
+    @property
+    def place(self) -> FlowPlace:
+        """The line, and the loops and calls under way, outermost first: equal where all to come is."""
+        runs = [
+            Run(back, end, tuple((start, left) for start, left in loops)) for back, end, loops in self._calls
+        ]
+        here = Run(self.at, self._run_end, tuple((start, left) for start, left in self._loops))
+        return (*runs, here)
+
+    def resume(self, line: int, place: FlowPlace) -> None:
+        """Be before this line, counted from 1, with these loops and calls under way."""
+        self.at = line - 1
+        if place:
+            self._calls = [(run.back, run.end, [list(each) for each in run.loops]) for run in place[:-1]]
+            self._loops = [list(each) for each in place[-1].loops]
+            self.end = self._run_end = place[-1].end
+
+    def _bound(self) -> None:
+        """The run goes to its end, or to where it has to stop before."""
+        stop = self._stop
+        self.end = stop if stop is not None and self.at <= stop < self._run_end else self._run_end
 
     def passes_left(self, start: int) -> int:
         """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
@@ -67,6 +98,7 @@ class Flow:
             self._loop_end(here)
         elif flow == "M99":
             self._return()
+        self._bound()
 
     def call(self, made: Statement) -> None:
         """Go to the subroutine that the line names."""
@@ -79,10 +111,11 @@ class Flow:
             raise ProgramError(
                 refusal(made.line, made.column("P"), "recursion", text, "A subroutine must not call itself.")
             )
-        self._calls.append((made.line, self.end, self._loops))
+        self._calls.append((made.line, self._run_end, self._loops))
         self._loops = []
         self.at = self._structure.subroutines[number] + 1
-        self.end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+        self._run_end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+        self._bound()
 
     def contour(self, made: Statement) -> range | None:
         """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
@@ -112,4 +145,4 @@ class Flow:
 
     def _return(self) -> None:
         if self._calls:
-            self.at, self.end, self._loops = self._calls.pop()
+            self.at, self._run_end, self._loops = self._calls.pop()

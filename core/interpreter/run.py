@@ -59,7 +59,7 @@ class Interpreter(Told):
         self._first, self._refused = check_opening(self._state, program)
         if setup.begin is not None:
             restore(self._state, setup.begin)
-            self._flow.at = setup.begin.line - 1
+            self._flow.resume(setup.begin.line, setup.begin.checkpoint.flow)
 
     @property
     def source_blocks(self) -> int:
@@ -92,7 +92,7 @@ class Interpreter(Told):
     @property
     def checkpoint(self) -> Checkpoint:
         """What the line inherits that would be executed next."""
-        return checkpoint_of(self._state)
+        return checkpoint_of(self._state)._replace(flow=self._flow.place)
 
     def _way(self) -> Iterator[Block]:
         begin = self._state.setup.begin
@@ -166,7 +166,7 @@ class Interpreter(Told):
             for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
                 yield from self._shaped(block)
                 if isinstance(block.action, ProgramEnd):
-                    self._flow.at = self._flow.end
+                    self._flow.stop()
 
     def _contour(self, made: Statement) -> list[Statement]:
         """The lines that describe the contour of a cycle; they are passed by even where it does not run."""
@@ -220,7 +220,7 @@ class Interpreter(Told):
         """Keep the error, and stand where its line would have ended, so that the next is judged well."""
         self._refuse(problem)
         if problem.diagnostic.code == "recursion" or self._log.full:
-            self._flow.at = self._flow.end
+            self._flow.stop()
         if isinstance(step, Statement):
             self._arrive(step)
 

@@ -6,22 +6,42 @@ from collections.abc import Iterator
 
 from core.interpreter.blocks import Block
 from core.interpreter.run import Interpreter
+from core.interpreter.setup import Setup
 
 
 class Walk(Interpreter):
-    """A pass that stops before any line of the main program, and goes on from there."""
+    """A pass that stops before any line, in each pass of a loop and each call, and goes on from there."""
 
     def before(self, line: int) -> Iterator[Block]:
-        """The blocks until this line is about to be executed for the first time, counted from 1.
+        """The blocks until this line is about to be executed, counted from 1; ``there`` tells whether it is.
 
         May be called again with a later line. At the first error they end; ``failed`` tells.
         """
         self._flow.until(line)
+        return self._until_stop()
+
+    def again(self, line: int) -> Iterator[Block]:
+        """The same line executed, and on until it is about to be executed once more."""
+        self._flow.until(line)
+        self._flow.pass_stop()
+        return self._until_stop()
+
+    def _until_stop(self) -> Iterator[Block]:
         for each in self._lines():
             if self._stopped:
                 return
             assert isinstance(each, Block)  # series are made for ``series`` alone
             yield each
+
+    @property
+    def there(self) -> bool:
+        """Whether the line that was asked for comes next."""
+        return self._flow.stopped and not self._stopped
+
+    @property
+    def setup(self) -> Setup:
+        """Its circumstances."""
+        return self._state.setup
 
     @property
     def next_line(self) -> int:

@@ -7,30 +7,34 @@ from dataclasses import replace
 import pytest
 
 from app.compose.proof import proof_of
-from core.executor.commands import CycleStart, LoadJob, Prepare, Reset
+from app.desk.searchto.leaving import leaving_of, now_of
+from app.desk.searchto.search import WAY_OUT
+from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.restart.approach import Choices, Now, begin_at
+from core.interpreter.restart.approach import Choices, begin_at
 from core.interpreter.restart.found import Found
 from core.interpreter.restart.rebuild import Rebuild
+from core.language.source import Source
 from core.proving.prove import prove
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig
 
 PART = (
-    "G90G94F300G72\nT1\nX1.2Z.2\nM03S900\nM08\nX.8\nG95F.005Z-.2\nZ-.4\nX1.2\nG94F300Z.2\nM09\nM05\n"
+    "G90G94F300G72\nT1\nX1.2Z.2\nM03S900\nM08\nX.8\nG95F.005Z-.2\nZ-.4\nG94F300X1.2\nZ.2\nM09\nM05\n"
     "X2Z2\nM30\n"
 )
 
 
-def restart_job(rig: Rig, line: int, choices: Choices | None = None) -> Job:
+def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int = 0) -> Job:
     """The job that goes on from a line of the loaded program at the machine as it stands."""
     whole = rig.executor._conductor.standing.job
     assert whole is not None
-    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line)
+    broken = now_of(rig.shot).broken
+    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line, number, broken)
     assert isinstance(found, Found)
     at = rig.shot.demand
-    begin = begin_at(found, Now(at, rig.shot.modal), choices or Choices())
+    begin = begin_at(found, now_of(rig.shot), choices or Choices())
     return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole)
 
 
@@ -82,7 +86,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
     x = [round((shot.demand[0] + 12.7) / INCH, 4) for shot in way]
     z = [round((shot.demand[1] + 50.8) / INCH, 4) for shot in way]
     assert max(x) == pytest.approx(0.6, abs=1e-3)  # X1.2 is where the program stood off the part
-    assert max(z) == pytest.approx(0.2, abs=1e-3)
+    assert max(z) == pytest.approx(2.0, abs=1e-3)  # Z2 is the farthest out that the program goes
     out = next(i for i, value in enumerate(z) if value > z[0] + 0.01)
     assert x[out] == pytest.approx(0.6, abs=1e-3)  # X is off the part before Z goes
     assert way[-1].demand[1] == pytest.approx(-50.8 - 0.2 * INCH, abs=0.01)  # Z stands before X goes in
@@ -94,12 +98,18 @@ def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
     assert rig.shot.actual[:2] == pytest.approx((-12.7 + INCH, -50.8 + 2 * INCH), abs=0.01)
 
 
-def test_the_last_leg_waits_for_the_spindle() -> None:
+def test_no_leg_is_fed_into_the_part_before_the_spindle_is_at_its_speed() -> None:
     rig = Rig()
     broken_off(rig)
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
     restart(rig, 8)
-    rig.until_true(lambda shot: shot.waiting_for == "AT SPEED")
-    assert rig.shot.actual[0] + 12.7 == pytest.approx(0.6 * INCH, abs=0.01)
+    rig.until_true(lambda shot: shot.block_text == "Z-.4")
+    fed = [shot for shot in seen if shot.block_text in {"X", "Z"} and not shot.rapid and shot.rpm_command]
+    assert fed
+    moving = [shot for shot in fed if shot.velocity > 0.5]
+    assert all(shot.rpm_actual == pytest.approx(900, rel=0.06) for shot in moving)
+    assert max(shot.velocity for shot in fed) <= 21.0 * INCH / 60
 
 
 def test_coolant_that_is_not_confirmed_stays_off() -> None:
@@ -235,7 +245,7 @@ def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
         rig.run(0.4)
         rig.post(CycleStart())
         rig.run(0.1)
-    assert texts[:3] == ["X", "Z", "M03S900"]
+    assert texts[:5] == ["X", "Z", "Z", "Z", "M03S900"]  # off the part, along it, clear of it; down again
     assert texts[-1] == "X.8"
 
 
@@ -249,3 +259,108 @@ def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
     rig.post(LoadJob(bare, Proof(bare.digest, (), tools=(1,))))
     prepare(rig, job)
     assert refused(rig) == "tool offset T1 has never been set"
+
+
+GROOVE = (
+    "G90G94F300G72\nT1\nX.9Z.2\nM03S900\nLS3\nG91Z-.3\nG90G95F.002X.7\nG04F.3\nG94F300X.9\nLF\n"
+    "Z.5\nM05\nM30\n"
+)
+
+
+def stopped_in_a_groove(rig: Rig, at_z: float = -0.4) -> None:
+    """The second of three grooves, Z-.4, is half cut when the E-stop is hit."""
+    rig.start(GROOVE, TOOLS)
+    rig.until_true(
+        lambda shot: (
+            shot.line == 7
+            and abs(shot.actual[1] + 50.8 - at_z * INCH) < 0.01
+            and shot.actual[0] + 12.7 < 0.4 * INCH
+        )
+    )
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+
+
+def way_out_alone(rig: Rig) -> None:
+    """What F4 of SEARCHTO prepares."""
+    rig.run(0.4)
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    out = leaving_of(cut, rig.shot, Choices())
+    assert not out.trouble, out.trouble
+    setup = replace(whole.setup, start=rig.shot.demand, begin=out.begin)
+    job = make_job(Source("WAY OUT", WAY_OUT), setup)
+    report = prove(job.reading, job.setup, rig.machine)
+    assert not report.errors, report.errors
+    rig.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+    rig.post(CycleStart())
+    assert not rig.shot.start_refused, rig.shot.start_refused
+
+
+def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
+    way_out_alone(rig)
+    rig.until(State.IDLE)
+    for shot in seen:
+        x, z = (shot.actual[0] + 12.7) / INCH, (shot.actual[1] + 50.8) / INCH
+        assert z == pytest.approx(-0.4, abs=2e-3) or x > 0.45 - 2e-3  # X.9 is where it came from
+        assert shot.rpm_command == 0.0
+    assert max(shot.velocity for shot in seen if shot.block_text == "X") <= 21.0 * INCH / 60
+    assert (rig.shot.actual[1] + 50.8) / INCH == pytest.approx(0.5, abs=2e-3)
+    assert rig.shot.interrupted_line == 7  # it is still to be finished
+
+
+def test_the_way_out_can_be_held_and_the_rest_of_it_asked_for_anew() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    way_out_alone(rig)
+    rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.41)
+    rig.post(FeedHold())
+    rig.until(State.HOLD)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    held = rig.shot.actual[0]
+    way_out_alone(rig)
+    rig.until_true(lambda shot: shot.actual[0] > held + 0.1)
+    rig.until(State.IDLE)
+    assert (rig.shot.actual[1] + 50.8) / INCH == pytest.approx(0.5, abs=2e-3)
+
+
+def test_a_loop_is_gone_on_with_in_the_pass_that_was_interrupted() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    restart(rig, 7)
+    seen: list[float] = []
+    rig.watch.append(
+        lambda shot: (
+            seen.append(round((shot.actual[1] + 50.8) / INCH, 2)) if shot.waiting_for == "DWELL" else None
+        )
+    )
+    rig.until(State.IDLE, limit=120.0)
+    assert sorted(set(seen)) == [-0.7, -0.4]  # the first groove is not cut again
+    assert rig.shot.parts == 1
+
+
+def test_a_turned_pass_that_is_fed_off_is_left_along_itself() -> None:
+    """Nothing tells whether the bar or a groove in its face stands around it."""
+    rig = Rig()
+    rig.start(PART.replace("G94F300X1.2\nZ.2", "X1.2\nG94F300Z.2"), TOOLS)
+    rig.until_true(lambda shot: shot.line == 8 and shot.actual[1] < -50.8 - 0.3 * INCH)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+    x = rig.shot.actual[0]
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
+    way_out_alone(rig)
+    rig.until(State.IDLE)
+    assert all(shot.actual[0] == pytest.approx(x, abs=0.01) for shot in seen if shot.actual[1] < -50.8)

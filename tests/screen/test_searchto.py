@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from PySide6.QtCore import QPointF
 
 from app.desk import pages
 from app.desk.searchto.search import SearchDesk
@@ -85,7 +86,8 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     page = found(operator)
     assert page.state.shown.title == "STATE AT LINE 18"
     assert page.starts.starts == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
-    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 X"]
+    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
+    assert [leg.rapid for leg in page.path.legs[1:]] == [False, False, True, True, True]
     assert operator.shot.rpm_command == 0.0
     assert "coolant" not in operator.shot.outputs  # nothing starts before it is confirmed and started
     confirmed(operator)
@@ -140,9 +142,9 @@ def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> No
     desk.session.settled(30.0)
     operator.drives_on()
     operator.key(Key.Key_F6)
-    operator.type("8")
+    operator.type("8P9")
     page = found(operator)
-    assert page.state.shown.why.startswith("Line 8 is inside the loop of lines")
+    assert page.state.shown.why == "Line 8 is run 5 times; there is no pass 9."
     before, after = page.state.shown.near
     assert (before.key, after.key) == ("F8", "F9")
     operator.key(Key.Key_F10)
@@ -182,16 +184,14 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     operator.type("38")
     page = found(operator)
     assert page.starts.starts[-1] == "COOLANT"
-    assert page.starts.choices == ("F4: INSIDE A BORE, Z LAST", "F5: WITH COOLANT")  # the boring bar
+    assert page.starts.choices == ("F5: WITH COOLANT",)
     operator.key(Key.Key_F5)
     page = page_of(operator)
     assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
+    assert page.starts.choices == ("F5: WITHOUT COOLANT",)
     assert page.starts.trouble == ""
-    operator.key(Key.Key_F4)
-    page = page_of(operator)
-    assert page.starts.choices == ("F4: OUTSIDE, X LAST", "F5: WITHOUT COOLANT")
     confirmed(operator)
-    operator.key(Key.Key_F4)  # another way is not the one that was proved
+    operator.key(Key.Key_F5)  # another start is not the one that was proved
     assert model_of(operator).stage is Stage.SHOWN
     assert operator.shot.prepared != ""
     operator.pause(0.05)
@@ -272,7 +272,9 @@ def test_escape_goes_back_step_by_step(operator: Operator) -> None:
     assert operator.frame.page is operator.frame.automatic
 
 
-def test_another_tool_at_the_part_has_to_be_jogged_clear_first(operator: Operator) -> None:
+def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_is_told(
+    operator: Operator,
+) -> None:
     operator.stage.start()
     operator.until(lambda: operator.shot.line == 18, 120.0)
     operator.pause(0.2)
@@ -280,19 +282,67 @@ def test_another_tool_at_the_part_has_to_be_jogged_clear_first(operator: Operato
     operator.key(Key.Key_F6)
     operator.type("41")
     page = found(operator)
-    assert page.starts.trouble.startswith("T1 STANDS AT THE PART AND THE LINE WORKS WITH T2")
-    operator.key(Key.Key_F10)
-    assert model_of(operator).stage is Stage.SHOWN
+    assert page.starts.trouble.startswith("LOOK: LINES 19 TO 39 ARE LEFT OUT AND THEIR METAL IS STILL")
+    assert page.path.legs[1].label == "1 X"  # T1 stands on the outside
+    assert model_of(operator).plan is not None
 
 
-def test_a_way_into_the_bar_is_told(operator: Operator) -> None:
-    loaded(operator)
+def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator) -> None:
+    desk = operator.stage.desk
+    desk.choose("pin")
+    desk.session.settled(30.0)
+    operator.drives_on()
     operator.key(Key.Key_F6)
-    operator.type("39")  # the boring bar, at the bottom of the bore: X.5, a radius of .25
+    operator.key(Key.Key_Right)
+    assert operator.prompt().startswith("ENTER FIRST; ONLY A LINE IN A LOOP")
+    operator.type("8P3")
     page = found(operator)
-    assert page.starts.trouble == ""
-    operator.key(Key.Key_F4)  # X last would be through the bar, which has been cut from X1.1
-    assert page_of(operator).starts.trouble.startswith("LOOK: 2 Z COMES IN AT R0.25000, AND")
+    assert page.state.shown.title == "STATE AT LINE 8, PASS 3 OF 5"
+    loop = page.state.shown.rows[0]
+    assert (loop.label, loop.wanted, loop.now) == ("PASS OF LINES 6-12", "3 OF 5", "—")
+    rows = {row.label: row.wanted for row in page.state.shown.rows}
+    assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
+    operator.key(Key.Key_Right)
+    model_of(operator).settle(10.0)
+    assert page_of(operator).state.shown.passes == "PASS 4 OF 5"
+    page.state.grab()  # draws, so that a finger finds its place
+    assert page.state.touch(QPointF(page.state.width() * 0.1, page.state.height() - 25))
+    model_of(operator).settle(10.0)
+    assert page_of(operator).state.shown.passes == "PASS 3 OF 5"
+    operator.key(Key.Key_Left, Key.Key_Left)
+    model_of(operator).settle(10.0)
+    operator.key(Key.Key_Left, Key.Key_Left)
+    model_of(operator).settle(10.0)
+    assert page_of(operator).state.shown.passes == "PASS 1 OF 5"
+
+
+def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> None:
+    operator.stage.start()
+    operator.until(lambda: operator.shot.line == 18, 120.0)
+    operator.pause(0.2)
+    estop_and_recover(operator)
+    operator.key(Key.Key_F6, Key.Key_F4)
+    model_of(operator).settle(10.0)
+    page = page_of(operator)
+    assert operator.prompt() == "LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT"
+    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z"]
+    assert page.starts.starts == ("NOTHING BUT THE SLIDES",)
+    assert page.starts.choices[0] == "THE TOOL LEAVES THE PART AT 20.00 in/min"
+    operator.palms()
+    assert operator.shot.state is State.IDLE  # not before it is confirmed
+    confirmed(operator)
+    assert operator.prompt().startswith("TO TAKE THE TOOL OUT OF THE PART PRESS BOTH PALM BUTTONS")
+    operator.palms()
+    assert operator.shot.state is State.RUN
+    assert operator.frame.title.page == pages.SEARCHTO
+    operator.until(lambda: operator.shot.state is State.IDLE, 60.0)
+    operator.pause(0.1)
+    assert operator.shot.rpm_command == 0.0
+    assert operator.shot.starts is Starts.RESTART
+    assert operator.shot.interrupted_line == 18
+    operator.key(Key.Key_F4)
+    model_of(operator).settle(10.0)
+    assert operator.prompt() == "T1 STANDS CLEAR OF THE PART ALREADY"
 
 
 def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
@@ -303,7 +353,9 @@ def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     operator.key(Key.Key_F6)
     page = found(operator)
     assert page.state.shown.title == "STATE AT LINE 38"
-    assert [leg.label for leg in page.path.legs] == ["", "1 Z"]  # the bar stands on X.5 already: out along Z
+    # The bar stands on X.5 already: out along Z, and in again; within the bore at a feed.
+    assert [leg.label for leg in page.path.legs] == ["", "1 Z", "2 Z", "3 Z"]
+    assert [leg.rapid for leg in page.path.legs[1:]] == [False, True, True]
     confirmed(operator)
     x = operator.shot.demand[0]
     operator.palms()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.desk.arithmetic import line_of
 
+_PASS = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
 LONGEST = 60  # characters of what is typed
 _QUOTE = '"'
 
@@ -23,7 +25,14 @@ class Cursor:
     @property
     def number(self) -> int | None:
         """The number of a line that was typed, a sum too; None when it is a text to look for."""
-        return line_of(self.text)
+        passes = _PASS.fullmatch(self.text)
+        return int(passes[1]) if passes else line_of(self.text)
+
+    @property
+    def visit(self) -> int:
+        """The pass that was typed behind the line, such as ``8P4``; 0: none was."""
+        passes = _PASS.fullmatch(self.text)
+        return int(passes[2]) if passes else 0
 
     @property
     def wanted(self) -> str:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 from app.desk.session import Proved, Watch
 from core.executor.job import Job
-from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.cut import Cut
+from core.interpreter.restart.found import BrokenOff, Found, NotGood
 
 if TYPE_CHECKING:
     from core.interpreter.restart.rebuild import Rebuild
 
-Answer = Found | NotGood | tuple[Job, Proved]
+Answer = Found | NotGood | Cut | tuple[Job, Proved]
 
 
 class AbandonedError(Exception):
@@ -35,10 +36,15 @@ class Finder:
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="loading-search")
     )
 
-    def find(self, job: Job, line: int) -> None:
-        """Have a line of this job's program found."""
+    def find(self, job: Job, line: int, visit: int = 0, broken: BrokenOff | None = None) -> None:
+        """Have a line of this job's program found; 0: in the pass that was interrupted, or in the first."""
         watch = self._watch()
-        self._future = self._pool.submit(self._find, job, line, watch)
+        self._future = self._pool.submit(self._with, job, watch, lambda one: one.find(line, visit, broken))
+
+    def cut(self, job: Job) -> None:
+        """Have all that this job's program cuts gone through."""
+        watch = self._watch()
+        self._future = self._pool.submit(self._with, job, watch, lambda one: one.cut)
 
     def check(self, job: Job) -> None:
         """Have a restart proved."""
@@ -68,7 +74,7 @@ class Finder:
         self.give_up()
         self._pool.shutdown(wait=True, cancel_futures=True)
 
-    def _find(self, job: Job, line: int, watch: Watch) -> Answer:
+    def _with(self, job: Job, watch: Watch, ask: Callable[[Rebuild], Answer]) -> Answer:
         """Work that is given up leaves nothing behind: a pass stopped within a line is worth nothing."""
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:
@@ -76,7 +82,7 @@ class Finder:
             rebuild.watch = watch
         else:
             rebuild = self.rebuild(job, watch)
-        answer = rebuild.find(line)
+        answer = ask(rebuild)
         self._rebuild = (job, rebuild)
         return answer
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
+from app.desk.searchto.leaving import Leaving
 from app.desk.searchto.plan import Plan
 from app.desk.searchto.stage import Stage
 from app.desk.session import Loaded, Phase, Proved, Session, Watch
@@ -17,6 +18,7 @@ from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts
 from core.executor.states import CYCLE
 from core.interpreter.restart.approach import Choices
+from core.interpreter.restart.cut import Cut
 from core.interpreter.restart.found import NotGood
 from core.language.dialect import Dialect
 
@@ -40,12 +42,17 @@ class SearchOpening:
     open: bool = False
     answer: NotGood | None = None
     plan: Plan | None = None
+    leaving: Leaving | None = None  # the way out alone
+    number: int = 0  # of the pass in which the line is meant; 0: the one that was interrupted, or the first
+    count: int = 0  # how often the run comes to the line, once that is known
     proved: Proved | None = None
     started: bool = False  # the restart was started: what is to be seen now is the Automatic page
     finder: Finder = field(init=False)
     _job: Job | None = None
     _of: Job | None = None  # the program's job that was searched
     _accepted: bool = False
+    _cut: Cut | None = None
+    _going_out: bool = False
 
     def __post_init__(self) -> None:
         self.finder = Finder(self.rebuild, self.session.workshop.prove)
@@ -64,6 +71,8 @@ class SearchOpening:
         lines = loaded.source.lines if loaded.source is not None else ()
         before = self.cursor.line if self.cursor.lines is lines else 1
         self.cursor.show(lines, snapshot.interrupted_line or before)
+        self.number = self.count = 0
+        self._going_out = False
         self._forget()
 
     def leave(self) -> None:
@@ -97,4 +106,5 @@ class SearchOpening:
     def _withdraw(self) -> None:
         self.finder.give_up()
         self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
+        self.leaving, self._cut = None, None
         self._job, self._accepted = None, False

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 from app.desk import formats
 from app.desk.drawing.approach import Leg as Drawn
-from app.desk.inforce import InForce, rows_of
+from app.desk.inforce import NONE, InForce, rows_of
+from app.desk.searchto.leaving import drawn, jog_words, now_of
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
-from core.interpreter.begin import Begin, Checkpoint, Leg, Step
-from core.interpreter.restart.approach import Choices, Now, begin_at, starting
-from core.interpreter.restart.found import Found
-
-_CLEAR = 0.5  # mm short of where the program was clear of the part
-_DEEP = 0.1  # mm below the bar's surface
+from core.interpreter.begin import Begin, Checkpoint, Step
+from core.interpreter.restart.approach import Choices, begin_at, standing, starting
+from core.interpreter.restart.found import Called, Found, LoopPass
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,22 +40,55 @@ class Plan:
     starts: tuple[str, ...]  # what will turn, flow or switch on
     legs: tuple[Drawn, ...]
     trouble: str = ""  # why it cannot be started as the machine stands
-    warning: str = ""  # where the way may meet the part
+    warning: str = ""  # what is left out
 
 
 def plan_of(found: Found, snapshot: Snapshot, choices: Choices) -> Plan:
     """The plan from where the machine stands now."""
-    now = Now(snapshot.demand, snapshot.modal)
+    now = now_of(snapshot)
     begin = begin_at(found, now, choices)
-    legs = _drawn(begin, snapshot)
+    modal = begin.checkpoint.modal
+    out = jog_words(*standing(found.cut, now)) if found.cut is not None else ""
     return Plan(
         found=found,
         begin=begin,
-        rows=_rows(begin.checkpoint, snapshot),
+        rows=(*_passes(found), *_rows(begin.checkpoint, snapshot)),
         starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
-        legs=legs,
-        warning="" if choices.inside else _through_stock(found, legs),
-        trouble=_collet(found.checkpoint, snapshot) or _tool(found, snapshot),
+        legs=drawn(begin.way, snapshot, (modal.tool_x, modal.tool_z)),
+        warning=_left_out(found),
+        trouble=_collet(found.checkpoint, snapshot) or out,
+    )
+
+
+def _passes(found: Found) -> tuple[Beside, ...]:
+    """The passes and calls in which the line is, beside those that were interrupted."""
+    was = found.was.within if found.was is not None else ()
+    return tuple(
+        _pass(each, was[number] if number < len(was) else None)
+        for number, each in enumerate(found.visit.within)
+    )
+
+
+def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> Beside:
+    if isinstance(wanted, Called):
+        label = tr("CALLED ON LINE")
+        now = str(was.line) if isinstance(was, Called) else NONE
+        return Beside(label, str(wanted.line), now)
+    label = tr("PASS OF LINES {first}-{last}").format(first=wanted.first, last=wanted.last)
+    same = isinstance(was, LoopPass) and was.first == wanted.first
+    return Beside(label, _of(wanted), _of(was) if same and isinstance(was, LoopPass) else NONE)
+
+
+def _of(loop: LoopPass) -> str:
+    return tr("{number} OF {count}").format(number=loop.number, count=loop.of)
+
+
+def _left_out(found: Found) -> str:
+    first, last = found.left_out
+    if not first:
+        return ""
+    return tr("LOOK: LINES {first} TO {last} ARE LEFT OUT AND THEIR METAL IS STILL THERE").format(
+        first=first, last=last
     )
 
 
@@ -99,39 +129,6 @@ def _words(step: Step, point: Checkpoint) -> str:
             return tr("{name} ON").format(name=name.upper())
         case _:
             return ""
-
-
-def _drawn(begin: Begin, snapshot: Snapshot) -> tuple[Drawn, ...]:
-    """The legs in the frame of the tool that the line works with."""
-    modal = begin.checkpoint.modal
-    x, z = snapshot.demand[0], snapshot.demand[1]
-    drawn = [Drawn(z - modal.tool_z, x - modal.tool_x)]
-    for step in begin.way:
-        if isinstance(step, Leg):
-            x, z = x if step.x is None else step.x, z if step.z is None else step.z
-            label = f"{len(drawn)} {step.text}"
-            drawn.append(Drawn(z - modal.tool_z, x - modal.tool_x, step.rapid, label))
-    return tuple(drawn)
-
-
-def _tool(found: Found, snapshot: Snapshot) -> str:
-    """Another tool than the one of the line may stand in the work, and nobody knows the way out of it."""
-    now, wanted = snapshot.modal.tool, found.checkpoint.modal.tool
-    if now == wanted or snapshot.demand[1] >= found.clear.z - _CLEAR:
-        return ""
-    words = tr("T{now} STANDS AT THE PART AND THE LINE WORKS WITH T{wanted}: JOG Z CLEAR OF THE PART FIRST")
-    return words.format(now=now, wanted=wanted)
-
-
-def _through_stock(found: Found, legs: tuple[Drawn, ...]) -> str:
-    """A leg towards the spindle at a smaller radius than the program has fed at; in a bore every one is."""
-    modal = found.checkpoint.modal
-    for start, end in pairwise(legs):
-        if end.z < start.z - _CLEAR and abs(end.x) < found.clear.stock - _DEEP:
-            at, bar = (formats.length(r, modal.metric) for r in (abs(end.x), found.clear.stock))
-            words = tr("LOOK: {leg} COMES IN AT R{at}, AND THE PROGRAM HAS CUT AT R{bar}")
-            return words.format(leg=end.label, at=at, bar=bar)
-    return ""
 
 
 def _collet(point: Checkpoint, snapshot: Snapshot) -> str:

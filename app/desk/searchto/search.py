@@ -6,6 +6,7 @@ from concurrent.futures import Future
 from dataclasses import replace
 
 from app.desk.searchto.finder import Answer
+from app.desk.searchto.leaving import leaving_of, now_of
 from app.desk.searchto.opening import SearchOpening
 from app.desk.searchto.plan import plan_of
 from app.desk.searchto.prompting import prompt
@@ -17,7 +18,11 @@ from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.interpreter.restart.approach import Choices
+from core.interpreter.restart.cut import Cut
 from core.interpreter.restart.found import Found, NotGood
+from core.language.source import Source
+
+WAY_OUT = "(WAY OUT OF THE PART)"
 
 
 class SearchDesk(SearchOpening):
@@ -30,13 +35,25 @@ class SearchDesk(SearchOpening):
     def move(self, lines: int) -> None:
         """The cursor so many lines on."""
         self.cursor.go(self.cursor.line + lines)
+        self.number = self.count = 0
         self._forget()
 
-    def go(self, line: int) -> None:
-        """To this line, and rebuild its state."""
+    def go(self, line: int, number: int = 0) -> None:
+        """To this line, in this pass, and rebuild its state."""
         if line:
             self.cursor.go(line)
             self.cursor.text = ""
+            self.number, self.count = number, 0
+            self.search()
+
+    def turn_pass(self, by: int) -> None:
+        """To a later or an earlier pass of a line that is run more than once."""
+        if self.count < 2:
+            self.say(tr("ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES"))
+            return
+        number = max(1, min(self.number + by, self.count))
+        if number != self.number:
+            self.number = number
             self.search()
 
     def typed(self, key: str) -> bool:
@@ -50,7 +67,7 @@ class SearchDesk(SearchOpening):
         """A number: that line. A text: the next line that holds it. Found, or nothing: the cursor's line."""
         number = self.cursor.number
         if number is not None:
-            self.go(number)
+            self.go(number, self.cursor.visit)
         elif self.cursor.text and not self.cursor.found:
             self.find(1)
         else:
@@ -74,7 +91,7 @@ class SearchDesk(SearchOpening):
         if job is None:
             return
         self.stage, self._of = Stage.SEARCHING, job
-        self.finder.find(job, line)
+        self.finder.find(job, line, self.number, now_of(self.snapshot()).broken)
 
     def nearest(self, way: int) -> None:
         """To the good line before or after one that was refused."""
@@ -83,17 +100,26 @@ class SearchDesk(SearchOpening):
 
     # --- deciding ------------------------------------------------------------------------------------
 
-    def turn_inside(self) -> None:
-        """Outside of the part, X in last, or inside a bore, Z in last."""
-        self._choose(replace(self.choices, inside=not self.choices.inside))
+    def way_out(self) -> None:
+        """Only the way out of the part, and no going on."""
+        job = self.session.now.job
+        self._forget()
+        self.clear()
+        if job is not None:
+            self.stage, self._of = Stage.SEARCHING, job
+            self.finder.cut(job)
 
     def turn_coolant(self) -> None:
         """Whether coolant starts, where the line had it on."""
         self._choose(replace(self.choices, coolant=not self.choices.coolant))
 
     def confirm(self) -> None:
-        """Yes to what will start and to the way: prove it, and make it ready for Cycle Start."""
+        """Yes to what will start and to the way, or to the way out: it is proved and ready for the palms."""
+        self.clear()
         snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
+        if self.stage is Stage.SHOWN and self._cut is not None and whole is not None:
+            self._confirm_out(snapshot, self._cut, whole)
+            return
         if self.stage is not Stage.SHOWN or plan is None or whole is None:
             self.say(tr("CHOOSE A GOOD LINE FIRST"))
             return
@@ -107,6 +133,18 @@ class SearchDesk(SearchOpening):
         setup = replace(whole.setup, start=snapshot.demand, begin=plan.begin)
         self.stage = Stage.PROVING
         self.finder.check(make_job(whole.source, setup, whole))
+
+    def _confirm_out(self, snapshot: Snapshot, cut: Cut, whole: Job) -> None:
+        if snapshot.state is not State.IDLE:
+            self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
+            return
+        out = self.leaving = leaving_of(cut, snapshot, self.choices)
+        if out.trouble:
+            self.say(out.trouble)
+            return
+        setup = replace(whole.setup, start=snapshot.demand, begin=out.begin)
+        self.stage = Stage.PROVING
+        self.finder.check(make_job(Source("WAY OUT", WAY_OUT), setup))
 
     def escape(self) -> bool:
         """One step back; False when there is none to go."""
@@ -132,6 +170,9 @@ class SearchDesk(SearchOpening):
         if self._of is not None and loaded.job is not self._of:
             self._of = None
             self._forget()
+        if self._going_out and snapshot.state not in CYCLE:
+            self._going_out = False
+            self._forget()
         if self.stage is Stage.READY:
             self._see_start(snapshot)
         future = self.finder.poll()
@@ -140,8 +181,12 @@ class SearchDesk(SearchOpening):
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
-        trouble = self.plan.trouble if self.plan is not None else ""
-        return "" if snapshot.state in CYCLE else prompt(self.stage, snapshot, trouble, start)
+        shown = self.leaving or self.plan
+        trouble = shown.trouble if shown is not None else ""
+        return "" if snapshot.state in CYCLE else self._prompt(snapshot, trouble, start)
+
+    def _prompt(self, snapshot: Snapshot, trouble: str, start: str) -> str:
+        return prompt(self.stage, snapshot, trouble, start, out=self.leaving is not None)
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
@@ -156,6 +201,10 @@ class SearchDesk(SearchOpening):
 
     def _see_start(self, snapshot: Snapshot) -> None:
         waits = self._job is not None and snapshot.prepared == self._job.digest
+        if self._accepted and not waits and self.leaving is not None:
+            self._going_out = snapshot.state in CYCLE
+            self._withdraw()
+            return
         if self._accepted and not waits:
             self.started = snapshot.starts is Starts.PROGRAM  # a restart that is begun counts once
             self.open = not self.started
@@ -170,8 +219,11 @@ class SearchDesk(SearchOpening):
             return
         answer = future.result()
         if isinstance(answer, Found):
-            self.choices = replace(self.choices, inside=answer.inside)
+            self.number, self.count = answer.visit.number, answer.visit.of
             self._show(answer)
+        elif isinstance(answer, Cut):
+            self.stage, self._cut = Stage.SHOWN, answer
+            self.leaving = leaving_of(answer, self.snapshot(), self.choices)
         elif isinstance(answer, NotGood):
             self.stage, self.answer = Stage.REFUSED, answer
         else:
@@ -188,4 +240,5 @@ class SearchDesk(SearchOpening):
             self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
             return
         self.stage, self._job, self._accepted = Stage.READY, job, False
-        self.post(Prepare(Starts.RESTART, job, proved.proof))
+        starts = Starts.RESTART if self.leaving is None else Starts.LINE
+        self.post(Prepare(starts, job, proved.proof))

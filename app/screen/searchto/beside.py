@@ -16,6 +16,8 @@ from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.panel import Panel
 
 DIFFERS = "≠"
+PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"
+_PASSES = 4.4  # units: what a finger hits
 _LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the sign stands
 
 
@@ -31,12 +33,13 @@ class Near:
 
 @dataclass(frozen=True, slots=True)
 class StateShown:
-    """Either the rows of a good line, or why a line is not good and which are."""
+    """Either the rows of a good line, or why a line is not good and which ones are."""
 
     title: str = ""
     rows: tuple[Beside, ...] = ()
     why: str = ""
     near: tuple[Near, ...] = ()
+    passes: str = ""  # which pass of how many, of a line that is run more than once
 
 
 class StatePanel(Panel):
@@ -59,10 +62,30 @@ class StatePanel(Panel):
         if shown.why:
             self._refusal(painter)
         elif shown.rows:
-            self._table(painter)
+            room = self.inside()
+            if shown.passes:
+                self._passes(painter, room.adjusted(0, room.height() - _PASSES * self.look.u, 0, 0))
+                room.adjust(0, 0, 0, -(_PASSES + 0.6) * self.look.u)
+            self._table(painter, room)
 
-    def _table(self, painter: QPainter) -> None:
-        u, room = self.look.u, self.inside()
+    def _passes(self, painter: QPainter, room: QRectF) -> None:
+        """Which pass it is, and a place for a finger on either side of it."""
+        look, wide = self.look, room.height() * 2
+        sides = ((room.x(), "◀", PASS_BEFORE), (room.right() - wide, "▶", PASS_AFTER))
+        for left, sign, key in sides:
+            box = QRectF(left, room.y(), wide, room.height())
+            painter.fillRect(box, look.colour("key"))
+            painter.setPen(look.colour("accent"))
+            painter.setFont(look.font(2.4, bold=True))
+            put(painter, box, CENTRE, sign)
+            self.place(box, partial(self._press, key))
+        words = room.adjusted(wide, 0, -wide, 0)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(self.shown.passes, 2.0, words.width(), bold=True))
+        put(painter, words, CENTRE, self.shown.passes)
+
+    def _table(self, painter: QPainter, room: QRectF) -> None:
+        u = self.look.u
         high = min(2.7 * u, room.height() / (len(self.shown.rows) + 1))
         size = min(1.9, high / u * 0.78)
         head = Beside("", tr("AT THE LINE"), tr("NOW"))

@@ -8,6 +8,8 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import pages
+from app.desk.searchto.leaving import Leaving
+from app.desk.searchto.plan import Plan
 from app.desk.searchto.search import SearchDesk
 from app.desk.searchto.stage import Stage
 from app.desk.session import Loaded
@@ -18,7 +20,7 @@ from app.screen.pages import Doings, Host, Page
 from app.screen.path.aspects import Tip, tip_of
 from app.screen.pathview import PathView
 from app.screen.searchto.asked import AskedPanel
-from app.screen.searchto.beside import Near, StatePanel, StateShown
+from app.screen.searchto.beside import PASS_AFTER, PASS_BEFORE, Near, StatePanel, StateShown
 from app.screen.searchto.starts import StartsPanel
 from core.executor.snapshot import Snapshot
 
@@ -33,7 +35,7 @@ class SearchPage(Page):
         "MENU",
         "NEXT",
         "PREVIOUS",
-        "IN/OUT",
+        "WAY OUT",
         "COOLANT",
         "SEARCH",
         "ALARMS",
@@ -59,12 +61,14 @@ class SearchPage(Page):
         return {
             "F2": partial(model.find, 1),
             "F3": partial(model.find, -1),
-            "F4": model.turn_inside,
+            "F4": model.way_out,
             "F5": model.turn_coolant,
             "F6": model.search,
             "F8": partial(model.nearest, -1),
             "F9": partial(model.nearest, 1),
             "F10": model.confirm,
+            PASS_BEFORE: partial(model.turn_pass, -1),
+            PASS_AFTER: partial(model.turn_pass, 1),
             "Zoom in": partial(self.path.zoom, 1),
             "Zoom out": partial(self.path.zoom, -1),
         }
@@ -78,6 +82,9 @@ class SearchPage(Page):
         steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
         if key in steps:
             self.model.move(steps[key])
+            return True
+        if key in {"Left", "Right"}:
+            self.model.turn_pass(-1 if key == "Left" else 1)
             return True
         if key == "Enter":
             self.model.enter()
@@ -133,7 +140,8 @@ class SearchPage(Page):
 
     def _tip(self, snapshot: Snapshot) -> Tip:
         """With a plan, the tip of the tool that the line works with: the way begins there."""
-        legs = self.model.plan.legs if self.model.plan is not None else ()
+        shown = self.model.leaving or self.model.plan
+        legs = shown.legs if shown is not None else ()
         return Tip(0, legs[0].z, legs[0].x) if legs else tip_of(snapshot)._replace(block=0)
 
     def _shown(self) -> StateShown:
@@ -144,11 +152,20 @@ class SearchPage(Page):
             near = (("F8", tr("GOOD BEFORE"), answer.before), ("F9", tr("GOOD AFTER"), answer.after))
             return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
         if plan is not None:
-            return StateShown(tr("STATE AT LINE {line}").format(line=plan.found.line), plan.rows)
+            return self._state(plan)
+        if model.leaving is not None:
+            return StateShown(tr("THE WAY OUT OF THE PART"), (), model.leaving.trouble)
         if model.stage is Stage.SEARCHING:
             words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
             return StateShown(f"{words}  ·  {model.finder.reached}")
         return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
+
+    def _state(self, plan: Plan) -> StateShown:
+        title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit
+        if visit.of < 2:
+            return StateShown(title, plan.rows)
+        words = tr("PASS {number} OF {count}").format(number=visit.number, count=visit.of)
+        return StateShown(f"{title}, {words}", plan.rows, passes=words)
 
     def _near(self, key: str, label: str, line: int) -> Near:
         if not line:
@@ -158,17 +175,28 @@ class SearchPage(Page):
 
     def _show_plan(self) -> None:
         model, plan = self.model, self.model.plan
+        if model.leaving is not None:
+            self._show_leaving(model.leaving)
+            return
         if plan is None:
             self.path.show_approach(None)
             self.starts.show_starts((), (), "", confirmed=False)
             return
         self.path.show_approach(plan.legs)
-        inside = tr("F4: INSIDE A BORE, Z LAST") if model.choices.inside else tr("F4: OUTSIDE, X LAST")
-        choices = [inside]
+        choices: list[str] = []
         if plan.found.checkpoint.modal.coolant:
             choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
         trouble = plan.trouble or plan.warning
-        self.starts.show_starts(plan.starts, choices, trouble, confirmed=model.stage is Stage.READY)
+        starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
+        self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is Stage.READY)
+
+    def _show_leaving(self, leaving: Leaving) -> None:
+        self.path.show_approach(leaving.legs)
+        told = tr("THE TOOL LEAVES THE PART AT {feed}").format(feed=leaving.feed)
+        choices = () if leaving.trouble else (told, tr("H HOLDS IT ON ITS WAY"))
+        ready = self.model.stage is Stage.READY
+        only = () if leaving.trouble else (tr("NOTHING BUT THE SLIDES"),)
+        self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Program, state, and the way over what will start."""

@@ -41,8 +41,6 @@ class StartsPanel(Panel):
         self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
         look, u, room = self.look, self.look.u, self.inside()
         lines = [(text, "text", True) for text in self.starts]
-        if self.choices and not self.starts:
-            lines.append((tr("NOTHING BUT THE SLIDES"), "text", True))
         lines += [(text, "soft", False) for text in self.choices]
         lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
         high = min(ROW * u, room.height() / max(1, len(lines)))

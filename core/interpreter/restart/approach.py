@@ -1,41 +1,106 @@
 """The way from where the slides stand to a line in the middle of a program, in the order of a lathe.
 
-Outside: X off the part, Z out, X over the start, spindle and coolant, Z in, X in last. Inside a bore: Z out,
-X, spindle and coolant, Z in last. How far is off the part is told by the program, which has been there.
+Out of the work by the tool and the block that were interrupted; Z clear of the part, X over the start,
+spindle and coolant; then into the work by the line. Rapids only where no metal can be.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from math import copysign
+from dataclasses import dataclass, replace
+from math import hypot, inf, isfinite
 
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.begin import Begin, Do, Leg, Step, Turn
 from core.interpreter.modal import Modal
-from core.interpreter.restart.found import Found
+from core.interpreter.restart.cut import Cut
+from core.interpreter.restart.found import BrokenOff, Found
+from core.interpreter.restart.retract import NEAR, Hop, Lies, Place, Retract, off_line, off_row, retract
 
 _SAME = 1e-6  # mm
-_INCH = 25.4
 _TURN = 360.0
+_HELD = 0.5  # degrees that C may have turned under a tool that stands in a hole
+_INCH = 25.4
+_LATER = 400  # rows behind the block that was kept in which a control that was cut off may have stood
 
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """The machine as it stands: machine point (x, z, c) and modal state, mm and degrees."""
+    """The machine as it stands: machine point (x, z, c), mm and degrees, and modal state; what broke off."""
 
     at: tuple[float, ...]
     modal: Modal
+    broken: BrokenOff | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What the operator decides. ``rapid`` and ``last``: mm/s of the legs and of the last one."""
+    """What the operator decides. ``rapid`` and ``modest``: mm/s of legs outside and inside of the work."""
 
-    inside: bool = False
     coolant: bool = True
     rapid: float = 100 * _INCH / 60
-    last: float = 20 * _INCH / 60
+    modest: float = 20 * _INCH / 60
+
+
+def standing(cut: Cut, now: Now) -> tuple[Retract, int]:
+    """How the tool that stands in the work leaves it, and the number of that tool."""
+    broken = now.broken
+    if broken is None or broken.tool not in cut.offsets:
+        return _unknown(cut, now), now.modal.tool
+    tool = broken.tool
+    x, z = _tip(cut, now.at, tool)
+    place = _stale(cut, broken, x, z) if broken.stale else None
+    if place is not None:
+        return _held(retract(cut, place, max(broken.done, place.block)), now), tool
+    if hypot(now.at[0] - broken.at[0], now.at[1] - broken.at[1]) <= NEAR:
+        return _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now), tool
+    if cut.outside(x, z, tool):
+        return Retract(Lies.CLEAR), tool
+    was = retract(cut, Place(broken.block, tool, *_tip(cut, broken.at, tool)), broken.done)
+    return _on_the_way(was, _tip(cut, broken.at, tool), x, z), tool
+
+
+def _tip(cut: Cut, at: tuple[float, ...], tool: int) -> tuple[float, float]:
+    off_x, off_z = cut.offsets[tool]
+    return at[0] - off_x, at[1] - off_z
+
+
+def _unknown(cut: Cut, now: Now) -> Retract:
+    """Nothing was interrupted that is known: every tool of the program must stand where no metal can be."""
+    clear = now.at[1] >= cut.clear_z - _SAME or all(
+        cut.outside(*_tip(cut, now.at, tool), tool) for tool in cut.offsets
+    )
+    return Retract(Lies.CLEAR if clear else Lies.UNKNOWN)
+
+
+def _stale(cut: Cut, broken: BrokenOff, x: float, z: float) -> Place | None:
+    """The first row from the one that was kept on at which the tool stands now; None: at none of them."""
+    row = max(0, cut.row_behind(broken.block))
+    for each in range(row, min(row + _LATER, len(cut))):
+        if int(cut.tool[each]) != broken.tool:
+            break
+        if off_row(cut, each, x, z) <= NEAR:
+            return Place(int(cut.n[each]), broken.tool, x, z)
+    return None
+
+
+def _held(way: Retract, now: Now) -> Retract:
+    """A mill in its hole leaves only while C stands as it stood."""
+    broken = now.broken
+    if way.lies is not Lies.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
+        return way
+    turned = abs(now.at[2] - broken.at[2]) % _TURN
+    return way if min(turned, _TURN - turned) <= _HELD else replace(way, hops=())
+
+
+def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
+    """The rest of the way out of a tool that has been moved along it already."""
+    at = Hop(*start)
+    for number, hop in enumerate(was.hops):
+        if off_line(at.x, at.z, hop.x, hop.z, x, z) <= NEAR:
+            return replace(was, hops=was.hops[number:])
+        at = hop
+    return Retract(Lies.UNKNOWN, away=was.away)
 
 
 def begin_at(found: Found, now: Now, choices: Choices) -> Begin:
@@ -49,8 +114,46 @@ def begin_at(found: Found, now: Now, choices: Choices) -> Begin:
 
 def way(found: Found, now: Now, choices: Choices) -> tuple[Step, ...]:
     """Everything between the standstill of now and the first block of the line."""
-    return (*_stops(found.checkpoint.modal, now.modal), *_out(found, now, choices),
-            *_starts(found, now, choices), *_in(found, now, choices))  # fmt: skip
+    out = way_out(found.cut, now, choices) if found.cut is not None else ()
+    at = _end(out, now.at)
+    return (*_stops(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
+            *_starts(found, now, choices), *_in(found, at, choices))  # fmt: skip
+
+
+def way_out(cut: Cut, now: Now, choices: Choices) -> tuple[Leg, ...]:
+    """Out of the work, and Z clear of the part; nothing where no way is sure."""
+    found, tool = standing(cut, now)
+    if not found.known:
+        return ()
+    x, z = now.at[0], now.at[1]
+    legs: list[Leg] = []
+    if found.hops:
+        off_x, off_z = cut.offsets[tool]
+        for hop in found.hops:
+            to_x, to_z = hop.x + off_x, hop.z + off_z
+            free = cut.outside(x - off_x, z - off_z, tool) and cut.outside(hop.x, hop.z, tool)
+            legs += _leg(
+                x,
+                z,
+                to_x,
+                to_z,
+                choices,
+                rapid=free and not _through_front(cut, x - off_x, z - off_z, hop, tool),
+            )
+            x, z = to_x, to_z
+    return (*legs, *_leg(x, z, x, max(z, clear_of(cut)), choices, rapid=True))
+
+
+def clear_of(cut: Cut) -> float:
+    """Machine Z that is clear of the part, mm: the farthest out that the program goes."""
+    return cut.clear_z if isfinite(cut.clear_z) else -inf
+
+
+def _through_front(cut: Cut, x: float, z: float, hop: Hop, tool: int) -> bool:
+    """Whether a straight way between two free places goes through the corner of the bar."""
+    over = min(abs(x), abs(hop.x)) >= cut.over - _SAME and x * hop.x > 0.0
+    before = min(z, hop.z) >= cut.front(tool) - _SAME
+    return not (over or before)
 
 
 def starting(found: Found, now: Now, choices: Choices) -> tuple[Step, ...]:
@@ -83,55 +186,52 @@ def _starts(found: Found, now: Now, choices: Choices) -> Iterator[Step]:
         yield Do(Coolant(True), "M08")
 
 
-def _out(found: Found, now: Now, choices: Choices) -> Iterator[Leg]:
-    """Off the part and over the start; the legs that are no way at all are left out."""
-    x, z = now.at[0], now.at[1]
-    goal_x, _ = found.checkpoint.machine
-    clear_z = max(found.clear.z, z, found.checkpoint.machine[1])
-    if not choices.inside:
-        out = _clear_x(found, now.modal.tool, now.modal.tool_x, x)
-        yield from _leg(choices.rapid, "X", x=x, to_x=out)
-        x = out
-    yield from _leg(choices.rapid, "Z", z=z, to_z=clear_z)
-    over = goal_x if choices.inside else _over(found)
-    yield from _leg(choices.rapid, "X", x=x, to_x=over)
+def _over(found: Found, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+    """Z clear of the part where the start is farther out, then X over the first place before the work."""
+    x, z = _before(found)[0]
+    clear = max(at[1], z)
+    yield from _leg(at[0], at[1], at[0], clear, choices, rapid=True)
+    yield from _leg(at[0], clear, x, clear, choices, rapid=True)
 
 
-def _in(found: Found, now: Now, choices: Choices) -> Iterator[Leg]:
-    goal_x, goal_z = found.checkpoint.machine
-    clear_z = max(found.clear.z, now.at[1], goal_z)
-    if choices.inside:
-        yield from _leg(choices.last, "Z", z=clear_z, to_z=goal_z, rapid=False)
-        return
-    yield from _leg(choices.rapid, "Z", z=clear_z, to_z=goal_z)
-    yield from _leg(choices.last, "X", x=_over(found), to_x=goal_x, rapid=False)
+def _in(found: Found, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+    """Down to where the work begins by rapid, and into it by the way that leads out of it."""
+    places = _before(found)
+    x, z = places[0][0], max(at[1], places[0][1])
+    cut, row_tool = found.cut, found.checkpoint.modal.tool
+    for number, (to_x, to_z) in enumerate(places):
+        free = number == 0
+        if cut is not None and row_tool in cut.offsets and not free:
+            off_x, off_z = cut.offsets[row_tool]
+            hop = Hop(to_x - off_x, to_z - off_z)
+            free = cut.outside(x - off_x, z - off_z, row_tool) and cut.outside(hop.x, hop.z, row_tool)
+            free = free and not _through_front(cut, x - off_x, z - off_z, hop, row_tool)
+        yield from _leg(x, z, to_x, to_z, choices, rapid=free)
+        x, z = to_x, to_z
 
 
-def _over(found: Found) -> float:
-    """Machine X at which the tool of the line stands off the part."""
+def _before(found: Found) -> list[tuple[float, float]]:
+    """Machine points from the one before the work to that of the line."""
+    goal = found.checkpoint.machine
     modal = found.checkpoint.modal
-    return _clear_x(found, modal.tool, modal.tool_x, found.checkpoint.machine[0])
+    hops = [(hop.x + modal.tool_x, hop.z + modal.tool_z) for hop in found.back.hops]
+    return [*reversed(hops), goal]
 
 
-def _clear_x(found: Found, tool: int, tool_x: float, x: float) -> float:
-    """The machine X farthest off the centre line, on the side of ``x``, where this tool has been."""
-    low, high = found.clear.x.get(tool, (x, x))
-    return max(high, x) if copysign(1.0, x - tool_x + _SAME) > 0.0 else min(low, x)
+def _end(legs: tuple[Leg, ...], at: tuple[float, ...]) -> tuple[float, float]:
+    x, z = at[0], at[1]
+    for leg in legs:
+        x, z = x if leg.x is None else leg.x, z if leg.z is None else leg.z
+    return x, z
 
 
-def _leg(
-    feed: float,
-    text: str,
-    *,
-    x: float = 0.0,
-    to_x: float | None = None,
-    z: float = 0.0,
-    to_z: float | None = None,
-    rapid: bool = True,
-) -> Iterator[Leg]:
-    way_x, way_z = 0.0 if to_x is None else to_x - x, 0.0 if to_z is None else to_z - z
-    if abs(way_x) > _SAME or abs(way_z) > _SAME:
-        yield Leg(to_x, to_z, feed, rapid, text)
+def _leg(x: float, z: float, to_x: float, to_z: float, choices: Choices, *, rapid: bool) -> list[Leg]:
+    along_x, along_z = abs(to_x - x) > _SAME, abs(to_z - z) > _SAME
+    if not (along_x or along_z):
+        return []
+    text = ("X" if along_x else "") + ("Z" if along_z else "")
+    feed = choices.rapid if rapid else choices.modest
+    return [Leg(to_x if along_x else None, to_z if along_z else None, feed, rapid, text)]
 
 
 def _near(angle: float, now: float) -> float:

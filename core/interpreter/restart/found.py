@@ -2,33 +2,70 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from core.interpreter.begin import Checkpoint
+from core.interpreter.restart.cut import Cut
+from core.interpreter.restart.retract import Lies, Retract
 
 
-@dataclass(frozen=True, slots=True)
-class Clear:
-    """How far off the part the program itself has been, machine mm; ``x`` by tool: least and greatest.
+class LoopPass(NamedTuple):
+    """One pass of a loop; ``first`` and ``last`` are its lines, LS and LF."""
 
-    ``stock`` is the largest radius, mm from the centre line, at which it has fed: the bar is hardly larger.
+    first: int
+    last: int
+    number: int
+    of: int
+
+
+class Called(NamedTuple):
+    """A call under way: the line that calls, and the number of the subroutine."""
+
+    line: int
+    subroutine: int
+
+
+class Visit(NamedTuple):
+    """The ``number``-th time, of ``of`` in the whole run, that the program comes to a line, and in what."""
+
+    number: int = 1
+    of: int = 1
+    within: tuple[LoopPass | Called, ...] = ()
+
+
+class BrokenOff(NamedTuple):
+    """Where the program was interrupted: elementary block, machine point, mm; blocks begun without a gap.
+
+    ``stale``: the control was cut off, so that the tool may have gone on for a second behind that.
     """
 
-    z: float = -math.inf
-    stock: float = 0.0
-    x: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    block: int
+    tool: int
+    at: tuple[float, ...]
+    begun: int
+    stale: bool = False
+
+    @property
+    def done(self) -> int:
+        """Up to this block the material is known to be cut."""
+        return max(self.begun, self.block) if self.block <= self.begun + 1 else self.begun
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A good line, what it inherits, and how far off the part the program has been by then."""
+    """A good line in one of its passes, what it inherits, and the way back from its place out of the work.
+
+    ``left_out``: lines that were not cut and would be left out, as (first, last); (0, 0): none.
+    """
 
     line: int
     checkpoint: Checkpoint
-    clear: Clear
-    inside: bool = False  # the tool works in a bore, so that the way in is along Z
+    back: Retract = field(default_factory=lambda: Retract(Lies.CLEAR))
+    cut: Cut | None = None
+    visit: Visit = field(default_factory=Visit)
+    was: Visit | None = None  # the pass that was interrupted, where the line is run more than once
+    left_out: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import attrgetter
 from typing import NamedTuple
 
 from core.interpreter.program import Program
@@ -26,7 +27,10 @@ class Lines:
     def __init__(self, program: Program) -> None:
         self._steps = program.steps
         self.count = len(program.steps)
-        self.stretches = sorted((*_structured(program), *_open(program.steps)), key=lambda each: each.first)
+        order = attrgetter("first")
+        self.stretches = sorted((*_structured(program), *_open(program.steps)), key=order)
+        self.repeated = sorted(_repeated(program), key=order)
+        self._apart = sorted((*self.stretches, *self.repeated), key=order)
 
     def why_not(self, line: int) -> str:
         """Why no program can go on from this line; empty when its text has nothing against it."""
@@ -37,18 +41,22 @@ class Lines:
                 return f"Line {line} {stretch.why}"
         return "" if self._steps[line - 1] is not None else f"Line {line} is empty."
 
+    def repeats(self, line: int) -> bool:
+        """Whether the run may come to it more than once, or never: within a loop or a subroutine."""
+        return any(each.first <= line <= each.last for each in self.repeated)
+
     def before(self, line: int) -> int:
-        """The nearest line above it that is good by its text; 0 when there is none."""
+        """The nearest line above it, loops and subroutines apart, that is good by its text; 0: none is."""
         return self._nearest(line, -1)
 
     def after(self, line: int) -> int:
-        """The nearest line below it that is good by its text; 0 when there is none."""
+        """The nearest line below it, loops and subroutines apart, that is good by its text; 0: none is."""
         return self._nearest(line, 1)
 
     def _nearest(self, line: int, way: int) -> int:
         at = min(line + way, self.count) if way < 0 else line + way
         while 1 <= at <= self.count:
-            stretch = next((each for each in self.stretches if each.first <= at <= each.last), None)
+            stretch = next((each for each in self._apart if each.first <= at <= each.last), None)
             if stretch is not None:
                 at = stretch.last + 1 if way > 0 else stretch.first - 1
             elif self._steps[at - 1] is None:
@@ -59,17 +67,31 @@ class Lines:
 
 
 def _structured(program: Program) -> Iterator[Stretch]:
-    """Loops, subroutines, contours: their first lines are good, what is inside is not."""
+    """Contours, and what no call can reach: their first lines are good, what is inside is not."""
     structure = program.structure
-    for start, end in structure.loop_ends.items():
-        yield Stretch(start + 2, end + 1, f"is inside the loop of lines {start + 1} to {end + 1}.")
     for start, end in structure.contours.items():
         yield Stretch(start + 2, end + 1, f"describes the contour of line {start + 1}.")
+    spans = sorted(_subroutines(program))
+    at = structure.main_end + 1
+    for start, end, _number in (*spans, (len(program.steps) + 1, 0, 0)):
+        if at < start:
+            yield Stretch(at, start - 1, "stands after the end of the program.")
+        at = max(at, end + 1)
+
+
+def _repeated(program: Program) -> Iterator[Stretch]:
+    """Loops behind their LS, and subroutines."""
+    for start, end in program.structure.loop_ends.items():
+        yield Stretch(start + 2, end + 1, f"is inside the loop of lines {start + 1} to {end + 1}.")
+    for start, end, number in _subroutines(program):
+        yield Stretch(start, end, f"is in subroutine {number}.")
+
+
+def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
+    """First line, last line and number of each."""
+    structure = program.structure
     for number, start in structure.subroutines.items():
-        end = structure.subroutine_ends.get(number, len(program.steps) - 1)
-        yield Stretch(start + 1, end + 1, f"is in subroutine {number}: the line that calls it may be good.")
-    if structure.main_end < len(program.steps):
-        yield Stretch(structure.main_end + 1, len(program.steps), "stands after the end of the program.")
+        yield start + 1, structure.subroutine_ends.get(number, len(program.steps) - 1) + 1, number
 
 
 def _open(steps: Steps) -> Iterator[Stretch]:

@@ -6,18 +6,19 @@ and with other answers, goes beside the first until both agree; while they diffe
 
 from __future__ import annotations
 
-import math
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import replace
 
 from core.interpreter.actions import AskInput, ProgramEnd
-from core.interpreter.begin import Begin
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.begin import Begin, Checkpoint
 from core.interpreter.program import Program, read_program
-from core.interpreter.restart.found import Clear, Found, NotGood
+from core.interpreter.restart.cut import Cut, cut_of
+from core.interpreter.restart.found import BrokenOff, Found, NotGood, Visit
 from core.interpreter.restart.good import Lines
-from core.interpreter.restart.side import works_inside
+from core.interpreter.restart.retract import Lies, Place, Retract, retract
+from core.interpreter.restart.visits import Visits, visits_of
+from core.interpreter.run import Interpreter
 from core.interpreter.setup import Setup
 from core.interpreter.statement import Statement
 from core.interpreter.walk import Walk
@@ -44,33 +45,109 @@ class Rebuild:
         self._program: Program = read_program(source, setup.strict)
         self.lines = Lines(self._program)
         self._asks = _asks(self._program, self.lines)
+        self._cut: Cut | None = None
+        self._visits: tuple[int, Visits] | None = None
         self._begin_anew()
 
-    def find(self, line: int) -> Found | NotGood:
-        """What line ``line`` inherits, or why the program cannot go on from it."""
-        why = self.lines.why_not(line) or self._goes_to(line)
-        if not why:
-            return self._found(line)
-        return NotGood(line, why, self._good(line, -1), self._good(line, 1))
+    @property
+    def cut(self) -> Cut:
+        """All that the program cuts; gone through once."""
+        if self._cut is None:
+            self._cut = cut_of(
+                Interpreter(self._program, replace(self._setup, start=_ELSEWHERE)).series(), self.watch
+            )
+        return self._cut
 
-    def _found(self, line: int) -> Found:
-        point = self._walk.checkpoint
-        ahead = Walk(self._program, replace(self._setup, begin=Begin(point, line)))
-        inside = works_inside(point.machine[0] - point.modal.tool_x, ahead.blocks(to_first_error=True))
-        return Found(line, point, Clear(self._z, self._stock, dict(self._x)), inside)
+    def find(self, line: int, visit: int = 0, broken: BrokenOff | None = None) -> Found | NotGood:
+        """What line ``line`` inherits the ``visit``-th time, or why the program cannot go on from it.
 
-    def _good(self, line: int, way: int) -> int:
+        0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
+        """
+        found = self._look(line, visit, broken)
+        if isinstance(found, Found):
+            return found
+        return NotGood(line, found, self._good(line, -1, broken), self._good(line, 1, broken))
+
+    def _look(self, line: int, visit: int, broken: BrokenOff | None) -> Found | str:
+        why = self.lines.why_not(line)
+        if why:
+            return why
+        if not self.lines.repeats(line):
+            return self._goes_to(line) or self._found(line, self._walk, Visit(), broken)
+        visits = self._visits_of(line)
+        number = visit or visits.at(broken.block if broken is not None else 0)
+        why = visits.why_not(line, number)
+        anchor, nth = visits.anchor(number) if not why else (0, 0)
+        why = why or self._goes_to(anchor)
+        if why:
+            return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
+        found = self._within(line, anchor, nth, visits.told(number), broken)
+        if isinstance(found, Found) and broken is not None:
+            return replace(found, was=visits.told(visits.at(broken.block)))
+        return found
+
+    def _visits_of(self, line: int) -> Visits:
+        if self._visits is None or self._visits[0] != line:
+            self._visits = line, visits_of(self._program, self._setup, line, self.watch)
+        return self._visits[1]
+
+    def _within(
+        self, line: int, anchor: int, nth: int, visit: Visit, broken: BrokenOff | None
+    ) -> Found | str:
+        """From the line of the main program on, which is reached, to the pass that is wanted."""
+        walks = [self._from(self._walk, anchor)]
+        if self._other is not None:
+            walks.append(self._from(self._other, anchor))
+        for walk in walks:
+            lost = self._to_visit(walk, line, nth)
+            if lost:
+                return f"Line {line} is no place to go on: {lost}"
+        walk, known = walks[0], self._other is None or _alike(*walks)
+        why = self._why_not_here(line, walk, known=known)
+        return why or self._found(line, walk, visit, broken)
+
+    def _from(self, walk: Walk, anchor: int) -> Walk:
+        setup = replace(walk.setup, begin=Begin(walk.checkpoint, anchor))
+        return Walk(self._program, setup)
+
+    def _to_visit(self, walk: Walk, line: int, nth: int) -> str:
+        for number in range(nth):
+            for block in walk.again(line) if number else walk.before(line):
+                self._mind()
+                if isinstance(block.action, AskInput):
+                    return f"what input {block.action.terminal} answered on line {block.line} is not known."
+        return ""
+
+    def _mind(self) -> None:
+        self._count += 1
+        if self._count % _WATCHED == 0:
+            self.watch(self._count)
+
+    def _found(self, line: int, walk: Walk, visit: Visit, broken: BrokenOff | None) -> Found | str:
+        point, cut = walk.checkpoint, self.cut
+        done = broken.done if broken is not None else point.blocks
+        back = _back(cut, point)
+        if back.lies is Lies.CLEAR or (back.known and point.blocks <= done):
+            return Found(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
+        if point.blocks > done:
+            first, last = _left_out(cut, done, point.blocks)
+            which = f"line {first}" if first == last else f"lines {first} to {last}"
+            return f"Line {line} begins in metal that {which} would have had to cut."
+        return (
+            f"Line {line} begins in the work, and no sure way leads there. {_HOW.get(back.lies, '')}".strip()
+        )
+
+    def _good(self, line: int, way: int, broken: BrokenOff | None) -> int:
         """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
         for _ in range(_DOWN if way > 0 else _UP):
             line = self.lines.after(line) if way > 0 else self.lines.before(line)
-            if not line or not self._goes_to(line):
+            if not line or isinstance(self._look(line, 0, broken), Found):
                 return line
         return 0
 
     def _begin_anew(self) -> None:
         self._at, self._count = 1, 0
-        self._z, self._stock = -math.inf, 0.0
-        self._x: dict[int, tuple[float, float]] = {}
+        self._moved = False
         self._ended = 0
         self._asked = 0  # line whose input the second pass answers differently
         self._lost = ""  # why nothing is known any more
@@ -103,11 +180,9 @@ class Rebuild:
         """Both passes to the line; the first one tells what is asked and how far out it goes."""
         asked, self._at = self._at, line
         for block in self._walk.before(line):
-            self._count += 1
-            if self._count % _WATCHED == 0:
-                self.watch(self._count)
+            self._mind()
             if block.action is None:
-                self._see(block)
+                self._moved = True
             elif isinstance(block.action, ProgramEnd):
                 self._ended = block.line
             elif isinstance(block.action, AskInput) and (self._walk.called or block.line != asked):
@@ -115,15 +190,6 @@ class Rebuild:
         if self._other is not None:
             for _ in self._other.before(line):
                 pass
-
-    def _see(self, block: Block) -> None:
-        x, z, tool = block.x + block.offset_x, block.z + block.offset_z, block.modal.tool
-        self._z = max(self._z, z)
-        low, high = self._x.get(tool, (x, x))
-        self._x[tool] = (min(low, x), max(high, x))
-        if block.kind is not Kind.RAPID:
-            centre = block.modal.tool_x
-            self._stock = max(self._stock, abs(x - centre), abs(block.x0 + block.offset_x - centre))
 
     def _ask(self) -> None:
         """From here on the second pass is the one in which the input of this line answers otherwise."""
@@ -135,7 +201,9 @@ class Rebuild:
         self._other = Walk(self._program, replace(self._setup, begin=begin, inputs=lambda _terminal: True))
 
     def _why_not(self, line: int) -> str:
-        walk, known = self._walk, self._other is None
+        return self._why_not_here(line, self._walk, known=self._other is None)
+
+    def _why_not_here(self, line: int, walk: Walk, *, known: bool) -> str:
         reasons = (
             (walk.failed, f"The program has errors before line {line}."),
             (self._ended, f"The program ends on line {self._ended}, before line {line}."),
@@ -144,12 +212,38 @@ class Rebuild:
             (walk.checkpoint.modal.mill, f"Line {line} is in plane switching."),
             (not known and self._asked, f"Line {line} depends on the input that line {self._asked} asks."),
             (
-                not known and not self._x,
+                not known and not self._moved,
                 f"Nothing has moved before line {line}: start the program from its first line.",
             ),
             (not known, f"Where the slides stand at line {line} depends on where they stood at Cycle Start."),
         )
         return next((why for wrong, why in reasons if wrong), "")
+
+
+_HOW = {
+    Lies.TAP: "A tap stands in its thread there.",
+    Lies.THREAD: "A threading tool stands in its thread there.",
+}
+
+
+def _back(cut: Cut, point: Checkpoint) -> Retract:
+    """From the place of the line out of the work; a tool just called stands where the last one was taken."""
+    row = cut.row_behind(point.blocks)
+    if row < 0:
+        return Retract(Lies.CLEAR)
+    tool = int(cut.tool[row])
+    off_x, off_z = cut.offsets[tool]
+    x, z = point.machine
+    return retract(cut, Place(point.blocks, tool, x - off_x, z - off_z), point.blocks)
+
+
+def _left_out(cut: Cut, done: int, blocks: int) -> tuple[int, int]:
+    """First and last line of what was to be cut between what is done and the line."""
+    rows = (cut.n > done) & (cut.n <= blocks) & ((cut.how & 1) != 0)
+    if not rows.any():
+        return 0, 0
+    lines = cut.line[rows]
+    return int(lines[0]), int(lines[-1])
 
 
 def _asks(program: Program, lines: Lines) -> list[int]:
@@ -166,4 +260,9 @@ def _alike(one: Walk, other: Walk) -> bool:
         return False
     near = all(abs(p - q) < _SAME for p, q in zip(a.machine, b.machine, strict=True))
     near = near and abs(a.px - b.px) < _SAME and abs(a.pz - b.pz) < _SAME
-    return near and a[6:-1] == b[6:-1]
+    return near and _rest(a) == _rest(b)
+
+
+def _rest(point: Checkpoint) -> Checkpoint:
+    """All but the place, and the count of what led there."""
+    return point._replace(x=0.0, z=0.0, c=0.0, px=0.0, pz=0.0, blocks=0)

@@ -28,7 +28,7 @@ def all_of(source: Source, setup: Setup) -> list[Block]:
     return blocks
 
 
-def begun(setup: Setup, found: Found, inside: bool = False) -> Setup:
+def begun(setup: Setup, found: Found) -> Setup:
     """The circumstances of a restart from where the slides stand.
 
     A spindle that is no axis has been turned by hand to the same angle: M19 would turn it from there.
@@ -36,18 +36,28 @@ def begun(setup: Setup, found: Found, inside: bool = False) -> Setup:
     point = found.checkpoint
     angle = point.c + point.modal.offset_c + (TURNED if point.modal.c_locked else 0.0)
     at = (*STANDS, angle)
-    return replace(setup, start=at, begin=beginning(found, at, inside))
+    return replace(setup, start=at, begin=beginning(found, at))
 
 
-def beginning(found: Found, at: tuple[float, ...], inside: bool = False) -> Begin:
+def beginning(found: Found, at: tuple[float, ...]) -> Begin:
     """A restart at a machine that stands still with its collet as it was."""
-    return begin_at(found, Now(at, Modal()), Choices(inside=inside))
+    return begin_at(found, Now(at, Modal()), Choices())
 
 
-def of_each_line(source: Source, setup: Setup) -> list[Found | NotGood]:
-    """What SEARCHTO says of every line, in order."""
+def of_each_line(source: Source, setup: Setup, passes: int = 0) -> list[Found | NotGood]:
+    """What SEARCHTO says of every line, in order; of one in a loop or a subroutine, of all its passes.
+
+    ``passes``: of so many first ones and of the last.
+    """
     rebuild = Rebuild(source, setup, lambda _count: None)
-    return [rebuild.find(line) for line in range(1, len(source.lines) + 1)]
+    said: list[Found | NotGood] = []
+    for line in range(1, len(source.lines) + 1):
+        answer = rebuild.find(line, 1)
+        said.append(answer)
+        count = answer.visit.of if isinstance(answer, Found) else 1
+        later = [n for n in range(2, count + 1) if not passes or n <= passes or n == count]
+        said += [rebuild.find(line, number) for number in later]
+    return said
 
 
 def told(block: Block) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""The way to a line: in lathe order, no farther off than the program has been, and Z last in a bore."""
+"""The way to a line: out of the work by the tool that stands there, Z clear, X over, and in by the line."""
 
 from __future__ import annotations
 
@@ -9,61 +9,45 @@ import pytest
 from core.interpreter.actions import Coolant, Output, SpindleRun, SpindleStop
 from core.interpreter.begin import Checkpoint, Do, Leg, Step, Turn
 from core.interpreter.modal import Modal
-from core.interpreter.restart.approach import Choices, Now, begin_at, starting, way
-from core.interpreter.restart.found import Clear, Found
+from core.interpreter.restart.approach import Choices, Now, begin_at, standing, starting, way, way_out
+from core.interpreter.restart.found import BrokenOff, Found
 from core.interpreter.restart.rebuild import Rebuild
+from core.interpreter.restart.retract import Hop, Lies, Retract
+from core.interpreter.setup import ToolOffset
 from core.language.source import Source
-from tests.interpreter.programs import setup
+from tests.interpreter.programs import INCH, setup
 
-AT = Checkpoint(Modal(tool=1, tool_x=-10.0, tool_z=-50.0, spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
-FOUND = Found(
-    9, AT, Clear(-48.0, 14.0, {1: (-2.0, 5.0)})
-)  # the tool was 15 mm off the centre, Z 2 mm off the face
-STANDS = Now((-3.0, -60.0, 0.0), Modal(tool=1, tool_x=-10.0, tool_z=-50.0))
+MODAL = Modal(tool=1, tool_x=-10.0, tool_z=-50.0)
+AT = Checkpoint(MODAL._replace(spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
+BACK = Retract(Lies.WORK, (Hop(15.0, -12.0), Hop(15.0, 2.0)), (1, 0))
+FOUND = Found(9, AT, BACK)
+STANDS = Now((30.0, -48.0, 0.0), MODAL)
 
 
-def legs(steps: tuple[Step, ...]) -> list[tuple[float | None, float | None]]:
-    return [(step.x, step.z) for step in steps if isinstance(step, Leg)]
+def legs(steps: tuple[Step, ...]) -> list[tuple[float | None, float | None, bool]]:
+    return [(step.x, step.z, step.rapid) for step in steps if isinstance(step, Leg)]
 
 
 def order(steps: tuple[Step, ...]) -> list[str]:
     return [step.text for step in steps]
 
 
-def test_outside_x_goes_out_first_and_comes_in_last() -> None:
+def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
     steps = way(FOUND, STANDS, Choices())
-    assert legs(steps) == [(5.0, None), (None, -48.0), (None, -62.0), (-2.0, None)]
-    assert order(steps) == ["X", "Z", "M03", "M08", "Z", "X"]
+    assert legs(steps) == [(5.0, None, True), (None, -62.0, False), (-2.0, None, False)]
+    assert order(steps) == ["X", "M03", "M08", "Z", "X"]
     last = steps[-1]
     assert isinstance(last, Leg)
-    assert not last.rapid  # a feed waits for the spindle's speed
-    assert last.feed < Choices().rapid
+    assert last.feed < Choices().rapid  # a feed waits for the spindle's speed
 
 
-def test_inside_a_bore_z_goes_out_first_and_comes_in_last() -> None:
-    steps = way(FOUND, STANDS, Choices(inside=True))
-    assert legs(steps) == [(None, -48.0), (-2.0, None), (None, -62.0)]
-    assert order(steps) == ["Z", "X", "M03", "M08", "Z"]
-
-
-def test_on_the_far_side_of_the_centre_line_out_is_x_minus() -> None:
-    point = replace_point(AT, x=-8.0)
-    found = Found(9, point, Clear(-48.0, 14.0, {1: (-40.0, -15.0)}))
-    now = Now((-17.0, -60.0, 0.0), STANDS.modal)
-    assert legs(way(found, now, Choices())) == [(-40.0, None), (None, -48.0), (None, -62.0), (-18.0, None)]
-
-
-def replace_point(point: Checkpoint, **changes: float) -> Checkpoint:
-    return point._replace(**changes)  # type: ignore[arg-type]
-
-
-def test_a_slide_that_stands_farther_out_stays_there() -> None:
-    now = Now((30.0, -20.0, 0.0), STANDS.modal)
-    assert legs(way(FOUND, now, Choices())) == [(5.0, None), (None, -62.0), (-2.0, None)]
+def test_a_line_that_begins_clear_of_the_work_is_gone_to_by_rapid() -> None:
+    found = replace(FOUND, back=Retract(Lies.CLEAR))
+    assert legs(way(found, STANDS, Choices())) == [(-2.0, None, True), (None, -62.0, True)]
 
 
 def test_what_must_not_run_is_stopped_before_anything_moves() -> None:
-    now = Now(STANDS.at, STANDS.modal._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"})))
+    now = Now(STANDS.at, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"})))
     found = replace(FOUND, checkpoint=AT._replace(modal=AT.modal._replace(coolant=False)))
     steps = way(found, now, Choices())
     assert order(steps)[:3] == ["M05", "M09", "LIVE1 OFF"]
@@ -79,31 +63,123 @@ def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
     assert "M08" not in order(without.way)
 
 
-def test_c_is_locked_and_turned_to_its_angle_by_the_short_way() -> None:
+def test_c_is_locked_and_turned_to_its_angle_by_the_short_way_clear_of_the_part() -> None:
     modal = AT.modal._replace(spindle=0, c_locked=True, coolant=False, offset_c=720.0)
     found = replace(FOUND, checkpoint=AT._replace(modal=modal, c=90.0))
-    begin = begin_at(found, Now((-3.0, -60.0, 1000.0), STANDS.modal), Choices())
+    begin = begin_at(found, Now((30.0, -48.0, 1000.0), MODAL), Choices())
     turn = next(step for step in begin.way if isinstance(step, Turn))
     assert turn.c == pytest.approx(1170.0)  # 90 degrees and three turns: the nearest to 1000
     assert begin.checkpoint.modal.offset_c == pytest.approx(1080.0)
+    assert order(begin.way) == ["X", "M89", "C", "Z", "X"]
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "inside"),
-    [
-        ("X1Z.1\nG01G94F10X.5\nZ-.5\nX.6\nG94F300Z.1\n", 4, False),  # turning
-        ("X.2Z.1\nG01G94F10Z-.5\nX.18\nG94F300Z.1\n", 4, True),  # boring
-        ("X.3Z.1\nG01G94F10X.28Z0\nZ-.5\nG02X.26Z-.52R.02\nG94F300Z.1\n", 4, True),  # an arc to the centre
-        ("X.6Z0\nG01G94F10X-.02\nG94F300Z.1\n", 3, True),  # a face: in along Z at the outside
-        ("X.3Z.1\nG01G94F10Z-.5\nG94F300Z.1\n", 4, True),  # straight out again, at the radius of the bore
-        ("X.6Z-.4\nG01G94F10X.3\nZ-.35\nG94F300X.6\nZ.1\n", 4, False),  # a groove widened towards Z+
-        ("X0Z.1\nG01G94F10Z-.5\nG94F300Z.1\n", 3, True),  # drilling on the centre
-        ("X1Z-.5\nG01G94F10X.4\nG04F.2\nX1\nG94F300Z.1\n", 3, False),  # a groove
-        ("X1Z-.5\nX.9\n", 3, False),  # nothing tells: the way of turning
-    ],
+TWO = (
+    "G90G94F300\nT1\nX.5Z.1\nM03S900\nZ-.3\nG95F.002X.4\nG94F300X.5\nZ2\n"
+    "T2\nX.2Z.1\nG95F.003Z-.5\nG94F300Z2\nM30\n"
 )
-def test_inside_or_outside_is_told_by_how_the_tool_is_taken_off(text: str, line: int, inside: bool) -> None:
-    program = Source("PART", f"G90G94F300\n{text}M30\n")
-    found = Rebuild(program, setup(), lambda _count: None).find(line)
-    assert isinstance(found, Found)
-    assert found.inside is inside
+TOOLS = {1: ToolOffset(-10.0, -50.0), 2: ToolOffset(90.0, -20.0)}
+
+
+def two(line: int, broken: BrokenOff | None = None) -> Found:
+    """T1 cuts a groove at Z-.3 from X.5 (a radius), then T2, whose offset is another, bores at X.2."""
+    found = Rebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(line, 0, broken)
+    assert isinstance(found, Found), found
+    return found
+
+
+def spots(steps: tuple[Step, ...], tool: int) -> list[tuple[float | None, float | None, bool]]:
+    """Ends of the legs as this tool would read them, inches."""
+    off = TOOLS[tool]
+    return [
+        (
+            None if x is None else round((x - off.x) / INCH, 4),
+            None if z is None else round((z - off.z) / INCH, 4),
+            rapid,
+        )
+        for x, z, rapid in legs(steps)
+    ]
+
+
+def in_the_groove(x: float = 0.42) -> tuple[Now, BrokenOff]:
+    """T1 was stopped on line 6, in its groove; the fifth elementary block is that cut."""
+    at = (-10.0 + x * INCH, -50.0 - 0.3 * INCH, 0.0)
+    broken = BrokenOff(5, 1, at, 5)
+    return Now(at, MODAL, broken), broken
+
+
+def test_the_way_out_is_that_of_the_tool_that_was_interrupted_whatever_the_line_works_with() -> None:
+    now, broken = in_the_groove()
+    back = way(two(6, broken), now, Choices())
+    # X out of the groove at a feed; Z to the Z2 of T2, at machine -20 + 50.8; down again over the bar.
+    assert spots(back, 1) == [(0.5, None, False), (None, 3.1811, True), (None, -0.3, True)]
+    other = way(two(11, broken._replace(block=99, begun=99)), now, Choices())
+    assert spots(other, 1)[:2] == [(0.5, None, False), (None, 3.1811, True)]
+
+
+def test_a_tool_called_by_hand_in_mdi_does_not_take_the_place_of_the_one_in_the_groove() -> None:
+    now, _ = in_the_groove()
+    by_hand = replace(now, modal=now.modal._replace(tool=2, tool_x=90.0, tool_z=-20.0))
+    cut = two(6).cut
+    assert cut is not None
+    assert way_out(cut, by_hand, Choices()) == way_out(cut, now, Choices())
+
+
+def test_a_tool_that_was_jogged_along_its_way_out_goes_on_with_the_rest_of_it() -> None:
+    now, _ = in_the_groove()
+    cut = two(6).cut
+    assert cut is not None
+    moved = replace(now, at=(-10.0 + 0.47 * INCH, now.at[1], 0.0))
+    assert spots(way_out(cut, moved, Choices()), 1)[0] == (0.5, None, False)
+
+
+def test_a_tool_that_was_jogged_elsewhere_in_the_part_is_asked_to_be_jogged_on() -> None:
+    now, _ = in_the_groove()
+    cut = two(6).cut
+    assert cut is not None
+    moved = replace(now, at=(now.at[0], now.at[1] + 3.0, 0.0))
+    found, tool = standing(cut, moved)
+    assert not found.known
+    assert tool == 1
+    assert found.away == (1, 0)  # X, and not Z
+
+
+def test_a_tool_jogged_clear_needs_no_way_out_but_z() -> None:
+    now, _ = in_the_groove()
+    cut = two(6).cut
+    assert cut is not None
+    clear = replace(now, at=(-10.0 + 0.8 * INCH, now.at[1], 0.0))
+    assert standing(cut, clear)[0].lies is Lies.CLEAR
+    assert all(rapid for _, _, rapid in legs(way_out(cut, clear, Choices())))
+
+
+def test_where_nothing_is_known_to_be_interrupted_every_tool_has_to_stand_clear() -> None:
+    cut = two(6).cut
+    assert cut is not None
+    unknown = Now((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), Modal())
+    assert not standing(cut, unknown)[0].known
+    assert standing(cut, Now((40.0, cut.clear_z, 0.0), Modal()))[0].known
+
+
+def test_a_control_that_was_cut_off_may_stand_a_little_farther_on() -> None:
+    now, _ = in_the_groove()
+    noted = BrokenOff(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, stale=True)
+    cut = two(6).cut
+    assert cut is not None
+    assert spots(way_out(cut, replace(now, broken=noted), Choices()), 1)[0] == (0.5, None, False)
+    known = replace(now, broken=noted._replace(stale=False))
+    assert way_out(cut, known, Choices()) == ()  # it was moved by hand, nobody knows whither
+
+
+def test_a_tool_that_the_program_has_not_named_yet_is_brought_in_clear_of_the_whole_program() -> None:
+    now, broken = in_the_groove()
+    found = two(10, broken._replace(block=99, begun=99))
+    steps = way(found, replace(now, broken=None, at=(40.0, 90.0, 0.0)), Choices())
+    assert all(rapid for _, _, rapid in legs(steps))
+
+
+def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> None:
+    _, broken = in_the_groove()
+    answer = Rebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
+    assert not isinstance(answer, Found)
+    assert answer.why == "Line 12 begins in metal that line 11 would have had to cut."
+    assert two(9, broken).left_out == (0, 0)  # the groove itself is begun

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.found import BrokenOff, Found, NotGood
 from core.interpreter.restart.rebuild import Rebuild
 from core.interpreter.setup import ToolOffset
 from core.language.source import Source
@@ -16,11 +16,12 @@ def find(text: str, line: int, **given: object) -> Found | NotGood:
 
 
 PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
-LOOP = "G90G94F300\nX1Z1\nLS3\nG91X-.1\nZ-.1\nLF\nG90\nX1Z1\nM30\n"
 NOSE = "G90G94F300\nX1Z1\nG41\nX.5Z.2D1\nZ-.5\nX1\nG40\nZ1\nM30\n"
 CONTOUR = "G90G94F300\nX1Z.1\nG75I.1U.01F10\nX.5Z0\nZ-.5\nX.9\nRF\nZ1\nM30\n"
 CORNER = "G90G94F100\nX1Z1\nX.5C.05\nM08\nZ-.5\nX1\nM30\n"
 CALLED = "G90G94F300\nX1Z1\nM98P1\nX2\nM30\n}1\nZ.5\nZ1\nM99\n"
+NEVER = "G90G94F300\nX1Z1\nX2\nM30\n}1\nZ.5\nZ1\nM99\n"
+BEHIND = "G90G94F300\nX1Z1\nX2\nM30\n\n}1\nZ.5\nM99\n"
 PLANE = "G90G94F300\nX-.5Z.1\nM19\n(~PLXC)\n(X.5Y.1)\n(END)\nM05\nM30\n"
 
 
@@ -32,22 +33,22 @@ def test_everything_that_a_line_inherits() -> None:
     assert (modal.diameter, modal.tool, modal.spindle, modal.rpm, modal.coolant) == (True, 1, 1, 900.0, True)
     assert (modal.per_rev, modal.feed) == (True, pytest.approx(0.005 * INCH))
     assert point.first_feed == pytest.approx(300 * INCH / 60)  # it goes on to count as a rapid
-    assert found.clear.stock == pytest.approx(0.5 * INCH)  # it has fed at X1, a diameter
-    assert found.clear.z == pytest.approx(-20.0 + 0.1 * INCH)
-    assert found.clear.x[1] == pytest.approx((-10.0 + 0.5 * INCH, -10.0 + 0.5 * INCH))
+    assert found.cut is not None
+    assert found.cut.radius == pytest.approx(0.55 * INCH)  # it feeds to X1.1, a diameter
+    assert found.cut.clear_z == pytest.approx(-20.0 + 0.1 * INCH)
 
 
 @pytest.mark.parametrize(
     ("text", "line", "why", "before", "after"),
     [
-        (LOOP, 4, "Line 4 is inside the loop of lines 3 to 6.", 3, 7),
-        (LOOP, 6, "Line 6 is inside the loop of lines 3 to 6.", 3, 7),
         (NOSE, 5, "Line 5 is under the nose compensation that begins on line 3.", 3, 8),
         (NOSE, 7, "Line 7 is under the nose compensation that begins on line 3.", 3, 8),
         (CONTOUR, 5, "Line 5 describes the contour of line 3.", 3, 8),
         (CORNER, 4, "Line 4 is in the corner of line 3.", 3, 6),
         (CORNER, 5, "Line 5 is in the corner of line 3.", 3, 6),
-        (CALLED, 7, "Line 7 is in subroutine 1: the line that calls it may be good.", 5, 0),
+        (CALLED, 6, "The program never comes to line 6.", 5, 0),
+        (NEVER, 6, "The program never comes to line 6.", 4, 0),
+        (BEHIND, 5, "Line 5 stands after the end of the program.", 4, 0),
         (PLANE, 5, "Line 5 is in the plane switching that begins on line 4.", 4, 7),
         (PLAIN, 99, "There is no line 99; the program has 8.", 8, 0),
         ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
@@ -145,3 +146,77 @@ def test_the_work_is_given_up_when_nobody_wants_it_any_more() -> None:
     text = "G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n"
     with pytest.raises(GivenUpError):
         Rebuild(Source("PART", text), setup(), watch).find(7)
+
+
+NESTED = "G90G94F300\nX1Z1\nLS2\nG91X-.1\nLS3\nZ-.1\nLF\nM98P1\nLF\nG90\nX1Z1\nM30\n}1\nX.05\nM99\n"
+
+
+def visit(text: str, line: int, number: int, broken: BrokenOff | None = None) -> Found:
+    found = Rebuild(Source("PART", text), setup(), lambda _count: None).find(line, number, broken)
+    assert isinstance(found, Found), found
+    return found
+
+
+@pytest.mark.parametrize(
+    ("line", "number", "of", "x", "z", "within"),
+    [
+        # Worked out by hand: each outer pass takes X .1 in, three times Z .1 in, and X .05 out again.
+        (3, 1, 1, 1.0, 1.0, ()),
+        (4, 1, 2, 1.0, 1.0, ((3, 9, 1, 2),)),
+        (4, 2, 2, 0.95, 0.7, ((3, 9, 2, 2),)),
+        (6, 1, 6, 0.9, 1.0, ((3, 9, 1, 2), (5, 7, 1, 3))),
+        (6, 3, 6, 0.9, 0.8, ((3, 9, 1, 2), (5, 7, 3, 3))),
+        (6, 5, 6, 0.85, 0.6, ((3, 9, 2, 2), (5, 7, 2, 3))),
+        (8, 2, 2, 0.85, 0.4, ((3, 9, 2, 2),)),
+        (14, 2, 2, 0.85, 0.4, ((3, 9, 2, 2), (8, 1))),
+        (9, 2, 2, 0.9, 0.4, ((3, 9, 2, 2),)),
+    ],
+)
+def test_passes_of_nested_loops_and_calls(
+    line: int, number: int, of: int, x: float, z: float, within: tuple[tuple[int, ...], ...]
+) -> None:
+    found = visit(NESTED, line, number)
+    assert (found.visit.number, found.visit.of) == (number, of)
+    assert tuple(tuple(each) for each in found.visit.within) == within
+    assert (found.checkpoint.x / INCH, found.checkpoint.z / INCH) == pytest.approx((x, z))
+
+
+def test_the_work_shift_of_a_pass_is_what_the_passes_before_it_have_added_up() -> None:
+    bar = "G90G94F300\nX1Z1\nLS4\nT1\nX1Z1\nG94F10X.5\nF300X1\nG10X0Z-.35\nLF\nM30\n"
+    third = visit(bar, 6, 3).checkpoint.modal
+    assert third.shift_z == pytest.approx(-0.7 * INCH)
+    assert third.pending_shift_z == pytest.approx(-0.7 * INCH)
+
+
+def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
+    # X1Z1 is block 1, the first outer pass 2 to 6, the second 7 to 11: in that line 6 is 8, 9, 10.
+    found = visit(NESTED, 6, 0, BrokenOff(9, 0, (0.0, 0.0, 0.0), 9))
+    assert found.visit.number == 5
+    assert found.was == found.visit
+    other = visit(NESTED, 6, 2, BrokenOff(9, 0, (0.0, 0.0, 0.0), 9))
+    assert (other.visit.number, other.was) == (2, found.visit)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "number", "why"),
+    [
+        (NESTED, 6, 7, "Line 6 is run 6 times; there is no pass 7."),
+        (NESTED, 13, 1, "The program never comes to line 13."),
+        (
+            "G90G94F300\nX1Z1\nLS3\nX1\nM97I3C1P1\nX2\nLF\nM30\n}1\nZ.5\nM99\n", 6, 2,
+            "Line 6 is no place to go on: what input 3 answered on line 5 is not known.",
+        ),
+        (
+            "G91G94F300\nX.1\nLS3\nX.1\nLF\nM30\n", 4, 2,
+            "Where the slides stand at line 4 depends on where they stood at Cycle Start.",
+        ),
+        (
+            "G90G94F300\nX1Z1\nLS30000\nX1\nX2\nLF\nX1\nM30\n", 5, 2,
+            "Line 5 is run more than 20,000 times: choose the line that begins the loop.",
+        ),
+    ],
+)  # fmt: skip
+def test_passes_that_are_no_place_to_go_on(text: str, line: int, number: int, why: str) -> None:
+    answer = Rebuild(Source("PART", text), setup(), lambda _count: None).find(line, number)
+    assert isinstance(answer, NotGood)
+    assert answer.why == why
