@@ -7,10 +7,18 @@ import logging
 import logging.handlers
 import queue
 import sys
+import time
 
 from app.desk.home import home
 
 _SIZE = 1_000_000  # bytes, three files of it
+_AGAIN = 2.0  # s between two tries to write again
+_MISSING = {
+    "levelno": logging.WARNING,
+    "levelname": "WARNING",
+    "name": __name__,
+    "msg": "the log could not be written for a while; lines before this one are missing",
+}
 _FORM = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
@@ -23,7 +31,7 @@ class Log:
 
     def __init__(self) -> None:
         records: queue.SimpleQueue[logging.LogRecord] = queue.SimpleQueue()
-        self._unmade = ""
+        self._unmade, self._next = "", 0.0
         self._file = self._opened()
         self._handler = logging.handlers.QueueHandler(records)
         self._listener = logging.handlers.QueueListener(records, *([self._file] if self._file else []))
@@ -32,8 +40,12 @@ class Log:
 
     @property
     def trouble(self) -> str:
-        """Why the log is not written."""
-        return self._unmade or (self._file.trouble if self._file else "")
+        """Why the log is not written. While it is not, a line that says so is tried again and again."""
+        found = self._file.trouble if self._file else ""
+        if found and time.monotonic() >= self._next:
+            self._next = time.monotonic() + _AGAIN
+            self._handler.handle(logging.makeLogRecord(_MISSING))
+        return self._unmade or found
 
     def close(self) -> None:
         """Write what is queued."""

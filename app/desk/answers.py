@@ -58,6 +58,8 @@ class Answers:
         """A disk that fails in the middle of a run is told once, not found out the day after."""
         trouble = self.unkept()
         if trouble != self._unkept:
+            if self.notice == f"NOT KEPT: {self._unkept}":
+                self.notice = ""  # it is not so any more
             self._unkept = trouble
             if trouble:
                 self.say(f"NOT KEPT: {trouble}")

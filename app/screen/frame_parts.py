@@ -26,7 +26,7 @@ from app.screen.standing import Row, StandingRows
 from app.screen.strip import Strip
 from core.executor.snapshot import Snapshot, State
 
-_KEYS = (("F6", "SEARCHTO"), ("Y", "LINE 1"))
+_KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
 GAP = 4  # pixels under the rows that stand
 
 

@@ -36,6 +36,7 @@ class MenuPage(Page):
         return {entry.key: partial(self._open, entry.name) for entry in ENTRIES}
 
     def _open(self, name: str) -> None:
+        self.desk.clear()  # an answer to the key before has been read
         self.host.go(name)
 
     def prompt(self) -> str:

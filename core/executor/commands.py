@@ -161,7 +161,8 @@ class ForceOutput:
 class ConfirmStart:
     """The operator has read which job was interrupted (its ``at``), and means to start at the first line.
 
-    It counts for the next start, for a minute, and until the machine does anything else.
+    It counts for the next start, for a minute, and until the machine does anything else; an empty ``at``
+    takes it back.
     """
 
     at: str

@@ -133,7 +133,10 @@ class Interruption:
 
     def answer(self, at: str) -> str:
         """The operator has read what a start at the first line does; why that does not count, or nothing."""
+        self._answered = None
         found = self._standing.interrupted
+        if not at:
+            return ""  # taken back
         if found is None or found.at != at or self._standing.state is not State.IDLE:
             return "there is no interrupted job to be answered for now"
         self._answered = self._bench.now

@@ -57,7 +57,10 @@ class Loading:
     def _confirm(self, command: ConfirmStart) -> None:
         why = self._conductor.rounds.interruption.answer(command.at)
         self._conductor.standing.start_refused = ""
-        self._bench.say("refused" if why else "confirmed", why or "a start at the first line is meant")
+        if why:
+            self._bench.say("refused", why)
+        elif command.at:
+            self._bench.say("confirmed", "a start at the first line is meant")
 
     def _prepare(self, command: Prepare) -> None:
         standing = self._conductor.standing

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import errno
-import os
 import sqlite3
+import tempfile
 from enum import Enum
 from pathlib import Path
 
 from core.store.errors import StoreError
 
-_ROOM = 64 * 1024  # bytes: with less than that SQLite cannot even make its index
+_ROOM = 64 * 1024  # bytes: more than SQLite's index needs
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_GONE = frozenset({errno.ENOENT, errno.ENOTDIR})
 _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
@@ -21,7 +22,7 @@ class Cause(Enum):
     FULL = "the disk is full: {path} takes nothing more; make room on that disk"
     LOCKED = "{path} is locked by another program; close that one, then try again"
     FORBIDDEN = "{path} may not be used so by this user ({error}); check its rights and those of its folder"
-    GONE = "{path} was moved or deleted while it was in use; put it back, then start turndesk again"
+    GONE = "{path} is not there (any more); put it back, then start turndesk again"
     FAILING = "{path}: the disk fails ({error}); check that it is there and sound"
     DAMAGED = (
         "{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE"
@@ -57,10 +58,9 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
     if code == sqlite3.SQLITE_READONLY_DBMOVED:
         return Cause.GONE
     cause = _BY_CODE.get(code & 0xFF, Cause.OTHER) if isinstance(code, int) else Cause.OTHER
-    if cause in {Cause.FAILING, Cause.FORBIDDEN} and room_beside(path) < _ROOM:
-        return Cause.FULL
-    if cause is Cause.FORBIDDEN and not path.exists():
-        return Cause.GONE if path.parent.exists() else Cause.OTHER
+    if cause in {Cause.FAILING, Cause.FORBIDDEN}:
+        tried = _trial(path.parent)
+        return _of_system(tried) if tried is not None else cause
     return cause
 
 
@@ -70,13 +70,15 @@ def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
     return cause_of(path, error).told(path, said)
 
 
-def room_beside(path: Path) -> int:
-    """Bytes that a user may still write where ``path`` lies; much, where nobody can tell."""
+def _trial(folder: Path) -> OSError | None:
+    """SQLite does not hand on what the system said; a file of our own beside the store asks it again."""
     try:
-        found = os.statvfs(path.parent)
-    except OSError:
-        return 2**62
-    return found.f_bavail * found.f_frsize
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(_ROOM))
+            file.flush()
+    except OSError as error:
+        return error
+    return None
 
 
 def _of_system(error: OSError) -> Cause:
@@ -84,4 +86,6 @@ def _of_system(error: OSError) -> Cause:
         return Cause.FULL
     if error.errno in _FORBIDDEN:
         return Cause.FORBIDDEN
+    if error.errno in _GONE:
+        return Cause.GONE
     return Cause.FAILING if error.errno == errno.EIO else Cause.OTHER

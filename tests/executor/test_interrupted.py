@@ -138,6 +138,16 @@ def test_an_answer_to_another_question_does_not_count() -> None:
     assert not begins(rig)
 
 
+def test_an_answer_can_be_taken_back() -> None:
+    rig = Rig()
+    broken_off(rig)
+    rig.confirm()
+    rig.post(ConfirmStart(""))
+    assert not rig.shot.confirmed
+    assert rig.said("refused") == []
+    assert not begins(rig)
+
+
 def test_an_answer_counts_for_a_minute() -> None:
     rig = Rig()
     broken_off(rig)

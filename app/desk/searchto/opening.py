@@ -67,6 +67,7 @@ class SearchOpening:
     def opened(self) -> None:
         """From now on Cycle Start begins a confirmed restart and nothing else."""
         loaded, snapshot = self.session.now, self.snapshot()
+        self.clear()  # why the palms began nothing before has been read
         self.open, self.started = True, False
         lines = loaded.source.lines if loaded.source is not None else ()
         before = self.cursor.line if self.cursor.lines is lines else 1

@@ -1,0 +1,255 @@
+"""A disk that takes nothing: nothing that happened is lost, and what is wrong is called by its name."""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from app.compose.journal import Journal
+from core.executor.snapshot import Event
+from core.store import unwritten
+from core.store.causes import Cause, cause_of
+from core.store.rows import EventRow
+from core.store.store import Store, StoreError
+from core.store.unwritten import Unwritten
+from tests.interrupted import broken_off
+from tests.store.disk import Disk, small_disk
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Iterator[Disk]:
+    with small_disk(tmp_path / "disk") as disk:
+        yield disk
+
+
+def part(number: int) -> Event:
+    return Event(0.0, "part", f"part {number}, 3.20 s")
+
+
+def fill_up(store: Store, disk: Disk) -> None:
+    """Full, and the log has used up the room that its file had."""
+    disk.fill()
+    for _ in range(200):
+        store.log_event("filler", "x" * 3000)
+    with pytest.raises(StoreError):
+        store.log_event("filler", "last").result(60)
+    assert store.held is not None
+
+
+# --- nothing is lost ----------------------------------------------------------------------------------------
+
+
+def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Disk) -> None:
+    with Store.open(disk.path / "home") as store:
+        for _ in range(3):
+            store.count_part("pin.nc")
+        store.log_event("start", "before").result(60)
+        fill_up(store, disk)
+        for number in range(33):
+            store.count_part("pin.nc")
+            store.log_event("part", f"part {number}")
+            store.cycle_finished("pin.nc", 3.0 + number)
+        with pytest.raises(StoreError, match="the disk is full"):
+            store.set_setting("theme", "light").result(60)
+        assert store.trouble.startswith("the disk is full: ")
+        assert store.held is not None
+        assert store.held.parts == 33
+        assert store.parts("pin.nc") == 36  # what is held counts on the screen
+        disk.make_room()
+        store.log_event("end", "after").result(60)
+        assert (store.trouble, store.held) == ("", None)
+    with Store.open(disk.path / "home") as store:
+        assert store.parts("pin.nc") == 36
+        told = [event.text for event in reversed(store.events(limit=1000))]
+        assert told[0] == "before"
+        assert told[-34:] == [*(f"part {number}" for number in range(33)), "after"]
+        (run,) = store.runs()
+        assert (run.cycles, run.best, run.latest) == (33, 3.0, 35.0)
+        assert store.setting("theme") == "light"
+
+
+def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("core.store.writer.AGAIN", 0.02)
+    with Store.open(disk.path / "home") as store:
+        fill_up(store, disk)
+        store.count_part("pin.nc")
+        disk.make_room()
+        tick = threading.Event()
+        while store.held is not None:
+            tick.wait(0.01)
+        assert store.parts("pin.nc") == 1
+
+
+def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
+    with Store.open(disk.path / "home") as store:
+        store.set_tool(3, "x", x=1.0).result(60)
+        fill_up(store, disk)
+        with pytest.raises(StoreError, match=r"nothing was stored: the disk is full: .*then enter it again"):
+            store.set_tool(3, "x", x=2.0, remark="y" * 40).result(60)
+        assert store.tools()[3].x == 1.0  # reading works
+        disk.make_room()
+        store.set_tool(3, "x", x=2.0).result(60)
+        assert store.tools()[3].x == 2.0
+
+
+def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None:
+    journal = Journal(disk.path / "home")
+    store = journal._opened()
+    fill_up(store, disk)
+    journal.note(broken_off())
+    disk.make_room()
+    assert journal.close() == ""
+    again = Journal(disk.path / "home")
+    assert again.left == broken_off()
+    again.close()
+
+
+def test_closing_says_what_is_lost(disk: Disk) -> None:
+    journal = Journal(disk.path / "home")
+    journal.hear(Event(0.0, "load", "pin.nc"))
+    fill_up(journal._opened(), disk)
+    for number in range(20):
+        journal.hear(part(number))
+    lost = journal.close()
+    assert lost.startswith("20 parts, ")
+    assert lost.endswith("events")
+
+
+def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.compose.journal.AGAIN", 0.02)
+    disk.fill()
+    journal = Journal(disk.path / "home")
+    assert "the disk is full" in journal.trouble
+    journal.hear(Event(0.0, "load", "pin.nc"))
+    for number in range(20):
+        journal.hear(part(number))
+    assert journal.held == "20 parts, 21 events"
+    disk.make_room()
+    tick = threading.Event()
+    while journal.trouble:
+        tick.wait(0.01)
+    journal.keep_text("pin.nc", b"M30", "so that all is written")
+    assert journal.parts("pin.nc") == 20
+    journal.close()
+
+
+# --- what it is called --------------------------------------------------------------------------------------
+
+
+def test_a_full_disk_at_the_command_line(
+    disk: Disk, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(disk.path / "home"))
+    assert main(["offsets", "set", "T3", "x=1.0", "z=-2"]) == 0
+    disk.fill()
+    capsys.readouterr()
+    status = main(["offsets", "show"])
+    said = capsys.readouterr()
+    assert status == 0 or "the disk is full" in said.err
+    assert "damaged" not in said.err
+    assert main(["store", "backup", str(disk.path / "copy.db")]) == 2
+    assert "the disk is full" in capsys.readouterr().err
+    assert main(["store", "export", str(disk.path / "out")]) == 2
+    assert "the disk is full" in capsys.readouterr().err
+    assert main(["offsets", "set", "T4", "x=1.0", "z=-2", "--why", "w" * 20000]) == 2
+    assert "the disk is full" in capsys.readouterr().err
+
+
+def test_a_new_store_on_a_full_disk(disk: Disk) -> None:
+    disk.fill()
+    with pytest.raises(StoreError, match="the disk is full"):
+        Store.open(disk.path / "home")
+    assert not (disk.path / "home" / "turndesk.db").exists()
+
+
+def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.write(lambda c: c.execute("PRAGMA busy_timeout = 20").close()).result(60)
+        with closing(sqlite3.connect(tmp_path / "turndesk.db", isolation_level=None)) as other:
+            other.execute("BEGIN IMMEDIATE")
+            with pytest.raises(StoreError, match="is locked by another program; close that one"):
+                store.set_tool(1, "x", x=1.0).result(60)
+            store.count_part("pin.nc")
+            with pytest.raises(StoreError, match="is locked"):
+                store.log_event("part", "part 1").result(60)
+            assert "locked" in store.trouble
+            assert store.parts("pin.nc") == 1
+            other.execute("ROLLBACK")
+        store.log_event("end", "after").result(60)
+        assert store.trouble == ""
+        assert store.parts("pin.nc") == 1
+
+
+def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
+    with Store.open(tmp_path):
+        pass
+    path = tmp_path / "turndesk.db"
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as connection:
+        with pytest.raises(sqlite3.Error) as caught:
+            connection.execute("DELETE FROM settings")
+        assert cause_of(path, caught.value) is Cause.FORBIDDEN
+    told = str(Cause.FORBIDDEN.told(path, caught.value))
+    assert "check its rights" in told
+    assert "damaged" not in told
+
+
+def test_what_the_system_says_is_what_is_told(tmp_path: Path) -> None:
+    causes = {28: Cause.FULL, 122: Cause.FULL, 27: Cause.FULL, 13: Cause.FORBIDDEN, 30: Cause.FORBIDDEN}
+    causes |= {5: Cause.FAILING, 2: Cause.GONE, 40: Cause.OTHER}
+    assert {number: cause_of(tmp_path, OSError(number, "x")) for number in causes} == causes
+
+
+# --- what is held does not grow, and one bad entry holds nothing up ----------------------------------------
+
+
+def test_counts_and_settings_do_not_grow_with_the_days() -> None:
+    held = Unwritten()
+    for number in range(100_000):
+        held.count_parts("pin.nc", 1)
+        held.latest("setting theme", lambda _c: number)  # noqa: B023
+    assert (held.held("").parts, held.held("").others) == (100_000, 1)
+
+
+def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unwritten, "EVENTS", 10)
+    held = Unwritten()
+    for number in range(25):
+        held.event(EventRow("2026-01-01T00:00:00.000Z", "stop", f"{number}"))
+    with Store.open(tmp_path) as store:
+        store.write(held.write).result(60)
+        texts = [event.text for event in reversed(store.events())]
+    assert texts == [str(n) for n in range(15, 25)] + ["15 events had no room while nothing could be written"]
+
+
+def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.keep_program("bad/name", b"M30", "x")
+        store.count_part("pin.nc")
+        store.log_event("end", "after").result(60)
+        assert store.held is None
+        assert store.parts("pin.nc") == 1
+        assert any("cannot name a program" in event.text for event in store.events())
+
+
+def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
+    with Store.open(disk.path / "home") as store:
+        store.correct_parts("pin.nc", 5).result(60)
+        fill_up(store, disk)
+        store.count_part("pin.nc")
+        store.reset_parts("pin.nc")
+        store.count_part("pin.nc")
+        store.correct_parts("pin.nc", 2)
+        with pytest.raises(StoreError):
+            store.log_event("x", "y").result(60)
+        assert store.parts("pin.nc") == 3
+        disk.make_room()
+        store.log_event("x", "z").result(60)
+        assert store.parts("pin.nc") == 3

@@ -1,0 +1,42 @@
+"""To look at a program is no job: what is on the desk changes by a deliberate act."""
+
+from __future__ import annotations
+
+from tests.stories.conftest import Story
+
+PART = "G90G94F300\nT1\nX2Z2\nM30\n"
+TOOLS = {1: (-0.5, -2.0)}
+
+
+def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story) -> None:
+    (story.home / "programs").mkdir(parents=True)
+    (story.home / "programs" / "other.nc").write_text("G90G94F300\nT1\nX1Z1\nM30\n")
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.sees("TO START")
+    operator.keys("F1", "F6")
+    operator.opens("PROGRAMS")
+    operator.writes("other")
+    operator.key("F3")
+    operator.opens("EDITOR")
+    operator.sees("X1Z1")
+    operator.key("F1")
+    operator.opens("MAIN MENU")
+    operator.sees("other.nc WAS ONLY LOOKED AT: part.nc STAYS ON THE DESK")
+    operator.key("F2")
+    operator.starts()
+    operator.reaches("READY")
+    assert operator.slides[:2] == [round((2 - 0.5) * 25.4, 4), 0.0]
+    assert operator.events("load") == ["part.nc"]
+    operator.until(lambda: operator.status["program"] == "part.nc", "status.json")
+
+
+def test_with_nothing_marked_the_list_edits_nothing(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.keys("F1", "F6")
+    operator.opens("PROGRAMS")
+    operator.writes("zzzz")
+    operator.key("F3")
+    operator.sees("NO PROGRAM IS MARKED")
+    assert operator.page == "PROGRAMS"

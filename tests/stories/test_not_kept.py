@@ -1,0 +1,40 @@
+"""The disk is full in the middle of a batch: said as long as it lasts, and nothing of the batch is lost."""
+
+from __future__ import annotations
+
+from tests.store.disk import small_disk
+from tests.stories.conftest import Story
+
+SHORT = "G90G94T1\nM03S600\nG01X.1Z.1F30\nX0Z0\nM30\n"
+TOOLS = {1: (0.0, 0.0)}
+
+
+def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has_room(story: Story) -> None:
+    with small_disk(story.home, size="3m") as disk:
+        operator = story.begins(SHORT, tools=TOOLS)
+        operator.drives_on()
+        operator.key("c")
+        operator.starts()
+        operator.until(lambda: operator.machine["parts"] == 1, "the first part")
+        disk.fill()
+        operator.sees("NOT KEPT: the disk is full")
+        operator.until(lambda: operator.machine["parts"] >= 4, "parts")
+        operator.keys("F1", "F5")
+        operator.opens("JOG")
+        operator.sees("NOT KEPT: the disk is full")
+        operator.sees("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: ")
+        operator.keys("F1", "F2")
+        operator.key("c")
+        operator.until(lambda: operator.state == "READY", "the end of the part")
+        made = operator.machine["parts"]
+        with operator.store() as store:
+            assert store.parts("part.nc") < made
+        operator.key("F4", "alt")
+        operator.sees("NOT KEPT, AND LOST BY CLOSING: ")
+        disk.make_room()
+        operator.until(lambda: not operator.shows("NOT KEPT"), "all is kept")
+        with operator.store() as store:
+            assert store.parts("part.nc") == made
+        assert len(operator.events("part")) == made
+        operator.key("F4", "alt")
+        operator.until(lambda: operator.popen.poll() == 0, "it closes")
