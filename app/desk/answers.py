@@ -11,13 +11,25 @@ from core.executor.snapshot import Event, Snapshot, State
 HEARD = 100  # events that wait for the next frame; older ones are in the log
 
 
+YES = "Y"
+READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
+
+
 @dataclass(slots=True)
 class Answers:
-    """One answer at a time; it stays until the next key or the next state of the machine."""
+    """One answer at a time; it stays until the next key or the next state of the machine.
+
+    An answer may be a question: what is lost for good is done by a key of its own, and never by the key that
+    asked. ``clock`` is monotonic.
+    """
 
     snapshot: Callable[[], Snapshot]
     unkept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
+    clock: Callable[[], float]
     notice: str = ""
+    asked: Callable[[], None] | None = None  # what yes does now
+    key: str = YES  # that means yes
+    _since: float = 0.0
     _in: State | None = None
     _refused: str = ""
     _unkept: str = ""
@@ -25,8 +37,30 @@ class Answers:
 
     def say(self, text: str) -> None:
         """Put an answer on the prompt line."""
-        self.notice = text
+        self.notice, self.asked = text, None
         self._in = self.snapshot().state
+
+    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+        """Ask on the prompt line; asked again it is the same question, and no answer."""
+        if self.asked is not None and self.notice == question:
+            return
+        self.say(question)
+        self.asked, self.key, self._since = yes, key, self.clock()
+
+    def read(self, at: float) -> bool:
+        """Whether a question stands, and has stood long enough at this time to have been read."""
+        return self.asked is not None and at - self._since >= READ
+
+    def yes(self, at: float) -> None:
+        """Yes was pressed ``at`` this time: do what is asked, or take a question back that was not read."""
+        asked, read = self.asked, self.read(at)
+        self.take_back()
+        if asked is not None and read:
+            asked()
+
+    def take_back(self) -> None:
+        """Nothing is said or asked any more."""
+        self.notice, self.asked = "", None
 
     def outlived(self, snapshot: Snapshot) -> bool:
         """Whether the answer belongs to a state that is over."""

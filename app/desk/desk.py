@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from app.desk import interrupted, prompts
@@ -102,9 +103,12 @@ class Desk(DeskParts):
         found = self.snapshot().interrupted
         self.clear()
         if found is not None and found.program != path.name:
-            self.say(interrupted.instead(found, path.name))
-            self._instead = path
+            self.ask(interrupted.instead(found, path.name), partial(self._load, path))
         else:
+            self._load(path)
+
+    def _load(self, path: Path) -> None:
+        if self.may_choose():
             self.session.load(path, self.session.now.block_delete)
 
     def begin_with(self, named: str | None) -> None:
@@ -163,21 +167,21 @@ class Desk(DeskParts):
         state = self.snapshot().state
         if state in prompts.MOVING:
             self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
-        elif state in prompts.INTERRUPTED and not self._giving_up:
-            self.say(prompts.GIVE_UP)
-            self._giving_up = True
+        elif state in prompts.INTERRUPTED:
+            self.ask(prompts.GIVE_UP, self._give_up)
         else:
-            self.clear()
-            self.post(Reset())
+            self._give_up()
+
+    def _give_up(self) -> None:
+        self.clear()
+        self.post(Reset())
 
     def yes(self) -> None:
-        """Y: the answer to what is asked about an interrupted job, and to nothing else."""
-        path, snapshot = self._instead, self.snapshot()
+        """Y: yes to the question that stands, or else to what is asked about an interrupted job."""
+        snapshot = self.snapshot()
         found = snapshot.interrupted
-        if path is not None:
-            if self.may_choose():
-                self.clear()
-                self.session.load(path, self.session.now.block_delete)
+        if self.asked:
+            self.answer()
         elif found is None or not snapshot.interrupted_line:
             self.clear()
         elif (
@@ -216,7 +220,33 @@ class Desk(DeskParts):
             return False
         return True
 
+    def answer(self) -> None:
+        """Yes to what is asked."""
+        self.answers.yes(self.hands.at())
+
+    @property
+    def read(self) -> bool:
+        """Whether the question that stands can have been read when what is handled now was pressed."""
+        return self.answers.read(self.hands.at())
+
     # --- station -------------------------------------------------------------------------------------
+
+    def estop(self) -> None:
+        """The mushroom of the simulated station. A real one is no key: this holds the feed, and says so."""
+        if self.station is None:
+            self.feed_hold()
+            self.say(prompts.NO_MUSHROOM)
+        else:
+            self.hands.estop(pressed=True)
+
+    def twist_out(self) -> None:
+        """Free the E-stop of the simulated station, after asking."""
+        if self.station is None:
+            self.say(prompts.NO_MUSHROOM)
+        elif not self.hands.estop_pressed:
+            self.say("THE E-STOP IS NOT PRESSED")
+        else:
+            self.ask(prompts.TWIST_OUT, partial(self.hands.estop, pressed=False))
 
     def start_button(self) -> None:
         """Cycle start of a machine with one button."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk.prompts import ONE_PALM
+from app.desk.prompts import BOTH_UP, ONE_PALM
 from app.desk.station import Palms, Pot, StationPanel
 
 OVERRIDE_STEP = 0.1
@@ -15,6 +15,10 @@ LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does 
 
 def _free() -> str:
     return ""
+
+
+def _just_now() -> float:
+    return 0.0
 
 
 @dataclass(slots=True)
@@ -31,28 +35,44 @@ class StationHands:
     clear: Callable[[], None]
     starting: Callable[[], None]
     barred: Callable[[], str] = _free
+    ago: Callable[[], float] = _just_now  # s since the press that is handled now really happened
     palms: Palms = field(default_factory=Palms)
     estop_pressed: bool = False
     spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
     feed_knob: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
     _looked: float | None = None
 
+    def at(self) -> float:
+        """When the press that is handled now happened, by this clock."""
+        return self.clock() - self.ago()
+
     def palm(self, side: str, down: bool) -> None:
-        """A palm button goes down or up; the station's relay decides whether that is a start."""
+        """A palm button goes down or up, at the time of its event.
+
+        The station's relay decides whether that is a start; it sees presses when they come here, so of a pair
+        that was not pressed together it sees one only.
+        """
         station = self.station
         if station is None:
             return
         if down and self.barred():
+            self.palms.dead = bool(self.palms.down)
             self.say(self.barred())
         elif down and side not in self.palms.down:
-            self.clear()
-            if self.palms.press(side, self.clock()):
-                self.starting()
-            (station.press_left if side == "left" else station.press_right)()
+            self._palm_down(station, side)
         elif not down and side in self.palms.down:
             (station.release_left if side == "left" else station.release_right)()
             if self.palms.release(side):
                 self.say(ONE_PALM)
+
+    def _palm_down(self, station: StationPanel, side: str) -> None:
+        self.clear()
+        if self.palms.press(side, self.at()):
+            self.starting()
+        if self.palms.dead:
+            self.say(BOTH_UP)
+        else:
+            (station.press_left if side == "left" else station.press_right)()
 
     def let_go(self) -> None:
         """Hands off: the window has lost the keyboard, so no release would ever arrive."""

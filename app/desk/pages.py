@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 SEARCHTO = "SEARCHTO"
-STOPPING = frozenset("EeHh ")  # E-stop and feed hold: where words of the language are typed they stay keys
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 PROGRAMS, ZERO = "PROGRAMS", "ZERO OFFSETS"
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk import prompts
 from app.desk.alarms import StopLog
-from app.desk.answers import Answers
+from app.desk.answers import YES, Answers
 from app.desk.changes import FileChanges
 from app.desk.files.record import RunRecord
 from app.desk.hands import StationHands
@@ -87,14 +86,12 @@ class DeskParts:
     log: StopLog = field(init=False)
     answers: Answers = field(init=False)
     rebuilding: Rebuilding = field(init=False)
-    _giving_up: bool = False
-    _instead: Path | None = None  # a program that would take the place of an interrupted one
     _closing: float | None = None  # when it was said what closing would lose
     _pulse: Pulse = field(default_factory=Pulse)
 
     def __post_init__(self) -> None:
         self.log = StopLog(self.time_of_day)
-        self.answers = Answers(self.snapshot, self._trouble)
+        self.answers = Answers(self.snapshot, self._trouble, self._now)
         self.rebuilding = Rebuilding(self.session, self.say)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
@@ -106,11 +103,24 @@ class DeskParts:
         """Put an answer on the prompt line; it stays until the next key or the next state."""
         self.answers.say(text)
 
+    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+        """Ask before something is lost or moves: ``PRESS Y TO …, ESC TO …``.
+
+        ``key`` means yes, and is never the one that asked; a finger has a target on the prompt line.
+        """
+        self.answers.ask(question, yes, key)
+
+    @property
+    def asked(self) -> str:
+        """The key that means yes to the question that stands; empty while none does."""
+        return self.answers.key if self.answers.asked is not None else ""
+
+    def _now(self) -> float:
+        return self.hands.clock()
+
     def clear(self) -> None:
-        """Take the answer back."""
-        self.answers.notice = ""
-        self._giving_up = False
-        self._instead = None
+        """Take the answer or the question back."""
+        self.answers.take_back()
 
     @property
     def notice(self) -> str:
@@ -119,7 +129,7 @@ class DeskParts:
 
     @notice.setter
     def notice(self, text: str) -> None:
-        self.answers.notice = text
+        self.answers.notice, self.answers.asked = text, None
 
     @property
     def start_words(self) -> str:
@@ -131,7 +141,7 @@ class DeskParts:
     @property
     def release_words(self) -> str:
         """How the E-stop is freed at this machine."""
-        return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (SHIFT+E)"
+        return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (U)"
 
     @property
     def readout(self) -> Readout:

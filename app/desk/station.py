@@ -46,25 +46,34 @@ class StationPanel(Protocol):
 
 @dataclass(slots=True)
 class Palms:
-    """Which palm buttons are down and since when; tells a person what was wrong with a start."""
+    """Which palm buttons are down and since when; tells a person what was wrong with a start.
+
+    A pair that did not come within the time, or one let go while the other stays, is dead until both are up:
+    a palm that is taped down starts nothing.
+    """
 
     down: dict[str, float] = field(default_factory=dict)  # "left"/"right" → seconds, monotonic
     together: bool = False  # both have been down at once since the last time none was
+    dead: bool = False
 
     def press(self, side: str, now: float) -> bool:
         """Note a press; True when this made both go down within the time."""
-        self.down.setdefault(side, now)
-        times = self.down.values()
-        if len(self.down) < 2 or max(times) - min(times) > TOGETHER:
+        if side in self.down:
             return False
-        self.together = True
-        return True
+        self.down[side] = now
+        times = self.down.values()
+        if len(self.down) < 2:
+            return False
+        self.dead = self.dead or max(times) - min(times) > TOGETHER
+        self.together = self.together or not self.dead
+        return not self.dead
 
     def release(self, side: str) -> bool:
         """Note a release; True when a button was let go that never had the other beside it in time."""
         if self.down.pop(side, None) is None:
             return False
         alone = not self.together
+        self.dead = bool(self.down)
         if not self.down:
             self.together = False
         return alone

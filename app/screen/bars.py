@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
@@ -10,9 +11,12 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.view import Tone
 from app.desk.words import tr
+from app.screen.keys import ANSWER
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 from app.screen.shapes import draw_sign
+
+TARGET = 13.0  # units: width of an answer to touch
 
 
 class TitleLine(Panel):
@@ -80,23 +84,31 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """What can be done now, or the answer to the last key; below it why the machine stands."""
+    """What can be done now, or the answer to the last key; below it why the machine stands.
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    A question has two targets for a finger.
+    """
+
+    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
+        self._press = press
         self.text = self.reason = ""
         self._answer = False
+        self.asked = ""
 
-    def show_text(self, text: str, answer: bool, reason: str = "") -> None:
-        """``answer`` when it answers a key: it stands out then."""
-        if (text, answer, reason) != (self.text, self._answer, self.reason):
-            self.text, self._answer, self.reason = text, answer, reason
+    def show_text(self, text: str, *, answer: bool, asked: str = "", reason: str = "") -> None:
+        """``answer`` when it answers a key: it stands out then. ``asked``: the key that means yes."""
+        shown = (text, answer, asked, reason)
+        if shown != (self.text, self._answer, self.asked, self.reason):
+            self.text, self._answer, self.asked, self.reason = shown
             self.update()
 
     def draw(self, painter: QPainter) -> None:
         look, u = self.look, self.look.u
         area = self.area()
         painter.fillRect(area, look.colour("pause" if self._answer else "panel"))
+        if self.asked:
+            area.setRight(self._targets(painter, area))
         painter.setPen(look.colour("on_state" if self._answer else "text"))
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
         if self.reason:
@@ -106,6 +118,19 @@ class PromptLine(Panel):
             room.setBottom(low.top())
         painter.setFont(look.fit(self.text, 2.1 if self.reason else 2.3, room.width(), bold=True))
         put(painter, room, LEFT, self.text)
+
+    def _targets(self, painter: QPainter, area: QRectF) -> float:
+        """Yes and no for a finger, at the right end, where no key is that asks; where the text ends."""
+        look, u = self.look, self.look.u
+        left = area.right() - 2 * TARGET * u
+        for number, (word, key) in enumerate((("YES", ANSWER), ("NO", "Esc"))):
+            box = QRectF(left + number * TARGET * u, area.y(), (TARGET - 0.6) * u, area.height())
+            painter.fillRect(box, look.colour("key"))
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.font(2.1, bold=True))
+            put(painter, box, CENTRE, word)
+            self.place(box, partial(self._press, key))
+        return left
 
 
 class CommentLine(Panel):

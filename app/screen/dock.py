@@ -30,6 +30,7 @@ class StationDock(FingerPanel):
         self._desk = desk
         self._shown: tuple[object, ...] = ()
         self._auto = True
+        self._twisting = False
 
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
@@ -83,7 +84,7 @@ class StationDock(FingerPanel):
         put(painter, at, RIGHT, right)
 
     def _mushroom(self, painter: QPainter) -> None:
-        look, u, desk = self.look, self.look.u, self._desk
+        look, u = self.look, self.look.u
         box, pressed = self._row(2.6, 15.0), self._desk.hands.estop_pressed
         painter.fillRect(box, look.colour("estop_plate"))
         side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
@@ -95,25 +96,37 @@ class StationDock(FingerPanel):
         painter.setBrush(look.colour("estop"))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
         painter.setPen(look.colour("estop_ink"))
-        for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "E", 1.8, 1.6)):
-            painter.setFont(look.font(size, bold=True))
+        for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "SCR LOCK", 1.6, 1.6)):
+            painter.setFont(look.fit(text, size, head.width() - 2.4 * u, bold=True))
             put(painter, head.translated(0, down * u), CENTRE, text)
-        self.controls.append(Control(head, lambda _at: desk.hands.estop(pressed=True)))
+        self.controls.append(Control(head, self._struck, always=True))
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
         out.setRight(box.right() - 0.6 * u)
         self._release(painter, out, pressed)
 
     def _release(self, painter: QPainter, box: QRectF, pressed: bool) -> None:
-        look, u, desk = self.look, self.look.u, self._desk
+        look, u = self.look, self.look.u
         painter.setPen(look.pen("estop_ground", 0.14))
         painter.setBrush(look.colour("estop_ground") if pressed else Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         painter.setPen(look.colour("estop_plate" if pressed else "estop_ground"))
         high = box.height() / 3
-        for number, word in enumerate(("TWIST", "OUT", "SHIFT E")):
+        for number, word in enumerate(("TWIST", "OUT", "U")):
             painter.setFont(look.fit(word, 1.7, box.width() - 0.6 * u, bold=True))
             put(painter, QRectF(box.x(), box.y() + number * high, box.width(), high), CENTRE, word)
-        self.controls.append(Control(box, lambda _at: desk.hands.estop(pressed=False)))
+        self.controls.append(Control(box, self._twist_begins, None, self._twist_ends))
+
+    def _struck(self, _at: QPointF) -> None:
+        self._twisting = False
+        self._desk.estop()
+
+    def _twist_begins(self, _at: QPointF) -> None:
+        self._twisting = self.fingers == 1
+
+    def _twist_ends(self) -> None:
+        """One finger alone, down and up: a hand that slaps the plate touches both and frees nothing."""
+        if self._twisting and not self.fingers:
+            self._desk.hands.estop(pressed=False)
 
     def _switch(self, painter: QPainter) -> None:
         look = self.look
@@ -187,9 +200,12 @@ class StationDock(FingerPanel):
             put(painter, QRectF(room.x(), top + number * high, room.width(), high), LEFT, line)
         painter.setPen(look.colour("accent"))
         painter.setFont(look.font(2.2, bold=True))
-        put(painter, inner, RIGHT, "H")
+        put(painter, QRectF(inner.x(), inner.y(), inner.width(), inner.height() / 2), RIGHT, "H")
+        painter.setFont(look.font(1.5, bold=True))
+        half = inner.height() / 2
+        put(painter, QRectF(inner.x(), inner.y() + half, inner.width(), half), RIGHT, "PAUSE")
         press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
-        self.controls.append(Control(box, lambda _at: press(), None, release))
+        self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
 
     def _start(self, painter: QPainter) -> None:
         look, desk = self.look, self._desk

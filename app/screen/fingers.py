@@ -23,6 +23,7 @@ class Control:
     down: Callable[[QPointF], None]
     along: Callable[[QPointF], None] | None = None
     up: Callable[[], None] | None = None
+    always: bool = False  # it stops the machine: it acts however late the finger is seen
 
 
 class FingerPanel(Panel):
@@ -33,6 +34,19 @@ class FingerPanel(Panel):
         self.controls: list[Control] = []
         self._held: dict[int, Control] = {}
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
+
+    def stops_at(self, at: QPointF) -> bool:
+        """Whether what stands there stops the machine."""
+        return any(control.always and control.box.contains(at) for control in self.controls)
+
+    @property
+    def fingers(self) -> int:
+        """How many hold something."""
+        return len(self._held)
+
+    def mouse_is_up(self) -> None:
+        """The button was let go where nobody could see it."""
+        self._up(MOUSE)
 
     def let_go(self) -> None:
         """Forget what fingers hold: their release will not arrive any more."""

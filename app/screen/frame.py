@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.desk import pages, prompts
 from app.desk.desk import Desk
@@ -127,7 +126,9 @@ class Frame(FrameParts):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self.lamps_of(snapshot, view)
-        self.strip.show_lamps(lamps, frozenset(lamp.key for lamp in lamps if self._is_text(lamp.key)))
+        self.strip.show_lamps(
+            lamps, frozenset(lamp.key for lamp in lamps if self.has_field() or self.is_text(lamp.key))
+        )
         if self.page is self.automatic:
             self.show_readouts(snapshot, view, loaded)
             self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarms)
@@ -141,14 +142,17 @@ class Frame(FrameParts):
         self.page.refresh(snapshot, view, loaded)
         self.keys.show_labels(self.page.labels())
 
-    def _is_text(self, key: str) -> bool:
-        """Whether a key goes to an entry now: to that of the page, or to a field that has the keyboard."""
-        if self.page.takes(key):
-            return True
+    def is_text(self, key: str) -> bool:
+        """Whether a character goes to an entry now: the page's, or a field that has the keyboard."""
+        return self.page.takes(key) or self._stock_field()
+
+    def has_field(self) -> bool:
+        """Whether an entry has the keyboard: no character is a key then, but for those that stop."""
+        return self.page.has_field() or self._stock_field()
+
+    def _stock_field(self) -> bool:
         at = QApplication.focusWidget()
-        if at is None or at is self.window() or at.focusPolicy() is Qt.FocusPolicy.NoFocus:
-            return False
-        return self.isAncestorOf(at)
+        return isinstance(at, QLineEdit | QPlainTextEdit) and self.isAncestorOf(at)
 
     def _show_bars(self, snapshot: Snapshot, view: View, loaded: Loaded) -> None:
         desk = self.desk
@@ -156,4 +160,5 @@ class Frame(FrameParts):
         self.title.show_page(self.page.NAME)
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = desk.prompt(snapshot, loaded, self.page.prompt())
-        self.prompt.show_text(text, answer=bool(desk.notice), reason=prompts.reason(view))
+        reason = prompts.reason(view)
+        self.prompt.show_text(text, answer=bool(desk.notice), asked=desk.asked, reason=reason)

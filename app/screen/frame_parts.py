@@ -47,7 +47,7 @@ class FrameParts(QWidget):
         self.strip = Strip(look, press, self)
         self.standing = StandingRows(look, press, self)
         self.dock = StationDock(look, desk, self) if desk.station else None
-        self.prompt = PromptLine(look, self)
+        self.prompt = PromptLine(look, press, self)
         self.keys = FunctionKeys(look, lambda number: press(f"F{number}"), self)
         self.notice = Notice(look, self)
         self.log = AlarmList(look, self)

@@ -24,12 +24,9 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_C, NONE): "C",
     (Key.Key_P, NONE): "P",
     (Key.Key_G, NONE): "G",
-    (Key.Key_H, NONE): "H",
-    (Key.Key_Space, NONE): "H",
+    (Key.Key_U, NONE): "U",
     (Key.Key_R, NONE): "R",
     (Key.Key_D, NONE): "D",
-    (Key.Key_E, NONE): "E",
-    (Key.Key_E, SHIFT): "Shift E",
     (Key.Key_A, NONE): "A",
     (Key.Key_Comma, NONE): ",",
     (Key.Key_Period, NONE): ".",
@@ -54,6 +51,10 @@ REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
     | {"Pan left", "Pan right", "Pan up", "Pan down"}
 )
+# What stops the machine does so with any modifier.
+_STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
+STOPPING = frozenset("HE")
+ANSWER = "Yes"  # what the key that means yes does, and its target on the prompt line
 # Signs that stand on shifted keys on one keyboard and on bare ones on another.
 _SIGNS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}
 
@@ -61,6 +62,8 @@ _SIGNS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Per
 def name_of(key: int, modifiers: Qt.KeyboardModifier) -> str:
     """What was pressed; empty when it means nothing here."""
     held = modifiers & (CTRL | SHIFT | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier)
+    if key in _STOPS:
+        return _STOPS[Key(key)]
     if key in _SIGNS:
         held &= ~SHIFT
     return NAMES.get((key, held), "")

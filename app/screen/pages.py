@@ -18,6 +18,7 @@ It is made when it is first opened. What a page gives:
               ``Page up``, ``Page down``; True when it was taken. A stock widget
               that has the focus takes its keys by itself.
 ``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
+``has_field()`` whether an entry has the keyboard: characters that it does not take mean nothing then.
 ``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
 ``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
 ``opened()``  it has come up; it may take the focus (the window has it otherwise).
@@ -100,6 +101,10 @@ class Page(QWidget):
 
     def takes(self, _key: str) -> bool:
         """Whether a character is text here."""
+        return False
+
+    def has_field(self) -> bool:
+        """Whether an entry of the page has the keyboard."""
         return False
 
     def prompt(self) -> str:

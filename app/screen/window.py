@@ -6,14 +6,25 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QEvent, Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import (
+    QCloseEvent,
+    QInputEvent,
+    QKeyEvent,
+    QPointerEvent,
+    QResizeEvent,
+    QShowEvent,
+)
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import Desk
 from app.desk.pages import AUTOMATIC
-from app.desk.prompts import UNDER_WAY
+from app.desk.prompts import MOVING, UNDER_WAY
+from app.desk.words import tr
+from app.screen.eventtime import EventTimes
+from app.screen.fingers import FingerPanel
 from app.screen.frame import Frame
-from app.screen.keys import PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
+from app.screen.keyboard import Keyboard, key_of, letter_of
+from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
 from app.screen.language import speak_in, spoken
 from app.screen.layout import LEAST
 from app.screen.look import Look, dress
@@ -35,9 +46,12 @@ class MainWindow(QWidget):
         self.look = look
         self.frame: Frame | None = None
         self._keys: dict[str, Callable[[], None]] = {}
+        self.times = EventTimes()
+        self.keyboard = Keyboard(self, self.times)
+        self._page = ""  # that has the keyboard
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
-        self._timer.timeout.connect(self.refresh)
+        self._timer.timeout.connect(self._tick)
         self.setWindowTitle("TurnDesk")
         self.setMinimumSize(*LEAST)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -46,17 +60,33 @@ class MainWindow(QWidget):
         """Put the desk on the screen and begin to poll it."""
         self.frame = Frame(self.look, desk, self.press, self)
         self._keys = self._table(desk)
+        desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
         self.frame.setGeometry(self.rect())
         self.refresh()
         self.frame.show()
         self.setFocus()
         self._timer.start(FRAME_MS)
 
+    def _tick(self) -> None:
+        self.times.frame()
+        self.refresh()
+
     def refresh(self) -> None:
         """Once a frame."""
         if self.frame is not None:
+            self._look_at_hands(self.frame)
             self.frame.refresh()
             self._wear(self.frame)
+
+    def _look_at_hands(self, frame: Frame) -> None:
+        """What is held is held really, and for this page; a release that was lost is made up for."""
+        if self._page != frame.page.NAME:
+            self._page = frame.page.NAME
+            self.keyboard.away()
+        self.keyboard.look()
+        if QApplication.mouseButtons() is not Qt.MouseButton.NoButton and not self.keyboard.button_held():
+            for panel in frame.findChildren(FingerPanel):
+                panel.mouse_is_up()
 
     def press(self, key: str) -> None:
         """Do what a key does; fingers on the screen come here too."""
@@ -78,8 +108,9 @@ class MainWindow(QWidget):
             "H": desk.feed_hold,
             "R": desk.reset,
             "D": desk.enable,
-            "E": partial(desk.hands.estop, pressed=True),
-            "Shift E": partial(desk.hands.estop, pressed=False),
+            "E": desk.estop,
+            "U": desk.twist_out,
+            ANSWER: desk.answer,
             "A": desk.turn_spindle_switch,
             ",": partial(desk.hands.turn_spindle_pot, -1),
             ".": partial(desk.hands.turn_spindle_pot, 1),
@@ -118,12 +149,56 @@ class MainWindow(QWidget):
         self.hide()
         self.deleteLater()
 
+    # --- what the keyboard does at once --------------------------------------------------------------
+
+    def hold(self) -> None:
+        """Feed hold, whatever page, field or question has the keyboard."""
+        if self.frame is not None:
+            self.frame.page.pressed()
+            self.frame.desk.feed_hold()
+            self.refresh()
+
+    def estop(self) -> None:
+        """E-stop, likewise."""
+        if self.frame is not None:
+            self.frame.page.pressed()
+            self.frame.desk.estop()
+            self.refresh()
+
+    def moving(self) -> bool:
+        """Whether something moves."""
+        return self.frame is not None and self.frame.desk.snapshot().state in MOVING
+
+    def is_text(self, key: str) -> bool:
+        """Whether a character goes to an entry now."""
+        return self.frame is not None and self.frame.is_text(key)
+
+    def forgotten(self, seconds: float) -> None:
+        """What was pressed while the screen stood still does nothing."""
+        if self.frame is not None:
+            text = tr("THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN")
+            self.frame.desk.say(text.format(seconds=f"{seconds:.1f}"))
+
+    def stops_at(self, event: QInputEvent) -> bool:
+        """Whether a press is on something that stops the machine."""
+        dock = self.frame.dock if self.frame is not None else None
+        if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
+            return False
+        places = (dock.mapFromGlobal(point.globalPosition()) for point in event.points())
+        return any(dock.stops_at(place) for place in places)
+
     # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def showEvent(self, _event: QShowEvent) -> None:
+        """There is a window now whose keys can be watched."""
+        window = self.windowHandle()
+        if window is not None:
+            self.keyboard.watch(window)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """A key goes down. A key that repeats by being held counts once, where once is what is meant."""
         frame = self.frame
-        if frame is None:
+        if frame is None or self._answered(frame, event):
             return
         if frame.page.key_down(event):
             self.refresh()
@@ -131,11 +206,30 @@ class MainWindow(QWidget):
         if not event.isAutoRepeat() and event.key() in PALMS and not frame.automatic.files.isVisible():
             self._palm(PALMS[Qt.Key(event.key())], down=True)
             return
-        if self._typed(frame, event):
+        if self._typed(frame, event) or self._kept_from(frame, event):
             return
-        name = name_of(event.key(), event.modifiers())
+        name = name_of(key_of(event), event.modifiers())
         if name and (name in REPEATING or not event.isAutoRepeat()):
             self.press(name)
+
+    def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
+        if frame.desk.asked not in {letter_of(event), typed_of(event)} - {""}:
+            return False
+        if not event.isAutoRepeat() and self.keyboard.alone(event):
+            self.press(ANSWER)
+        return True
+
+    def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether an entry has the keyboard and does not take a character: it is no other key then."""
+        text = event.text()
+        stops = text == " " or letter_of(event) in STOPPING
+        if not text.isprintable() or not text or stops or not frame.has_field():
+            return False
+        if not event.isAutoRepeat():
+            frame.desk.say(tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text))
+            self.refresh()
+        return True
 
     def _typed(self, frame: Frame, event: QKeyEvent) -> bool:
         """Whether the page has taken the key as text."""
@@ -163,12 +257,16 @@ class MainWindow(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         """Losing the keyboard lets every held button go: the release would be somebody else's to see."""
-        if event.type() == QEvent.Type.ActivationChange and not self.isActiveWindow():
-            self.let_go()
+        if event.type() == QEvent.Type.ActivationChange:
+            if self.isActiveWindow():
+                self.keyboard.back()
+            else:
+                self.let_go()
         super().changeEvent(event)
 
     def let_go(self) -> None:
         """Hands off everything that is held."""
+        self.keyboard.away()
         if self.frame is not None:
             if self.frame.dock is not None:
                 self.frame.dock.let_go()

@@ -95,8 +95,14 @@ def test_giving_a_program_up_is_asked_once(desk: Desk, machine: FakeMachine) -> 
     assert machine.posted == []
     desk.escape()
     desk.reset()
-    assert machine.posted == []
     desk.reset()
+    assert machine.posted == []
+    desk.answer()  # at once: nobody has read it
+    assert machine.posted == []
+    assert not desk.asked
+    desk.reset()
+    desk.answers._since = float("-inf")
+    desk.answer()
     assert machine.posted == [Reset()]
 
 

@@ -21,6 +21,7 @@ from drivers.grblhal.peer.firmware import Firmware
 from drivers.grblhal.peer.serve import TcpEnd, serve
 from drivers.simulated import RealClock
 from tests.screen.hands import Key
+from tests.screen.yes import yes
 
 LIMIT = 30_000  # ms of a loaded computer
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"
@@ -114,8 +115,8 @@ def test_a_part_a_hold_a_reset_and_the_cable_out(
     qtbot.waitUntil(lambda: desk.snapshot().actual[0] > 1.0, timeout=LIMIT)
     QTest.keyClick(window, Key.Key_H)
     sees(State.HOLD)
-    for _ in range(2):  # the second is the answer to the first's question
-        QTest.keyClick(window, Key.Key_R)
+    QTest.keyClick(window, Key.Key_R)
+    yes(window)
     sees(State.IDLE)
     controller.pull()
     sees(State.FAULT)

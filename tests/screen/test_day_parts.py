@@ -22,7 +22,8 @@ from tests.screen.chapters import (
     set_tools,
     write_program,
 )
-from tests.screen.day import NEAR, SHIFT, Day, Key, begun
+from tests.screen.day import NEAR, Day, Key, begun
+from tests.screen.yes import twist_out, yes
 
 TURNING = 6  # the line that turns the .9 diameter
 PARTS = "pin9.nc"
@@ -136,7 +137,7 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     assert day.slides == pytest.approx(stood, abs=NEAR / 5)
     day.key(Key.Key_R)
     assert "GIVE THE PROGRAM UP" in day.prompt
-    day.key(Key.Key_R)
+    yes(day.window)
     day.reaches(State.IDLE)
     refused(day, "X1.2", "11")
     clear_of_the_part(day)
@@ -208,7 +209,7 @@ def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: D
     day.reaches(State.ESTOP)
     day.run(3.0)
     assert day.shot.rpm_actual == pytest.approx(0.0, abs=1.0)
-    day.key(Key.Key_E, modifier=SHIFT)
+    twist_out(day.window)
     day.reaches(State.DISABLED)
     day.key(Key.Key_D)
     day.reaches(State.IDLE)

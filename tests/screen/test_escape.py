@@ -15,7 +15,8 @@ from app.desk.editing import words
 from app.screen.editor.page import EditorPage
 from core.executor.snapshot import State
 from tests.screen.chapters import drives_on
-from tests.screen.day import SHIFT, Day, Key, begun
+from tests.screen.day import Day, Key, begun
+from tests.screen.yes import twist_out, yes
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 TEXT = "G90G94F10\nX1Z1\nM30\n"
@@ -88,7 +89,8 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     assert day.page == pages.MDI
     day.key(Key.Key_Escape)
     assert day.page == pages.MDI  # a line that is held is not walked away from
-    day.key(Key.Key_Escape, Key.Key_R, Key.Key_R)
+    day.key(Key.Key_Escape, Key.Key_R)
+    yes(day.window)
     day.reaches(State.IDLE)
 
 
@@ -178,7 +180,8 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
     assert day.page == pages.JOG
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == pages.AUTOMATIC)
-    day.key(Key.Key_R, Key.Key_R)
+    day.key(Key.Key_R)
+    yes(day.window)
     day.reaches(State.IDLE)
 
 
@@ -189,4 +192,4 @@ def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
     day.reaches(State.ESTOP)
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == pages.AUTOMATIC)
-    day.key(Key.Key_E, modifier=SHIFT)
+    twist_out(day.window)

@@ -24,6 +24,7 @@ from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
 
 
 @dataclass
@@ -174,11 +175,12 @@ def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
     text = (shop.own / "alpha.nc").read_bytes()
     shop.open_list()
     shop.key(Key.Key_F6)
-    assert shop.prompt().startswith("PRESS F6 ONCE MORE TO DELETE alpha.nc")
+    assert shop.prompt().startswith("PRESS Y TO DELETE alpha.nc")
     shop.key(Key.Key_Escape)
     shop.key(Key.Key_F6)
-    assert (shop.own / "alpha.nc").exists()
     shop.key(Key.Key_F6)
+    assert (shop.own / "alpha.nc").exists()
+    yes(shop.window)
     shop.sees(lambda: "alpha.nc" not in shop.rows())
     assert shop.journal.text_of("alpha.nc", 1) == text
 
@@ -214,8 +216,11 @@ def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
     shop.settle()
     shop.key(Key.Key_F4)
     shop.sees(lambda: "THERE ALREADY WITH ANOTHER TEXT" in shop.prompt())
-    assert (shop.stick / "alpha.nc").read_text() == "M30\n"
     shop.key(Key.Key_F4)
+    shop.settle()
+    assert (shop.stick / "alpha.nc").read_text() == "M30\n"
+    shop.sees(lambda: "THERE ALREADY WITH ANOTHER TEXT" in shop.prompt())
+    yes(shop.window)
     shop.sees(lambda: "SAFE TO REMOVE" in shop.prompt())
     assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
 
@@ -255,7 +260,7 @@ def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
     shop.key(Key.Key_Return)
     shop.sees(lambda: "THERE ALREADY" in shop.prompt())
     assert (shop.own / "alpha.nc").read_bytes() == old
-    shop.key(Key.Key_Return)
+    yes(shop.window)
     shop.sees(lambda: "IMPORTED AND PROVED" in shop.prompt())
     assert (shop.own / "alpha.nc").read_bytes() == (SAMPLES / "grooves.nc").read_bytes()
     assert shop.journal.text_of("alpha.nc", 1) == old

@@ -14,6 +14,7 @@ from app.screen.theme import DARK
 from app.screen.window import MainWindow
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
+from tests.screen.yes import yes
 
 INCH = 25.4
 
@@ -134,20 +135,27 @@ def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> N
     at_mdi.key(Key.Key_F1)  # it is still under way
     assert at_mdi.frame.title.page == pages.MDI
     at_mdi.key(Key.Key_R)
-    at_mdi.key(Key.Key_R)
+    yes(at_mdi.window)
     at_mdi.reaches(State.IDLE)
     assert value(at_mdi, "distance") == "G90"
     at_mdi.type("R")  # text again
     assert page_of(at_mdi).line.text == "R"
 
 
-def test_hold_and_estop_keep_their_keys_while_typing(at_mdi: Operator) -> None:
-    at_mdi.type("X.5h")
-    assert page_of(at_mdi).line.text == "X.5"
-    at_mdi.key(Key.Key_E)
+def test_the_line_has_every_letter_also_with_the_drives_off(at_mdi: Operator) -> None:
+    at_mdi.type("X.5 he")
+    assert page_of(at_mdi).line.text == "X.5 he"
+    assert at_mdi.shot.state is State.IDLE
+    at_mdi.window.estop()
     at_mdi.reaches(State.ESTOP)
-    at_mdi.type("X")
-    assert page_of(at_mdi).line.text == "X.5"
+    override = at_mdi.shot.feed_override
+    at_mdi.type("+-sod/")
+    at_mdi.pause(1.0)
+    assert page_of(at_mdi).line.text == "X.5 he+-sod/"
+    assert at_mdi.shot.feed_override == override
+    assert not at_mdi.shot.single_block
+    at_mdi.key(Key.Key_Return)
+    assert "F5 SWITCHES THEM ON" in at_mdi.prompt()
 
 
 def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Operator) -> None:

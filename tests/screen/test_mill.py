@@ -22,6 +22,7 @@ from app.screen.window import MainWindow
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from tests.screen.hands import Key
+from tests.screen.yes import yes
 
 TICK = 0.01
 LONG = 200.0  # s of machine time
@@ -159,7 +160,7 @@ def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
     assert held.swivel is not None
     assert held.swivel.system.tilted  # it can go on
     mill.key(Key.Key_R)
-    mill.key(Key.Key_R)
+    yes(mill.window)
     end = mill.goes_on(lambda s: s.state is State.IDLE)
     assert end.swivel is not None
     assert end.swivel.system.level

@@ -22,6 +22,7 @@ from core.executor.snapshot import State
 from core.store.rows import ToolRow
 from core.store.store import Store
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
 
 
 @pytest.fixture
@@ -102,7 +103,10 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     assert not hands.machine.now.cycle_repeat
     assert (hands.desk.hands.feed_pot, hands.desk.hands.spindle_pot) == before
     assert page_of(hands).asked.asked.text == "1+1-/.,"
-    hands.sees(lambda: hands.frame.strip.mute == {"C", "/"})
+    hands.sees(lambda: {"C", "/", "S", "O", "D", "R"} <= hands.frame.strip.mute)
+    hands.type("sodrt")  # no letter is a switch while figures are typed
+    assert not hands.machine.now.single_block
+    assert hands.prompt() == "AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE t HERE"
 
 
 def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:
@@ -112,11 +116,13 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
         answer(hands, number, ".1", "", "")
         hands.sees(lambda: not page.model.book.busy and page.asked.asked.question == "Offset Number?")
     hands.key(Key.Key_C)
-    assert hands.prompt().startswith("PRESS C ONCE MORE TO CLEAR ALL 32")
+    assert hands.prompt().startswith("PRESS Y TO CLEAR ALL 32")
     hands.key(Key.Key_Escape)
     assert hands.frame.page is page
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
+    assert page.table.offsets
+    yes(hands.window)
     hands.sees(lambda: page.table.offsets == {})
     hands.key(Key.Key_F4)
     hands.sees(lambda: sorted(page.table.offsets) == [1, 32])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
@@ -15,6 +14,7 @@ from app.screen.theme import DARK
 from app.screen.window import MainWindow
 from core.executor.snapshot import State
 from tests.screen.hands import Key
+from tests.screen.yes import twist_out
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def test_start_hold_go_on_single_block_estop_recover(stage: Stage, window: MainW
     QTest.keyClick(window, Key.Key_E)
     reaches(stage, State.ESTOP)
     assert stage.desk.snapshot().rpm_command == 0.0
-    QTest.keyClick(window, Key.Key_E, Qt.KeyboardModifier.ShiftModifier)
+    twist_out(window)
     reaches(stage, State.DISABLED)
     QTest.keyClick(window, Key.Key_D)
     reaches(stage, State.IDLE)

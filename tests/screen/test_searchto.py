@@ -8,6 +8,7 @@ import pytest
 from PySide6.QtCore import QPointF
 
 from app.desk import pages
+from app.desk.prompts import HOW_TO_HOLD
 from app.desk.searchto.search import SearchDesk
 from app.desk.searchto.stage import Stage
 from app.screen.look import Look
@@ -17,6 +18,7 @@ from app.screen.theme import DARK
 from app.screen.window import MainWindow
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
+from tests.screen.yes import twist_out
 
 
 @pytest.fixture
@@ -54,7 +56,7 @@ def loaded(operator: Operator) -> None:
 def estop_and_recover(operator: Operator) -> None:
     operator.key(Key.Key_E)
     operator.reaches(State.ESTOP)
-    operator.key(Key.Key_E, shift=True)
+    twist_out(operator.window)
     operator.reaches(State.DISABLED)
     operator.key(Key.Key_D)
     operator.reaches(State.IDLE)
@@ -97,7 +99,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     assert operator.frame.page is operator.frame.automatic
     assert operator.shot.state in {State.RUN, State.WAIT}
     operator.pause(0.1)
-    assert operator.prompt() == "PRESS H FOR FEED HOLD"  # nothing was refused on the way
+    assert operator.prompt() == HOW_TO_HOLD  # nothing was refused on the way
     operator.until(lambda: operator.shot.line == 26, 60.0)
     assert operator.shot.modal.diameter
     assert operator.shot.modal.secondary == 1
@@ -251,14 +253,12 @@ def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> Non
     assert operator.shot.state is State.IDLE
 
 
-def test_estop_keeps_its_key_as_long_as_nothing_is_typed(operator: Operator) -> None:
+def test_the_question_has_every_letter(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
-    operator.type("xe")
-    assert page_of(operator).asked.text == "xe"
-    operator.key(Key.Key_Escape)
-    operator.key(Key.Key_E)
-    operator.reaches(State.ESTOP)
+    operator.type("eh x")
+    assert page_of(operator).asked.text == "eh x"
+    assert operator.shot.state is State.IDLE
 
 
 def test_escape_goes_back_step_by_step(operator: Operator) -> None:

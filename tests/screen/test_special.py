@@ -22,6 +22,7 @@ from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
 
 
 @pytest.fixture
@@ -84,8 +85,8 @@ def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
     assert SpindleLimit(1250.0) in hands.machine.posted
     hands.sees(lambda: cells(page, 1)[1] == "1250")
     hands.key(Key.Key_F4)
-    assert hands.prompt().startswith("PRESS F4 ONCE MORE")
-    hands.key(Key.Key_F4)
+    assert hands.prompt().startswith("PRESS Y TO LIFT")
+    yes(hands.window)
     hands.sees(lambda: cells(page, 1)[1] == "NONE")
 
 
@@ -125,7 +126,7 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     hands.sees(lambda: hands.prompt() == "TARGET REACHED: 2 OF 2 PARTS")
     assert hands.desk.counter.words == "2/2"
     hands.key(Key.Key_F4)
-    hands.key(Key.Key_F4)
+    yes(hands.window)
     hands.sees(lambda: hands.desk.counter.words == "0/2")
 
 
@@ -163,11 +164,12 @@ def test_an_output_is_switched_after_asking(hands: Hands) -> None:
     page = open_function(hands, 3)
     assert cells(page, 0) == ("coolant", "OUT-1", "OFF", "M08 M09")
     hands.key(Key.Key_Return)
-    assert hands.prompt() == "PRESS RETURN ONCE MORE TO SWITCH coolant ON, ESC TO LEAVE IT OFF"
+    assert hands.prompt() == "PRESS Y TO SWITCH coolant ON, ESC TO LEAVE IT OFF"
     hands.key(Key.Key_Escape)
     hands.key(Key.Key_Return)
-    assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
     hands.key(Key.Key_Return)
+    assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
+    yes(hands.window)
     assert ForceOutput("coolant", True) in hands.machine.posted
     hands.sees(lambda: cells(page, 0)[2] == "ON")
 
@@ -244,8 +246,8 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     store.set_setting("mark", "after").result(5)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.prompt().startswith("PRESS RETURN ONCE MORE TO RESTORE")
-    hands.key(Key.Key_Return)
+    assert hands.prompt().startswith("PRESS Y TO RESTORE")
+    yes(hands.window)
     hands.sees(lambda: hands.prompt().startswith("RESTORED"))
     assert journal.setting("mark") == "before"
     assert hands.desk.book.store is not store

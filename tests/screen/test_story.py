@@ -14,6 +14,7 @@ from app.desk.session import Phase
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Alarm, State
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import twist_out, yes
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
@@ -38,7 +39,7 @@ def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None
     hands.sees_state(State.ESTOP)
     hands.key(Key.Key_D)
     assert "STILL PRESSED" in hands.prompt()
-    hands.key(Key.Key_E, SHIFT)
+    twist_out(hands.window)
     hands.sees_state(State.DISABLED)
     hands.key(Key.Key_D)
     hands.sees_state(State.IDLE)
@@ -181,6 +182,8 @@ def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
     hands.key(Key.Key_R)
     assert hands.prompt() == GIVE_UP
     hands.key(Key.Key_R)
+    assert Reset() not in hands.machine.posted  # never the key that asked
+    yes(hands.window)
     assert Reset() in hands.machine.posted
     hands.sees_state(State.IDLE)
 

@@ -24,6 +24,7 @@ from core.ports import DriverError
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 CAME = Received(b"O77\nM30\n", "O77", 2, "ab" * 32, False, 3, (), 1.5)
@@ -198,9 +199,9 @@ def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path
     lines.job.go.set()
     hands.sees(lambda: page(hands).table.sheet.question != "")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: "ONCE MORE" in hands.desk.notice)
+    hands.sees(lambda: "PRESS Y TO THROW" in hands.desk.notice)
     assert page(hands).table.sheet.question != ""
-    hands.key(Key.Key_F6)
+    yes(hands.window)
     hands.sees(lambda: page(hands).table.sheet.question == "")
     assert not (tmp_path / "own").exists()
 

@@ -15,6 +15,7 @@ from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.zero import ZeroRow
 from tests.screen.hands import Hands, Key
+from tests.screen.yes import yes
 
 
 @pytest.fixture
@@ -83,8 +84,8 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == "G54 SAVED")
     hands.key(Key.Key_C)
-    assert hands.prompt().startswith("PRESS C ONCE MORE")
-    hands.key(Key.Key_C)
+    assert hands.prompt().startswith("PRESS Y TO CLEAR G54")
+    yes(hands.window)
     hands.sees(lambda: store.zero_offsets() == {})
     hands.sees(lambda: not page.model.book.busy and page.table.rows == {})
     hands.key(Key.Key_F4)

@@ -64,8 +64,7 @@ class Editor:
     _leaving: bool = False
     _to_desk: bool = False
     _changed: bool = False  # something of it was saved since it was opened
-    _replace: bool = False  # a file changed by somebody else was shown and is replaced all the same
-    _abandoning: bool = False
+    asked: Callable[[str], None] | None = None  # what F6 does now: never what the key does that asked
     _unnamed: str = ""  # text whose saving waits for a name
 
     def __post_init__(self) -> None:
@@ -162,12 +161,11 @@ class Editor:
 
     def clear(self) -> None:
         """Take answer and questions back."""
-        self.notice = ""
-        self._abandoning = False
+        self.notice, self.asked = "", None
 
     # --- saving and leaving --------------------------------------------------------------------------
 
-    def save(self, text: str, *, leave: bool = False) -> None:
+    def save(self, text: str, *, leave: bool = False, replacing: bool = False) -> None:
         """Write the file and keep the version; then, if asked for, leave."""
         document = self.document
         if document is None or self.stage is not Stage.OPEN:
@@ -179,7 +177,7 @@ class Editor:
         elif document.protected:
             self.stage, self.notice, self._unnamed = Stage.NAMING, words.SAMPLE, text
         else:
-            self._write(document, text)
+            self._write(document, text, replacing=replacing)
 
     def take_name(self, typed: str) -> bool:
         """The name under which a sample is saved; False when it is refused."""
@@ -220,17 +218,23 @@ class Editor:
             self._go(document)
 
     def abandon(self, text: str) -> None:
-        """Leave without saving; asked once when there is something to lose."""
+        """Leave without saving; asked when there is something to lose, and done by another key."""
         if self.stage is not Stage.OPEN:
             return
-        if self.is_dirty(text) and not self._abandoning:
-            self.notice, self._abandoning = words.ABANDON, True
+        if self.is_dirty(text):
+            self.notice, self.asked = words.ABANDON, lambda _text: self._shut()
             return
         self._shut()
 
-    def _write(self, document: Document, text: str) -> None:
+    def answer(self, text: str) -> None:
+        """F6: yes to what is asked of the text that stands in the field."""
+        asked = self.asked
+        self.clear()
+        if asked is not None and self.stage is Stage.OPEN:
+            asked(text)
+
+    def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
         self.stage = Stage.SAVING
-        replacing, self._replace = self._replace, False
         self.worker.ask(
             lambda: saving.save(document, text, self.bench.archive, replacing),
             lambda trouble: self._saved(document, text, trouble),
@@ -239,8 +243,9 @@ class Editor:
 
     def _saved(self, document: Document, text: str, trouble: str) -> None:
         if trouble == saving.CHANGED:
-            self._replace = True
+            leave = self._leaving
             self._not_saved(words.CHANGED_OUTSIDE.format(document.name))
+            self.asked = lambda now: self.save(now, leave=leave, replacing=True)
             return
         for each in (document, self.document or document):  # under its new name, and its old one
             self.drafts.forget(each)
@@ -264,4 +269,4 @@ class Editor:
             self.drafts.forget(self.document)
         self.stage, self.document, self._leaving = Stage.CLOSED, None, False
         self._offered = ""
-        self._abandoning = self._replace = False
+        self.asked = None

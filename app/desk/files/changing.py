@@ -33,6 +33,8 @@ class FilesHost(Protocol):
 
     def say(self, text: str) -> None: ...
 
+    def ask(self, question: str, yes: Callable[[], None]) -> None: ...
+
     def clear(self) -> None: ...
 
     def snapshot(self) -> Snapshot: ...
@@ -92,14 +94,15 @@ class Changer:
         if here is None or self._fixed(here):
             self.desk.say(self._fixed(here) if here else NONE)
             return
-        asked = tr("PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
-        question = asked.format(name=here.name)
-        if self.desk.notice != question:
-            self.desk.say(question)
+        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
+        self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
+
+    def _delete(self, program: Program) -> None:
+        if self._fixed(program):  # it was started meanwhile
+            self.desk.say(self._fixed(program))
             return
-        self.desk.clear()
         self._change(
-            lambda: changes.deleted(here.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
+            lambda: changes.deleted(program.path, self.keep), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
         )
 
     def _change(self, work: Callable[[], str], words: str) -> None:

@@ -111,7 +111,7 @@ class FilesDesk:
     @property
     def may_type(self) -> bool:
         """Letters look for a name; while something is under way they keep their meaning, H above all."""
-        return self.desk.snapshot().state in {State.IDLE, State.DISABLED}
+        return self.desk.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""

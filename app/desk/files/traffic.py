@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -25,6 +26,8 @@ class Speaker(Protocol):
     notice: str
 
     def say(self, text: str) -> None: ...
+
+    def ask(self, question: str, yes: Callable[[], None]) -> None: ...
 
     def clear(self) -> None: ...
 
@@ -48,7 +51,8 @@ class Traffic:
     out: bool = False
     all: tuple[Path, ...] = ()  # what the list shows
     one: Path | None = None  # what is marked in it
-    _asked: tuple[Path, ...] = ()  # what may be replaced once this is confirmed
+    _asked: tuple[Path, ...] = ()  # what is being carried
+    _at: Path = Path()  # and where
 
     def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
         """Open the chooser at the list of places."""
@@ -144,10 +148,14 @@ class Traffic:
         elif not paths:
             self.desk.say("NO PROGRAM IS IN THIS FOLDER")
         else:
-            self._carry(paths, self.chooser.at, replace=self._asked == paths and bool(self.desk.notice))
+            self._carry(paths, self.chooser.at, replace=False)
 
     def _carry(self, paths: tuple[Path, ...], at: Path, *, replace: bool) -> None:
+        if self.worker.busy:
+            self.desk.say(BUSY)
+            return
         self._asked = paths
+        self._at = at
         self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
         if self.out:
             self.worker.ask(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
@@ -160,9 +168,9 @@ class Traffic:
     def _done(self, moved: Moved) -> None:
         if moved.standing:
             names = ", ".join(moved.standing[:3]) + (" …" if len(moved.standing) > 3 else "")
-            key = "F4" if self.out and len(self._asked) == 1 else "RETURN" if len(self._asked) == 1 else "F5"
-            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. {key} ONCE MORE REPLACES, ESC KEEPS")
-            self.desk.say(asked.format(names=names, key=key))
+            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP")
+            again = partial(self._carry, self._asked, self._at, replace=True)
+            self.desk.ask(asked.format(names=names), again)
             return
         self._asked = ()
         count = len(moved.done)

@@ -62,7 +62,7 @@ class JogDesk(Choices):
         names = tuple(dict.fromkeys(each.axis for each in self.directions))
         names = tuple(sorted(names, key=_order(self.machine)))
         self.wheel = WheelHold(self.machine, self.hold, names, self._wheel_barred)
-        self.home = HomeAsk(self.machine, desk.post, desk.say, desk.clear)
+        self.home = HomeAsk(self.machine, desk)
         self.tool = ToolSetting(desk, desk.book)
 
     def _now(self) -> float:
@@ -191,7 +191,8 @@ class JogDesk(Choices):
         self.hold.let_go()
         self.wheel.drop("")
         self._stop_step()
-        self.home.asking, self.armed = False, False
+        self.home.give_up()
+        self.armed = False
         self.tool.forget()
         self.desk.clear()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 from app.desk.words import tr
 from core.executor.commands import Command, Home
@@ -32,15 +33,37 @@ class Known(StrEnum):
         return words[self]
 
 
+class HomeHost(Protocol):
+    """What the question needs of the desk."""
+
+    @property
+    def post(self) -> Callable[[Command], None]: ...
+
+    @property
+    def asked(self) -> str: ...
+
+    @property
+    def read(self) -> bool: ...
+
+    def say(self, text: str) -> None: ...
+
+    def ask(self, question: str, yes: Callable[[], None], key: str) -> None: ...
+
+    def clear(self) -> None: ...
+
+
 @dataclass(slots=True)
 class HomeAsk:
-    """The home key asks once: for all axes in their order, or for one."""
+    """The home key asks: Return homes all axes in their order, a letter one of them."""
 
     machine: Machine
-    post: Callable[[Command], None]
-    say: Callable[[str], None]
-    clear: Callable[[], None]
-    asking: bool = False
+    desk: HomeHost
+    _asked: bool = False
+
+    @property
+    def asking(self) -> bool:
+        """Whether the question stands, and is this one."""
+        return self._asked and self.desk.asked == "Enter"
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -68,35 +91,31 @@ class HomeAsk:
         return [axis.name for axis in order if known[axis.name] in {Known.LOST, Known.LOOKING}]
 
     def key(self, snapshot: Snapshot, why_not: str) -> None:
-        """The home key: asks, and the second time does it."""
+        """The home key: asks."""
         lost = self.lost(snapshot)
         if why_not:
-            self.asking = False
-            self.say(why_not)
+            self.desk.say(why_not)
         elif not lost:
-            self.say(tr("EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"))
-        elif not self.asking:
-            self.asking = True
-            text = tr("HOME {first}: PRESS HOME ONCE MORE FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE")
-            order = tr(", THEN ").join(lost)
-            self.say(text.format(first=order, letters=tr(" OR ").join(sorted(lost))))
+            self.desk.say(tr("EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"))
         else:
-            self._go("")
+            text = tr("HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE")
+            order = tr(", THEN ").join(lost)
+            question = text.format(first=order, letters=tr(" OR ").join(sorted(lost)))
+            self.desk.ask(question, lambda: self._go(""), "Enter")
+            self._asked = True
 
     def answer(self, key: str, snapshot: Snapshot) -> bool:
         """The letter of an axis while it is asked; any other key takes the question back."""
         if not self.asking:
             return False
-        name = key.upper()
+        name, read = key.upper(), self.desk.read
+        self.give_up()
         if name in {axis.name for axis in self.axes}:
-            if name in self.lost(snapshot):
+            if name not in self.lost(snapshot):
+                self.desk.say(tr("{axis} KNOWS ITS POSITION").format(axis=name))
+            elif read:
                 self._go(name)
-            else:
-                self.asking = False
-                self.say(tr("{axis} KNOWS ITS POSITION").format(axis=name))
             return True
-        self.asking = False
-        self.clear()
         return False
 
     def one(self, name: str, snapshot: Snapshot, why_not: str) -> None:
@@ -107,13 +126,13 @@ class HomeAsk:
             self.key(snapshot, why_not)
 
     def _go(self, axis: str) -> None:
-        self.asking = False
-        self.clear()
-        self.post(Home(axis))
+        self._asked = False
+        self.desk.clear()
+        self.desk.post(Home(axis))
 
     def give_up(self) -> bool:
         """Take the question back; False when none is asked."""
-        was, self.asking = self.asking, False
+        was, self._asked = self.asking, False
         if was:
-            self.clear()
+            self.desk.clear()
         return was

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from app.desk import prompts
 from app.desk.mdi.findings import never_set, prompt
 from app.desk.mdi.typing import Typing
-from app.desk.pages import STOPPING
 from app.desk.session import Proved, Watch
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare, SpindleStop
@@ -82,14 +81,17 @@ class MdiDesk:
     # --- keys ----------------------------------------------------------------------------------------
 
     def takes(self, key: str) -> bool:
-        """Whether a character is text now: at rest, and not one that must always stop the machine."""
-        if len(key) != 1 or self.snapshot().state is not State.IDLE:
-            return False
-        return key not in STOPPING or self.typing.in_comment
+        """Whether a character is text now: the line has the whole keyboard, or none of it."""
+        return len(key) == 1 and self.has_keyboard
+
+    @property
+    def has_keyboard(self) -> bool:
+        """Whether the line takes what is typed: also with the drives off, but not while one is under way."""
+        return self.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
 
     def typed(self, key: str) -> bool:
         """A key that was pressed; False leaves it to the window."""
-        if self.snapshot().state is not State.IDLE or (len(key) == 1 and not self.takes(key)):
+        if not self.has_keyboard:
             return False
         if key == "Enter":
             self.enter()
@@ -105,6 +107,9 @@ class MdiDesk:
         """Have the line proved, from the state and the place of now."""
         snapshot = self.snapshot()
         self.clear()
+        if snapshot.state is not State.IDLE:
+            self.say(tr("THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET"))
+            return
         if not self.typing.text.strip():
             self.say(tr("TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK"))
             return
@@ -159,6 +164,8 @@ class MdiDesk:
 
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
+        if snapshot.state is State.DISABLED:
+            return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
         if snapshot.state is not State.IDLE:
             return ""
         return prompt(start, busy=self.busy, wrong=bool(self.errors), ready=self.ready is not None)

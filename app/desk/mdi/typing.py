@@ -77,12 +77,6 @@ class Typing:
         self.put("")
         self.back, self._draft = 0, ""
 
-    @property
-    def in_comment(self) -> bool:
-        """Whether the cursor stands in a comment, where every letter is text."""
-        before = self.text[: self.at]
-        return before.count("(") > before.count(")")
-
     def _cut(self, index: int) -> None:
         if 0 <= index < len(self.text):
             self.put(self.text[:index] + self.text[index + 1 :], index)

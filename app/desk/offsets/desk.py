@@ -25,7 +25,6 @@ class SeccmpDesk:
     book: OffsetBook
     ledger: Ledger = field(init=False)
     dialogue: Dialogue = field(init=False)
-    clearing: bool = False
 
     def __post_init__(self) -> None:
         self.ledger = Ledger(self.desk, self.book, Kind.SECONDARY)
@@ -80,7 +79,6 @@ class SeccmpDesk:
             return True
         if key not in KEYS:
             return False
-        self.clearing = False
         self.desk.clear()
         return self.dialogue.type(key)
 
@@ -90,13 +88,13 @@ class SeccmpDesk:
             self.desk.say(why)
         elif self.dialogue.step is not Step.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST"))
-        elif not self.clearing:
-            self.clearing = True
-            self.desk.say(tr("PRESS C ONCE MORE TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM"))
         else:
-            self.clearing = False
-            self.desk.clear()
-            self.ledger.answer(self.book.clear_secondary())
+            question = tr("PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM")
+            self.desk.ask(question, self._clear_all)
+
+    def _clear_all(self) -> None:
+        why = self.book.locked or allowed.refusal(self.desk.snapshot(), correction=False)
+        self.ledger.answer(why or self.book.clear_secondary())
 
     def undo(self) -> None:
         """Take the last change of this table back."""
@@ -109,8 +107,7 @@ class SeccmpDesk:
         """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
         if self.ledger.looking_back is not None:
             self.ledger.looking_back = None
-        elif self.clearing:
-            self.clearing = False
+        elif self.desk.asked:
             self.desk.clear()
         elif self.dialogue.step is not Step.NUMBER or self.dialogue.text:
             number = self.dialogue.number
@@ -122,7 +119,6 @@ class SeccmpDesk:
 
     def leave(self) -> None:
         """The page goes: nothing stays half entered."""
-        self.clearing = False
         self.desk.clear()
         self.ledger.looking_back = None
         self.dialogue.restart()

@@ -34,7 +34,7 @@ class Place:
 
 
 class KeepingSection(Section):
-    """Return on a place makes a backup there; Return on a backup restores it, after asking once."""
+    """Return on a place makes a backup there; Return on a backup restores it, after asking."""
 
     name = "BACKUP AND RESTORE"
     use = "offsets, versions, counts, settings, log"
@@ -144,11 +144,16 @@ class KeepingSection(Section):
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("PRESS RETURN ONCE MORE TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT")
-        if self.sure(asked.format(name=place.label)):
-            self.busy = "Restoring …"
-            self.desk.restoring = True
-            self.worker.ask(lambda: self.keep.restore(place.path), self._done, self._failed)
+        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT")
+        self.desk.ask(asked.format(name=place.label), lambda: self._restore_now(place))
+
+    def _restore_now(self, place: Place) -> None:
+        if self.desk.snapshot().state in UNDER_WAY:
+            self.desk.say(BARRED)
+            return
+        self.busy = "Restoring …"
+        self.desk.restoring = True
+        self.worker.ask(lambda: self.keep.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
         self.busy = ""

@@ -50,10 +50,14 @@ class MachineFileSection(Section):
     def _accept(self) -> None:
         if self.desk.snapshot().state not in _OFF:
             self.desk.say(tr("A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF"))
-        elif self.sure(tr("PRESS F2 ONCE MORE TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT")):
-            self.changes.accept()
-            self.marked = 0
-            self.desk.say(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
+        else:
+            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT")
+            self.desk.ask(question, self._accepted)
+
+    def _accepted(self) -> None:
+        self.changes.accept()
+        self.marked = 0
+        self.desk.say(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
 
     def prompt(self) -> str:
         """What can be done."""

@@ -14,7 +14,7 @@ from app.desk.words import tr
 from core.executor.snapshot import Snapshot
 from core.store.errors import StoreError
 
-RESET = "PRESS F4 ONCE MORE TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
+RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
@@ -80,8 +80,8 @@ class PartsSection(FigureSection):
             self.desk.say(NO_PROGRAM)
         elif self.counter.count == 0:
             self.desk.say("THE COUNT IS AT NOUGHT")
-        elif self.sure(RESET):
-            self._kept(self.counter.reset)
+        else:
+            self.desk.ask(RESET, partial(self._kept, self.counter.reset))
 
     def enter(self) -> None:
         """The target, from the count on; 0 takes it away."""

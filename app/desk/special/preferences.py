@@ -63,7 +63,7 @@ class PreferencesSection(Section):
             self.desk.say("THIS MACHINE HAS AN OPERATOR STATION OF ITS OWN: NONE IS SHOWN")
             return
         if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
-            self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (SHIFT+E)")
+            self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)")
             return
         self.desk.clear()
         try:

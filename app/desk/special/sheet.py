@@ -107,11 +107,3 @@ class Section:
         self.desk.clear()
         self.marked = max(0, min(self.count - 1, self.marked + steps[key]))
         return True
-
-    def sure(self, question: str) -> bool:
-        """Whether this is the second press; the first one asks. Any other answer takes the question back."""
-        if self.desk.notice == question:
-            self.desk.clear()
-            return True
-        self.desk.say(question)
-        return False

@@ -135,12 +135,11 @@ class SignalsSection(Section):
             return
         on = name not in snapshot.outputs
         asked = (
-            tr("PRESS RETURN ONCE MORE TO SWITCH {name} ON, ESC TO LEAVE IT OFF")
+            tr("PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF")
             if on
-            else tr("PRESS RETURN ONCE MORE TO SWITCH {name} OFF, ESC TO LEAVE IT ON")
+            else tr("PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON")
         )
-        if self.sure(asked.format(name=name)):
-            self.desk.post(ForceOutput(name, on))
+        self.desk.ask(asked.format(name=name), lambda: self.desk.post(ForceOutput(name, on)))
 
     def prompt(self) -> str:
         """What Return does here."""

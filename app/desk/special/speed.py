@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
@@ -14,7 +15,7 @@ from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
 from core.machine.model import SpindleModel
 
-LIFT = "PRESS F4 ONCE MORE TO LIFT THE LIMIT, ESC TO KEEP IT"
+LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
 
 
 class SpeedSection(FigureSection):
@@ -61,8 +62,8 @@ class SpeedSection(FigureSection):
         """The machine's own maximum again; asked once, because something may be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
             self.desk.say("NO LIMIT IS IN FORCE")
-        elif self.sure(LIFT):
-            self.desk.post(SpindleLimit(None))
+        else:
+            self.desk.ask(LIFT, partial(self.desk.post, SpindleLimit(None)))
 
     def enter(self) -> None:
         """The limit, where this spindle can turn at it."""

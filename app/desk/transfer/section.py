@@ -25,7 +25,7 @@ from core.store.errors import StoreError
 KEPT = "rs232"
 BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
 UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
-THROW_AWAY = "PRESS F6 ONCE MORE TO THROW THE RECEIVED PROGRAM AWAY, RETURN TO STORE IT"
+THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
 
 
 class TransferSection(Section):
@@ -201,10 +201,12 @@ class TransferSection(Section):
         self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
 
     def discard(self) -> None:
-        """Throw away what has come, after asking once."""
-        if self.sure(THROW_AWAY):
-            self.received = None
-            self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
+        """Throw away what has come, after asking."""
+        self.desk.ask(THROW_AWAY, self._discarded)
+
+    def _discarded(self) -> None:
+        self.received = None
+        self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
 
     def _step(self) -> None:
         ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports

@@ -28,7 +28,6 @@ class ZeroDesk:
     row: int = 0  # of the cell that is typed over
     column: int = 0
     text: str = ""
-    clearing: bool = False
     ledger: ZeroLedger = field(init=False)
 
     def __post_init__(self) -> None:
@@ -95,7 +94,6 @@ class ZeroDesk:
             return True
         if key not in KEYS:
             return False
-        self.clearing = False
         self.desk.clear()
         if key in _STEPS:
             self.move(*_STEPS[key])
@@ -162,13 +160,11 @@ class ZeroDesk:
         why = self.barred(self.desk.snapshot())
         if why:
             self.desk.say(why)
-        elif not self.clearing:
-            self.clearing = True
-            self.desk.say(tr("PRESS C ONCE MORE TO CLEAR G54 TO G59, ESC TO KEEP THEM"))
         else:
-            self.clearing = False
-            self.desk.clear()
-            self._answer(self.book.clear("C: all cleared"))
+            self.desk.ask(tr("PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM"), self._clear_all)
+
+    def _clear_all(self) -> None:
+        self._answer(self.barred(self.desk.snapshot()) or self.book.clear("C: all cleared"))
 
     def undo(self) -> None:
         """Take the last change back."""
@@ -180,8 +176,7 @@ class ZeroDesk:
         """Esc closes the history, keeps the offsets, takes an entry back; False when the page may be left."""
         if self.ledger.looking_back is not None:
             self.ledger.looking_back = None
-        elif self.clearing:
-            self.clearing = False
+        elif self.desk.asked:
             self.desk.clear()
         elif self.text:
             self.text = ""
@@ -191,7 +186,7 @@ class ZeroDesk:
 
     def leave(self) -> None:
         """The page goes: nothing stays half entered."""
-        self.clearing, self.text, self.ledger.looking_back = False, "", None
+        self.text, self.ledger.looking_back = "", None
         self.desk.clear()
 
     def _answer(self, why: str) -> None:

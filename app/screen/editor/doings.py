@@ -53,13 +53,14 @@ def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
 
 
 def _text(page: EditorPage) -> dict[int, Doing]:
+    asked = Doing("YES", page.answer) if page.editor.asked else Doing("NEXT ERR", page.next_finding)
     return {
         1: Doing("MENU", partial(page.leave_to, pages.MENU)),
         2: Doing("SAVE", page.save),
         3: Doing("LEAVE", partial(page.leave_to, pages.AUTOMATIC)),
         4: Doing("FIND", page.ask_text),
         5: Doing("GO TO", page.ask_line),
-        6: Doing("NEXT ERR", page.next_finding),
+        6: asked,
         7: Doing("HISTORY", page.show_history),
         8: Doing("UNDO", page.field.undo),
         9: Doing("REDO", page.field.redo),

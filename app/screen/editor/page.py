@@ -190,6 +190,10 @@ class EditorPage(EditorParts):
         """Go without saving."""
         self.editor.abandon(self.draft.now())
 
+    def answer(self) -> None:
+        """Yes to what the editor asks."""
+        self.editor.answer(self.draft.now())
+
     def restore(self) -> None:
         """The marked version into the editor."""
         if self.history.text is not None:

@@ -103,6 +103,10 @@ class FilesPage(ListPage):
             return True
         return model.typed(key)
 
+    def has_field(self) -> bool:
+        """The name that is looked for or asked."""
+        return not self.model.traffic.open and self.model.may_type
+
     def dress(self) -> None:
         """The path is drawn anew."""
         self.path.restart()

@@ -126,6 +126,10 @@ class JogPage(Page):
         """What is text here, or a letter of this page."""
         return self.model.takes(key)
 
+    def has_field(self) -> bool:
+        """A question about the tool."""
+        return bool(self.model.tool.asked)
+
     def _touched(self, key: str) -> None:
         if key == "Esc":
             self.host.press(key)

@@ -15,7 +15,7 @@ from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel
 from app.screen.pages import Doings, Host, Page
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import Snapshot, Starts
 from core.executor.states import CYCLE
 from core.interpreter.begin import Checkpoint
 
@@ -26,7 +26,7 @@ class MdiPage(Page):
     """The model decides, this only shows it and hands the keys on."""
 
     NAME = pages.MDI
-    LABELS = ("MENU", "AUTO", "", "READOUT", "", "", "ALARMS", "SPN STOP", "SECCMP", "")
+    LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "")
     STARTS = True
 
     def __init__(self, host: Host, model: MdiDesk, parent: QWidget) -> None:
@@ -42,6 +42,8 @@ class MdiPage(Page):
         return {
             "F2": lambda: self._go(pages.AUTOMATIC),
             "F4": self.desk.next_readout,
+            "F5": self.desk.enable,
+            "F6": self.desk.reset,
             "F8": self.model.stop_spindle,
             "F9": lambda: self._go(pages.SECCMP),
         }
@@ -50,7 +52,7 @@ class MdiPage(Page):
         self.host.go(name)
 
     def _recall(self, back: int) -> None:
-        if self.desk.snapshot().state is State.IDLE:
+        if self.model.has_keyboard:
             self.model.recall(back)
 
     def _other_hand(self) -> None:
@@ -71,6 +73,10 @@ class MdiPage(Page):
     def takes(self, key: str) -> bool:
         """As the model says."""
         return self.model.takes(key)
+
+    def has_field(self) -> bool:
+        """The line, while none is under way."""
+        return self.model.has_keyboard
 
     def prompt(self) -> str:
         """From the model."""

@@ -105,6 +105,10 @@ class OffsetPage(Page):
         else:
             self.typed(key)
 
+    def has_field(self) -> bool:
+        """Figures are always typed here, but while one looks at what they do."""
+        return not self.shown.open
+
     def prompt(self) -> str:
         """From the model; while the effect is shown, what it is."""
         if self.shown.open:

@@ -74,8 +74,8 @@ class SearchPage(Page):
         }
 
     def takes(self, key: str) -> bool:
-        """Characters are the question's; E and H stop the machine as long as nothing is typed."""
-        return len(key) == 1 and (bool(self.model.cursor.text) or key not in pages.STOPPING)
+        """Characters are the question's."""
+        return len(key) == 1
 
     def typed(self, key: str) -> bool:
         """Arrows choose a line, everything else is typed."""
@@ -89,9 +89,11 @@ class SearchPage(Page):
         if key == "Enter":
             self.model.enter()
             return True
-        if len(key) == 1 and not self.takes(key):
-            return False
         return self.model.typed(key)
+
+    def has_field(self) -> bool:
+        """The question has it always."""
+        return True
 
     def prompt(self) -> str:
         """What can be done now."""

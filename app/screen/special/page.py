@@ -59,6 +59,10 @@ class SpecialPage(ListPage):
         keys = self.model.section.keys()
         return {name: partial(self._do, name) for name in keys}
 
+    def has_field(self) -> bool:
+        """The question of a function that is open."""
+        return self.model.inside and self.model.section.takes("1")
+
     def _do(self, name: str) -> None:
         self.model.inside = True
         self.model.section.keys()[name].action()

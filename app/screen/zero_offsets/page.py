@@ -64,6 +64,10 @@ class ZeroPage(Page):
         """Figures, signs, and C."""
         return key in CHARACTERS or key == "C"
 
+    def has_field(self) -> bool:
+        """Figures are always typed here."""
+        return True
+
     def _touched(self, key: str) -> None:
         if key == "Esc":
             self.host.press(key)

@@ -102,7 +102,7 @@ def test_giving_up_what_was_typed_leaves_nothing(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED)
     editor.abandon(TYPED)
-    editor.abandon(TYPED)
+    editor.answer(TYPED)
     settle(editor)
     assert editor.stage is Stage.CLOSED
     assert drafts(editor) == []

@@ -80,12 +80,15 @@ def test_a_file_that_is_gone_is_told(editor: Editor, tmp_path: Path) -> None:
     assert "cannot be read" in editor.notice
 
 
-def test_a_change_from_outside_is_replaced_only_when_asked_twice(editor: Editor) -> None:
+def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: Editor) -> None:
     path = own(editor, "part.nc")
     path.write_text("M02\n")
-    for _ in range(2):
+    for _ in range(3):
         editor.save("M30\n")
         settle(editor)
+    assert path.read_text() == "M02\n"
+    editor.answer("M30\n")
+    settle(editor)
     assert path.read_text() == "M30\n"
 
 

@@ -82,9 +82,3 @@ def test_a_store_that_fails_takes_no_line_away() -> None:
     typing.put("X1")
     typing.done()
     assert typing.history == ["X1"]
-
-
-def test_in_a_comment_every_letter_is_text() -> None:
-    typing = press(Typing(), "M00(")
-    assert typing.in_comment
-    assert not press(typing, "HELLO)").in_comment

@@ -230,6 +230,8 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     writer.key(Key.Key_F10)
     writer.sees(lambda: writer.prompt() == words.ABANDON)
     writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.prompt() == words.ABANDON)  # never the key that asked
+    writer.key(Key.Key_F6)
     writer.sees(lambda: writer.front == pages.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 

@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.desk import pages
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+from tests.screen.yes import twist_out
 
 SLOW = 5 * INCH / 60  # mm/s: the speed that is chosen at first
 AMAX = 120 * INCH
@@ -226,7 +227,7 @@ def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
 def test_with_the_drives_off_it_says_why(jog: JogBench) -> None:
     jog.key(Key.Key_E)
     jog.run(0.1)
-    jog.key(Key.Key_E, SHIFT)
+    twist_out(jog.window)
     jog.run(0.1)
     jog.down(Key.Key_Left)
     jog.run(0.3)

@@ -8,6 +8,7 @@ from app.desk.jogging.asked import tip
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+from tests.screen.yes import yes
 
 
 def step_to(jog: JogBench, key: Key, step: int, presses: int) -> None:
@@ -196,10 +197,13 @@ def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
 def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> None:
     assert lost.prompt == "X AND Z NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME"
     lost.key(Key.Key_Home)
-    assert lost.prompt.startswith("HOME Z, THEN X: PRESS HOME ONCE MORE FOR ALL")
+    assert lost.prompt.startswith("HOME Z, THEN X: PRESS RETURN FOR ALL")
     lost.run(0.5)
     assert lost.shot.state is State.IDLE
     lost.key(Key.Key_Home)
+    lost.run(0.05)
+    assert lost.shot.state is State.IDLE  # never the key that asked
+    yes(lost.window, Key.Key_Return)
     lost.run(0.05)
     assert lost.shot.state is State.HOME
     seen = []
@@ -216,7 +220,11 @@ def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> Non
 
 def test_one_axis_alone(lost: JogBench) -> None:
     lost.key(Key.Key_Home)
-    lost.type("x")
+    lost.type("x")  # sooner than anybody has read the question
+    lost.run(0.2)
+    assert lost.shot.state is State.IDLE
+    lost.key(Key.Key_Home)
+    yes(lost.window, Key.Key_X)
     lost.until(lambda: lost.shot.homed[0])
     lost.rests()
     assert not lost.shot.homed[1]

@@ -1,0 +1,59 @@
+"""Event times: when a key, button or finger went down, by the stamp of its event; and stalls of the screen.
+
+A stamp counts milliseconds of somebody's clock: of the X server, of the compositor, of Qt. Its offset to our
+own clock is the least that was ever seen between the two, as a message can only be late.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+STALL = 0.3  # s without a frame: whatever waited behind it starts nothing
+FRAMES = 2  # that must have been shown since, before anything starts
+_WRAPPED = 1e5  # s: further off than this the 32 bits of the stamps have run over
+_DRIFT = 1e-3  # of the time passed: how much two clocks may go apart
+
+
+class EventTimes:
+    """``clock`` is monotonic, seconds."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self.clock = clock
+        self.stalled = 0.0  # s that the last stall took
+        self._alive: float | None = None
+        self._behind = float("-inf")  # the end of the last stall
+        self._frames = FRAMES  # shown since
+        self._offset: float | None = None
+        self._seen = 0.0
+
+    def frame(self) -> None:
+        """A frame is shown."""
+        self.alive()
+        self._frames += 1
+
+    def alive(self) -> None:
+        """The screen does something; called before an event is judged."""
+        now = self.clock()
+        if self._alive is not None and now - self._alive > STALL:
+            self.stalled, self._behind, self._frames = now - self._alive, now, 0
+        self._alive = now
+
+    def at(self, stamp: int) -> float:
+        """When it happened, seconds of our clock; an event without a stamp happens now."""
+        now = self.clock()
+        if not stamp:
+            return now
+        apart = now - stamp / 1000
+        if self._offset is None or apart - self._offset > _WRAPPED:
+            self._offset = apart
+        self._offset = min(apart, self._offset + _DRIFT * (now - self._seen))
+        self._seen = now
+        return min(now, stamp / 1000 + self._offset)
+
+    def late(self, stamp: int) -> bool:
+        """Whether it waited behind a stall, of the screen or on its way here."""
+        if not stamp:
+            return False
+        at = self.at(stamp)
+        return at <= self._behind or self._frames < FRAMES or self.clock() - at > STALL

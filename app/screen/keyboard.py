@@ -1,0 +1,281 @@
+"""The keyboard: every key passes here before any page, field, dialog or drawn keyboard sees it.
+
+Two keys act everywhere, with any modifier, lock and layout: Pause holds the feed, Scroll Lock is the E-stop.
+So do Esc, while something moves, and H, Space and E, where no field has the keyboard. Of all other keys this
+knows which are really down: a repeat is no press, a key held while the keyboard was elsewhere is dead
+until it is let go, and what waited behind a stall of the screen is text or nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import shiboken6
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt
+from PySide6.QtGui import QEventPoint, QInputEvent, QKeyEvent, QTouchEvent, QWindow
+from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+
+from app.screen.eventtime import EventTimes
+from app.screen.held_keys import XServer, x_server
+
+Key = Qt.Key
+TOGETHER = 2  # ms: a press so soon after its own release is a repeat
+# X's codes of the keys of a PC, whatever a layout makes of them: Pause and Scroll Lock, and the letters.
+_STOPS = {127: "hold", 78: "estop"}
+_PC = frozenset({"xcb", "wayland"})  # there a key's code is X's
+_LETTERS = dict(
+    zip((*range(24, 34), *range(38, 47), *range(52, 59)), "QWERTYUIOPASDFGHJKLZXCVBNM", strict=True)
+)
+_CHORD = (
+    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+)
+_MODIFIERS = frozenset(
+    {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
+    | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
+)
+_WRITE = frozenset(
+    {Key.Key_Backspace, Key.Key_Delete, Key.Key_Left, Key.Key_Right, Key.Key_Up, Key.Key_Down}
+    | {Key.Key_Home, Key.Key_End, Key.Key_PageUp, Key.Key_PageDown}
+)
+_PRESSES = frozenset({QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick, QEvent.Type.TouchBegin})
+_KEYS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
+
+
+class Behind(Protocol):
+    """What the keyboard does at once, and what it asks of the window behind it."""
+
+    def hold(self) -> None: ...
+
+    def estop(self) -> None: ...
+
+    def moving(self) -> bool: ...
+
+    def is_text(self, key: str) -> bool: ...
+
+    def forgotten(self, seconds: float) -> None: ...
+
+    def stops_at(self, event: QInputEvent) -> bool: ...
+
+
+def letter_of(event: QKeyEvent) -> str:
+    """The letter of a key as its layout has it; of one that writes no Latin letter, that of its place."""
+    key = event.key()
+    if Key.Key_A <= key <= Key.Key_Z:
+        return chr(key)
+    foreign = key > 0x7F and not Key.Key_Escape <= key <= Key.Key_unknown
+    code = event.nativeScanCode() if QApplication.platformName() in _PC else 0
+    return _LETTERS.get(code, "") if foreign or key == 0 else ""
+
+
+def key_of(event: QKeyEvent) -> int:
+    """The key, of a layout without Latin letters by its place."""
+    letter = letter_of(event)
+    return ord(letter) if letter else event.key()
+
+
+class Keyboard(QObject):
+    """A filter on the windows of the application; see the module."""
+
+    def __init__(self, behind: Behind, times: EventTimes) -> None:
+        super().__init__()
+        self._behind, self.times = behind, times
+        self._server: XServer | None = None
+        self._down: dict[int, int] = {}  # codes of what is down, and the key that it was
+        self._dead: set[int] = set()  # of these: pressed for something else, or nobody knows when
+        self._up: dict[int, int] = {}  # the stamp of the last release
+        self._sending = False
+        self._stamp = 0  # of the event that is handled now
+
+    def watch(self, window: QWindow) -> None:
+        """From now on see what this window gets."""
+        window.removeEventFilter(self)
+        window.installEventFilter(self)
+        if self._server is None:
+            self._server = x_server()
+
+    @property
+    def now(self) -> float:
+        """When what is handled now has happened; monotonic seconds."""
+        return self.times.at(self._stamp)
+
+    # --- what is down --------------------------------------------------------------------------------
+
+    def alone(self, event: QKeyEvent) -> bool:
+        """Whether no other key is down than the one of this event, and modifiers."""
+        return not {key for code, key in self._down.items() if code != code_of(event)} - _MODIFIERS
+
+    def away(self) -> None:
+        """The keyboard is elsewhere, or the page is another: what is down is dead until it was let go."""
+        self._dead |= self._down.keys()
+
+    def back(self) -> None:
+        """The keyboard is here again: what is down now was pressed elsewhere."""
+        if self._server is None:
+            return
+        held = self._server.keys()
+        self._down = {code: self._down.get(code, Key.Key_Shift) for code in held}
+        self._dead = set(held)
+
+    def look(self) -> None:
+        """Once a frame: what the server knows to be up has come up, even where its release was lost."""
+        self._stamp = 0
+        if self._server is None or not self._down:
+            return
+        for code in self._down.keys() - self._server.keys():
+            key, dead = self._down.pop(code, None), code in self._dead
+            self._dead.discard(code)
+            if key is not None and not dead:  # handling one looks again
+                self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
+
+    def button_held(self) -> bool:
+        """Whether a button of the mouse is really down still."""
+        if self._server is None:
+            return QApplication.mouseButtons() is not Qt.MouseButton.NoButton
+        return self._server.buttons()
+
+    # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        """Whether an event goes no further."""
+        kind = event.type()
+        if kind in _KEYS and isinstance(event, QKeyEvent):
+            return not self._sending and self._key(event)
+        if kind in _PRESSES and isinstance(event, QInputEvent):
+            self.times.alive()
+            self._stamp = event.timestamp()
+            return self._pressed_late(event)
+        if isinstance(event, QInputEvent):
+            self.times.alive()
+            self._stamp = event.timestamp()
+            if isinstance(event, QTouchEvent) and any(
+                point.state() == QEventPoint.State.Pressed for point in event.points()
+            ):
+                return self._pressed_late(event)
+        return False
+
+    def _pressed_late(self, event: QInputEvent) -> bool:
+        if not self._late(event) or self._behind.stops_at(event):
+            return False
+        event.setAccepted(True)  # or Qt makes a mouse button of the finger
+        return self._forget()
+
+    def _key(self, event: QKeyEvent) -> bool:
+        self.times.alive()
+        self._stamp = event.timestamp()
+        code = code_of(event)
+        if event.type() == QEvent.Type.KeyRelease:
+            return self._released(event, code)
+        stop = self._stop_of(event)
+        if stop is not None:
+            self._down.setdefault(code, event.key())
+            self._dead.add(code)
+            stop()
+            return True
+        return event.key() not in _MODIFIERS and self._pressed(event, code)
+
+    def _pressed(self, event: QKeyEvent, code: int) -> bool:
+        repeat = self._repeats(event, code)
+        if code in self._dead:
+            return True
+        if self._late(event) and not self._writes(event):
+            self._dead.add(code)
+            return repeat or self._forget()
+        return repeat and not event.isAutoRepeat() and self._send_repeat(event)
+
+    def _released(self, event: QKeyEvent, code: int) -> bool:
+        if event.isAutoRepeat():
+            return False
+        self._up[code] = self._stamp
+        dead = code in self._dead
+        self._down.pop(code, None)
+        self._dead.discard(code)
+        return dead and event.key() not in _MODIFIERS
+
+    def _repeats(self, event: QKeyEvent, code: int) -> bool:
+        """Note a press; whether it only repeats one. Under X Qt's flag tells nothing."""
+        if code in self._down:
+            if not event.isAutoRepeat() and self._server is None:
+                self._dead.discard(code)  # its release was somebody else's to see
+                return False
+            return True
+        self._down[code] = event.key()
+        paired = bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= TOGETHER
+        if event.isAutoRepeat() or paired:
+            self._dead.add(code)  # nobody has seen it go down
+            return True
+        return False
+
+    def _stop_of(self, event: QKeyEvent) -> Callable[[], None] | None:
+        """What a key does that stops the machine, whatever else is so; None for any other key."""
+        place = _STOPS.get(event.nativeScanCode(), "") if QApplication.platformName() in _PC else ""
+        key, letter = event.key(), letter_of(event)
+        if key == Key.Key_ScrollLock or place == "estop" or self._is(letter, "E", event):
+            return self._behind.estop
+        holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold" or self._is(letter, "H", event)
+        holds = holds or (key == Key.Key_Space and self._is(" ", " ", event))
+        holds = holds or (key == Key.Key_Escape and self._behind.moving())
+        return self._behind.hold if holds else None
+
+    def _is(self, letter: str, wanted: str, event: QKeyEvent) -> bool:
+        if letter != wanted:
+            return False
+        return _field() is None if event.modifiers() & _CHORD else not self._behind.is_text(wanted)
+
+    def _late(self, event: QInputEvent) -> bool:
+        return self.times.late(event.timestamp())
+
+    def _forget(self) -> bool:
+        self._behind.forgotten(self.times.stalled)
+        return True
+
+    def _writes(self, event: QKeyEvent) -> bool:
+        """Whether a key only writes, where it goes."""
+        text = event.text()
+        if len(text) == 1 and text.isprintable():
+            return self._behind.is_text(text)
+        return event.key() in _WRITE and _field() is not None
+
+    def _send_repeat(self, event: QKeyEvent) -> bool:
+        """On as what it is. A stock field repeats what writes, and nothing that acts."""
+        field = _field()
+        if field is not None and not (event.key() in _WRITE or self._writes(event) or _breaks(field, event)):
+            return True
+        again = QKeyEvent(
+            event.type(),
+            event.key(),
+            event.modifiers(),
+            event.nativeScanCode(),
+            event.nativeVirtualKey(),
+            event.nativeModifiers(),
+            event.text(),
+            True,
+            event.count(),
+        )
+        self._send(again)
+        return True
+
+    def _send(self, event: QKeyEvent) -> None:
+        window = QApplication.focusWindow()
+        self._sending = True
+        try:
+            if isinstance(window, QWindow):
+                QCoreApplication.sendEvent(window, event)
+        finally:
+            self._sending = False
+
+
+def code_of(event: QKeyEvent) -> int:
+    """Which key it is, whatever modifiers make of it."""
+    return event.nativeScanCode() or event.key()
+
+
+def _field() -> QWidget | None:
+    """The stock field that has the keyboard."""
+    at = QApplication.focusWidget()
+    return at if isinstance(at, QLineEdit | QPlainTextEdit) and shiboken6.isValid(at) else None
+
+
+def _breaks(field: QWidget, event: QKeyEvent) -> bool:
+    """Return breaks a line where there are lines."""
+    return isinstance(field, QPlainTextEdit) and event.key() in {Key.Key_Return, Key.Key_Enter, Key.Key_Tab}
