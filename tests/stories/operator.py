@@ -265,6 +265,16 @@ class Operator:
         for do in ("press", "release"):
             self.ask("touch", fingers=[(number, do, *place) for number, place in enumerate(at)])
 
+    def minimises(self) -> None:
+        """The window goes into the task bar."""
+        self.server.run("xdotool", "search", "--name", "^TurnDesk$", "windowminimize")
+        self.until(lambda: not self.screen["active"], "the window away")
+
+    def comes_back(self) -> None:
+        """And comes to the front again, with the keyboard."""
+        self.server.run("xdotool", "search", "--name", "^TurnDesk$", "windowactivate")
+        self.until(lambda: bool(self.screen["active"]), "the window back")
+
     def freezes(self, seconds: float) -> int:
         """Qt's thread does nothing for as long; ``answered`` tells when it is over."""
         return self.post("freeze", seconds=seconds)

@@ -202,6 +202,32 @@ def _library(name: str) -> ctypes.CDLL:
 
 
 @contextmanager
+def another_client(server: Server, what: str) -> Iterator[None]:
+    """Somebody else here: a ``window`` in front, a ``grab`` of keyboard and pointer, or of ``keys`` alone.
+
+    A screen lock is such a grab.
+    """
+    x = _library("X11")
+    x.XOpenDisplay.restype = ctypes.c_void_p
+    x.XDefaultRootWindow.restype = x.XCreateSimpleWindow.restype = ctypes.c_ulong
+    display = ctypes.c_void_p(x.XOpenDisplay(server.name.encode()))
+    root, now = ctypes.c_ulong(x.XDefaultRootWindow(display)), ctypes.c_ulong(0)
+    if what == "window":
+        window = x.XCreateSimpleWindow(display, root, 100, 100, 400, 300, 0, 0, 0)
+        x.XMapRaised(display, ctypes.c_ulong(window))
+    else:
+        assert x.XGrabKeyboard(display, root, 1, 1, 1, now) == 0
+        if what == "grab":
+            none = ctypes.c_ulong(0)
+            assert x.XGrabPointer(display, root, 1, 4, 1, 1, none, none, now) == 0
+    x.XSync(display, 0)
+    try:
+        yield
+    finally:
+        x.XCloseDisplay(display)
+
+
+@contextmanager
 def server(folder: Path) -> Iterator[Server]:
     """With a window manager; ended afterwards."""
     made = Server(folder)

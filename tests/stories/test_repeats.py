@@ -1,0 +1,216 @@
+"""A held key is one press, however the X server repeats it; what asked is not what answers."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.store.store import Store
+from tests.stories.conftest import INCH, Story
+from tests.stories.operator import Operator
+
+PART = "G90G94T1\nM03S600\nG01X.5Z.5F5\nX0Z0\nM30\n"
+TOOLS = {1: (0.0, 0.0)}
+HELD = 2.0  # s: dozens of repeats
+
+
+def ready(story: Story) -> Operator:
+    """Drives on, a program that may be started, keys that repeat as fast as a server lets them."""
+    story.server.repeats(200, 15)
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    return operator
+
+
+@pytest.mark.parametrize(("held", "other"), [("F11", "F12"), ("F12", "F11")])
+def test_a_taped_palm_starts_nothing(story: Story, held: str, other: str) -> None:
+    operator = ready(story)
+    operator.down(held)
+    operator.during(HELD)
+    operator.down(other)
+    operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
+    operator.sees("LET BOTH GO")
+    operator.up(other)
+    operator.down(other)
+    operator.keeps(lambda: operator.state == "READY", 0.7, "no start by the other palm alone")
+    operator.up(held, other)
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+
+
+def test_a_palm_that_stays_down_after_a_start_starts_nothing_more(story: Story) -> None:
+    operator = ready(story)
+    operator.down("F11", "F12")
+    operator.reaches("RUNNING", "WAITING")
+    operator.up("F12")
+    operator.key("Pause")
+    operator.reaches("FEED HOLD")
+    operator.down("F12")
+    operator.keeps(lambda: operator.state == "FEED HOLD", 1.0, "the hold")
+
+
+def test_a_palm_down_across_a_lost_keyboard_is_dead(story: Story) -> None:
+    operator = ready(story)
+    operator.down("F11")
+    operator.minimises()
+    operator.comes_back()
+    operator.down("F12")
+    operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
+
+
+def test_reset_held_never_gives_a_program_up(story: Story) -> None:
+    operator = ready(story)
+    operator.starts()
+    operator.until(lambda: operator.slides[0] > 0.5, "a cut")
+    operator.key("Pause")
+    operator.reaches("FEED HOLD")
+    operator.holds("r", HELD)
+    assert operator.state == "FEED HOLD"
+    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
+    for _ in range(3):
+        operator.key("r")
+    operator.down("r")
+    operator.key("y")  # while the key that asked is down it is no answer
+    operator.up("r")
+    operator.keeps(lambda: operator.state == "FEED HOLD", 0.5, "the program")
+    operator.key("y")
+    operator.reaches("READY")
+
+
+def test_an_answer_typed_with_the_question_is_none(story: Story) -> None:
+    operator = ready(story)
+    operator.starts()
+    operator.key("Pause")
+    operator.reaches("FEED HOLD")
+    operator.writes("try")  # somebody thinks that he is in the editor
+    operator.keeps(lambda: operator.state == "FEED HOLD", 0.5, "the program")
+
+
+def test_a_held_step_jog_is_one_step(story: Story) -> None:
+    operator = ready(story)
+    operator.keys("F1", "F5")
+    operator.opens("JOG")
+    operator.clicks(".1", on="JogPad")
+    operator.holds("Right", HELD)
+    x, z, *_ = operator.rests()
+    assert (x, z) == (pytest.approx(0.0, abs=0.01), pytest.approx(0.1 * INCH, abs=0.01))
+    operator.key("Right")
+    operator.until(lambda: operator.slides[1] > 0.15 * INCH, "the next step")
+    assert operator.rests()[1] == pytest.approx(0.2 * INCH, abs=0.01)
+
+
+def test_a_held_jog_goes_on_as_long_as_it_is_held(story: Story) -> None:
+    operator = ready(story)
+    operator.keys("F1", "F5")
+    operator.opens("JOG")
+    operator.down("Right")
+    operator.reaches("JOG")
+    operator.keeps(lambda: operator.state == "JOG", HELD, "the jog through its repeats")
+    operator.up("Right")
+    operator.reaches("READY")
+    operator.rests()
+
+
+def test_return_held_switches_no_output(story: Story) -> None:
+    operator = ready(story)
+    operator.keys("F10", "3")
+    operator.sees("TERMINAL")
+    before = operator.machine["outputs"]
+    operator.holds("Return", HELD)
+    operator.keys("Return", "Return")
+    operator.sees("PRESS Y TO SWITCH coolant ON")
+    assert operator.machine["outputs"] == before
+    operator.during(0.6)
+    operator.key("y")
+    operator.until(lambda: "coolant" in operator.machine["outputs"], "coolant")
+
+
+def test_delete_held_deletes_nothing(story: Story) -> None:
+    programs = story.home / "programs"
+    programs.mkdir(parents=True)
+    (programs / "mine.nc").write_text(PART)
+    operator = ready(story)
+    operator.keys("F1", "F6")
+    operator.opens("PROGRAMS")
+    operator.writes("mine")
+    operator.sees("mine.nc")
+    operator.holds("F6", HELD)
+    operator.keys("F6", "F6")
+    operator.sees("PRESS Y TO DELETE mine.nc")
+    assert (programs / "mine.nc").exists()
+    operator.during(0.6)
+    operator.key("y")
+    operator.until(lambda: not (programs / "mine.nc").exists(), "deleted")
+
+
+def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
+    operator = ready(story)
+    operator.key("F3")
+    operator.opens("EDITOR")
+    operator.sees("G90G94T1")
+    operator.writes("(MINE)")
+    operator.until(lambda: "(MINE)" in operator.screen["field"], "typed")
+    operator.holds("F10", HELD)
+    operator.keys("F10", "F10")
+    assert operator.page == "EDITOR"
+    assert "(MINE)" in operator.screen["field"]
+    operator.key("F6")
+    operator.opens("AUTOMATIC")
+    assert (story.folder / "part.nc").read_text() == PART
+
+
+def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
+    with Store.open(story.home) as store:
+        store.set_secondary(5, "before the story", x=1.0).result()
+    operator = ready(story)
+    operator.key("F9")
+    operator.opens("SECONDARY OFFSETS")
+    operator.holds("c", HELD)
+    operator.keys("c", "c")
+    operator.sees("PRESS Y TO CLEAR ALL 32")
+    with operator.store() as store:
+        assert 5 in store.secondary()
+    operator.during(0.6)
+    operator.key("y")
+
+    def cleared() -> bool:
+        with operator.store() as store:
+            return not store.secondary()
+
+    operator.until(cleared, "the offsets cleared")
+
+
+def test_a_switch_held_turns_once(story: Story) -> None:
+    operator = ready(story)
+    operator.holds("s", HELD)
+    assert operator.machine["single_block"] is True
+
+
+def test_text_repeats_in_a_field(story: Story) -> None:
+    operator = ready(story)
+    operator.key("F2")
+    operator.sees("FILE TO BE PROCESSED")
+    operator.holds("x", 1.0)
+    operator.until(lambda: operator.screen["field"].count("x") > 5, "a row of letters")
+    operator.holds("BackSpace", 1.5)
+    operator.until(lambda: operator.screen["field"].count("x") == 0, "gone again")
+    operator.holds("Escape", 0.6)  # closes the prompt, and goes no further
+    assert not operator.shows("FILE TO BE PROCESSED")
+
+
+def test_home_held_homes_nothing(story: Story) -> None:
+    story.server.repeats(200, 15)
+    lost = {
+        "absolute = true                 # false": "home = { order = 2, speed = 60 }\nabsolute = false  # "
+    }
+    operator = story.begins(PART, tools=TOOLS, changes=lost)
+    operator.drives_on()
+    operator.keys("F1", "F5")
+    operator.opens("JOG")
+    operator.holds("Home", HELD)
+    operator.keys("Home", "Home")
+    operator.sees("PRESS RETURN FOR ALL")
+    assert operator.state == "READY"
+    operator.during(0.6)
+    operator.key("Return")
+    operator.reaches("HOMING")

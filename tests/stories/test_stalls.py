@@ -1,0 +1,169 @@
+"""The times of the events themselves: what waited behind a stall of the screen starts nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from tests.stories.conftest import INCH, Story
+from tests.stories.operator import Operator
+
+PART = "G90G94T1\nM03S600\nG01X2.Z2.F5\nX0Z0\nM30\n"
+TOOLS = {1: (0.0, 0.0)}
+Stall = Callable[[Operator], "Iterator[None]"]
+
+
+def ready(story: Story) -> Operator:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    return operator
+
+
+@contextmanager
+def frozen(operator: Operator) -> Iterator[None]:
+    """Qt's thread does something else for three seconds; the control goes on."""
+    number = operator.freezes(3.0)
+    operator.during(0.3)
+    yield
+    assert not operator.answered(number), "it took longer than the screen was frozen"
+    operator.until(lambda: operator.answered(number), "the screen again")
+
+
+@contextmanager
+def stopped(operator: Operator) -> Iterator[None]:
+    """The whole process is stopped, as by a computer that swaps."""
+    operator.stops_the_process()
+    yield
+    operator.lets_it_go_on()
+
+
+STALLS = pytest.mark.parametrize("stall", [frozen, stopped])
+
+
+@STALLS
+def test_two_palms_two_seconds_apart_start_nothing(story: Story, stall: Stall) -> None:
+    operator = ready(story)
+    with stall(operator):  # type: ignore[attr-defined]
+        operator.down("F11")
+        operator.during(2.0)
+        operator.down("F12")
+        operator.during(0.1)
+        operator.up("F11", "F12")
+    operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+
+
+@STALLS
+def test_two_palms_together_behind_a_stall_start_nothing(story: Story, stall: Stall) -> None:
+    operator = ready(story)
+    with stall(operator):  # type: ignore[attr-defined]
+        operator.cycle_start()
+    operator.sees("WAS FORGOTTEN")
+    operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
+
+
+@STALLS
+def test_palms_held_through_the_end_of_a_stall_start_nothing(story: Story, stall: Stall) -> None:
+    operator = ready(story)
+    with stall(operator):  # type: ignore[attr-defined]
+        operator.down("F11", "F12")
+    operator.keeps(lambda: operator.state == "READY", 1.0, "no start by palms from before")
+
+
+@STALLS
+def test_an_arrow_pressed_in_a_stall_moves_nothing(story: Story, stall: Stall) -> None:
+    operator = ready(story)
+    operator.keys("F1", "F5")
+    operator.opens("JOG")
+    stands = operator.slides
+    with stall(operator):  # type: ignore[attr-defined]
+        operator.down("Right")
+        operator.during(0.5)
+    operator.keeps(lambda: operator.is_at(stands), 1.0, "rest with the arrow held")
+    operator.up("Right")
+    operator.during(0.1)
+    operator.down("Right")
+    operator.reaches("JOG")
+
+
+def test_a_step_pressed_in_a_stall_is_none(story: Story) -> None:
+    operator = ready(story)
+    operator.keys("F1", "F5")
+    operator.opens("JOG")
+    operator.clicks(".1", on="JogPad")
+    with frozen(operator):
+        operator.key("Right")
+    operator.keeps(lambda: operator.is_at((0.0, 0.0)), 1.0, "rest")
+    operator.key("Right")
+    operator.until(lambda: operator.slides[1] > 0.09 * INCH, "a step")
+
+
+def test_drives_are_not_switched_on_behind_a_stall(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.reaches("DRIVES OFF")
+    with frozen(operator):
+        operator.key("d")
+    operator.keeps(lambda: operator.state == "DRIVES OFF", 1.0, "the drives")
+    operator.key("d")
+    operator.reaches("READY")
+
+
+def test_the_mouse_behind_a_stall_starts_nothing(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.reaches("DRIVES OFF")
+    at = operator.find("DRIVES")
+    with frozen(operator):
+        operator.server.point(*at)
+        operator.server.button("left", down=True)
+        operator.server.button("left", down=False)
+    operator.keeps(lambda: operator.state == "DRIVES OFF", 1.0, "the drives")
+
+
+def test_a_line_of_mdi_is_not_started_behind_a_stall(story: Story) -> None:
+    operator = ready(story)
+    operator.keys("F1", "F4")
+    operator.opens("MDI")
+    operator.enters("G90G94F5X.1")
+    operator.sees("READY, CYCLE START RUNS IT")
+    with frozen(operator):
+        operator.cycle_start()
+    operator.keeps(lambda: operator.is_at((0.0, 0.0)), 1.0, "rest")
+
+
+@pytest.mark.parametrize("key", ["Pause", "Scroll_Lock", "h", "Escape"])
+def test_what_stops_acts_however_late(story: Story, key: str) -> None:
+    operator = ready(story)
+    operator.starts()
+    operator.until(lambda: operator.slides[0] > 0.5, "a cut")
+    with stopped(operator):
+        operator.key(key)
+        operator.during(1.0)
+    operator.reaches("E-STOP" if key == "Scroll_Lock" else "FEED HOLD")
+
+
+def test_the_mouse_stops_however_late(story: Story) -> None:
+    operator = ready(story)
+    operator.starts()
+    operator.until(lambda: operator.slides[0] > 0.5, "a cut")
+    at = operator.find("FEED HOLD", on="StationDock")
+    with frozen(operator):
+        operator.server.point(*at)
+        operator.server.button("left", down=True)
+        operator.server.button("left", down=False)
+    operator.reaches("FEED HOLD")
+
+
+def test_text_behind_a_stall_is_text(story: Story) -> None:
+    operator = ready(story)
+    operator.key("F2")
+    operator.sees("FILE TO BE PROCESSED")
+    with frozen(operator):
+        operator.writes("bush")
+        operator.key("Return")
+    operator.until(lambda: operator.screen["field"] == "bush", "what was typed")
+    operator.sees("FILE TO BE PROCESSED")
+    assert operator.screen["texts"]
