@@ -229,8 +229,8 @@ def test_a_healthy_machine_is_left_alone() -> None:
 
 def test_limits_grow_with_the_commanded_speed_and_not_beyond_the_window() -> None:
     z = load_machine().axes[1]
-    assert z.following_limit(0.0) == pytest.approx(0.2)
-    assert z.following_limit(-0.5 * z.vmax) == pytest.approx(0.5 * (0.2 + 2.032))
+    assert z.following_limit(0.0) == pytest.approx(0.2032)
+    assert z.following_limit(-0.5 * z.vmax) == pytest.approx(0.5 * (0.2032 + 2.032))
     assert z.following_limit(3.0 * z.vmax) == pytest.approx(2.032)
 
 
