@@ -93,3 +93,12 @@ class DriverError(Exception):
     def fault(self) -> Fault:
         """The same as a fault that stands."""
         return Fault(str(self), self.code)
+
+
+class TrippedError(DriverError):
+    """What stands between control and machine has switched something off by itself, and does nothing more
+    before the control has taken note of it (``core.ports.Tripping``).
+    """
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text, "late")

@@ -20,6 +20,7 @@ FloatArray = npt.NDArray[np.float64]
 Fault = faults.Fault
 FaultCode = faults.FaultCode
 DriverError = faults.DriverError
+TrippedError = faults.TrippedError
 code_of = faults.code_of
 
 
@@ -176,7 +177,9 @@ class DigitalIO(Protocol):
 
     def inputs(self) -> Mapping[str, bool]: ...
 
-    def outputs(self) -> Mapping[str, bool]: ...
+    def outputs(self) -> Mapping[str, bool]:
+        """As they are, whoever has switched them, as far as the driver is told; else as last written."""
+        ...
 
     def write(self, name: str, on: bool) -> None: ...
 
@@ -205,6 +208,28 @@ class Station(Protocol):
     def snapshot(self) -> StationState: ...
 
 
+class Trip(NamedTuple):
+    """What something between control and machine has switched off, because nobody told it anything.
+
+    ``away``: s for which it heard nothing. ``spindle``: it was to turn. ``outputs``: those that were on.
+    """
+
+    number: int
+    away: float
+    spindle: bool
+    outputs: tuple[str, ...]
+
+
+class Tripping(Protocol):
+    """A feeder that stops spindle and outputs when its control is silent. From then on it takes no setpoint
+    and switches nothing on, with TrippedError, until the control has acknowledged what it did.
+    """
+
+    def tripped(self) -> Trip | None: ...
+
+    def acknowledge(self, trip: Trip) -> None: ...
+
+
 class Clock(Protocol):
     """Monotonic time, and the only way to wait for it."""
 
@@ -226,3 +251,4 @@ class MachinePorts:
     gear: Gear | None = None  # None: threads follow the spindle by setpoints in time
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
+    trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent

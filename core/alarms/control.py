@@ -30,6 +30,29 @@ CONTROL: Entries = {
         "PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again",
         tells=True,
     ),
+    "feeder-tripped": Entry(
+        906,
+        HOLD,
+        "the feeder heard nothing and switched off",
+        (
+            "another program, a backup or an update keeps this computer busy",
+            "the computer is too slow or too hot, or its disk hangs",
+            "the screen was locked or the computer asleep",
+        ),
+        "look at the tool; read what starts again, then Cycle Start; measure the part: it is not counted",
+        tells=True,
+    ),
+    "switched-off": Entry(
+        907,
+        HOLD,
+        "an output is not as the program commanded",
+        (
+            "a fuse, a relay or a terminal has switched it",
+            "somebody else switches it: a pendant, the drive's own software",
+        ),
+        "look why; read what is switched again, then Cycle Start; measure the part, it is not counted",
+        tells=True,
+    ),
     "late": Entry(
         903,
         HOLD,

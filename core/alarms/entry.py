@@ -31,6 +31,8 @@ OwnCode = Literal[
     # the control
     "internal",
     "not-safe",
+    "feeder-tripped",
+    "switched-off",
     # holds that nobody pressed
     "station-silent",
     "pot-jumps",

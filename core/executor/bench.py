@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from core.alarms import Code
 from core.executor.alarms import told, words
+from core.executor.commanded import CommandedOutputs
 from core.executor.guard import Attempt
 from core.executor.snapshot import Alarm, Event
 from core.executor.spindle import SpindleControl
@@ -41,6 +42,7 @@ class Bench:
     now: float
     sample: AxisSample
     inputs: dict[str, bool]
+    outputs: CommandedOutputs  # the same as ``ports.io``
     heard: Heard = _QUIET
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0

@@ -11,6 +11,7 @@ from core.executor.announced import SPINDLE, Announcement, Starting
 from core.executor.bench import Bench
 from core.executor.blockwise.jogger import jogger_of
 from core.executor.cycle import Cycle
+from core.executor.disturbance import Disturbance
 from core.executor.feed import Pass
 from core.executor.guard import Attempt
 from core.executor.handwheel import Handwheel
@@ -52,7 +53,8 @@ class Conductor:
         self.wheel = Handwheel(bench, self.jogger)
         self.homing = Homing(bench)
         self.announcement = Announcement()
-        self.announcement.sources.append(self._spindle_starts)
+        self.disturbance = Disturbance(bench, self.rounds)
+        self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
         self._giving_up = False
 
     @property
@@ -91,8 +93,9 @@ class Conductor:
             return
         if state in STOPPED and cycle is not None:
             if not self.refuse(gate.busy(self._bench) or cycle.why_not_on() or self._unannounced()):
+                waits = bool(self._bench.spindle.waits)
                 self.announcement.begin()
-                cycle.go_on()
+                cycle.go_on(starts_spindle=waits)
         elif not self.refuse(self.rounds.refusal(state) or self._unannounced()):
             self.announcement.begin()
             self.rounds.begin()

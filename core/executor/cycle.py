@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.alarms import Code
 from core.executor.alarms import TroubleError, held_by
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, Pass, needs_speed
@@ -78,15 +79,18 @@ class Cycle:
 
     # --- what the operator asks ---------------------------------------------------------------------------
 
-    def hold(self, reason: str = "", by: str = "") -> None:
+    def hold(self, reason: str = "", by: str = "", code: Code | None = None) -> None:
         """Come to rest on the path; in a thread behind its pull-out.
 
-        ``reason`` in the words of the catalogue, empty where somebody pressed it: ``by`` whom.
+        ``reason`` in the words of the catalogue or with its ``code``; empty where it was pressed, ``by``
+        whom.
         """
+        if self._state in {State.HOLD, State.HOLDING}:
+            self._reason = self._reason or reason
         if self._state not in _GOING:
             return
         self._reason, self._held_at = reason, self._bench.now
-        self._bench.stopped(*held_by(reason, by))
+        self._bench.stopped(*(held_by(reason, by) if code is None else (code, reason.lower())))
         if self._mover.moving:
             self._mover.hold()
             self._change(State.HOLDING)
@@ -117,8 +121,8 @@ class Cycle:
         spindle = self._bench.spindle
         return spindle.kept_still.lower() if spindle.waits and self._turns_next() else ""
 
-    def go_on(self) -> None:
-        """Cycle Start after hold, single block, M00, M01."""
+    def go_on(self, *, starts_spindle: bool = False) -> None:
+        """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
         stopped = self._state
         self._reason = self.message = ""
         within = self._mover.active and not self._mover.complete
@@ -127,12 +131,11 @@ class Cycle:
             self._feed.pass_stop()
         self._still.held(self._bench.now - self._held_at)
         self._change(State.RUN)
-        self._spin_up = None
-        if within:
-            self._behind = self.current if stopped is State.BLOCK_END else None
-            self._spin_up = self._slow_spindle()
-            if self._spin_up is None:
-                self._mover.go_on(self._behind)
+        self._behind = self.current if stopped is State.BLOCK_END else None
+        self._spin_up = self._slow_spindle() if within or starts_spindle else None
+        self._held_at = self._bench.now
+        if within and self._spin_up is None:
+            self._mover.go_on(self._behind)
 
     # --- every tick ---------------------------------------------------------------------------------------
 
@@ -193,7 +196,9 @@ class Cycle:
             return
         if over:
             self._spin_up = None
-            self._mover.go_on(self._behind)
+            self._still.held(self._bench.now - self._held_at)
+            if self._mover.active and not self._mover.complete:
+                self._mover.go_on(self._behind)
         self._change(State.RUN if over else State.WAIT)
 
     def _progress(self) -> None:

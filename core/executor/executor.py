@@ -9,6 +9,7 @@ from functools import partial
 
 from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
+from core.executor.commanded import CommandedOutputs
 from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Wheel
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
@@ -26,7 +27,7 @@ from core.executor.station_watch import StationWatch
 from core.interpreter.setup import Setup
 from core.machine.model import Machine
 from core.motion.errors import MotionError
-from core.ports import DriverError, MachinePorts
+from core.ports import DriverError, MachinePorts, TrippedError
 
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
@@ -59,8 +60,16 @@ class Executor:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
+        outputs = CommandedOutputs(ports.io, machine.outputs)
         self._bench = Bench(
-            machine, ports, on_event, spindle, ports.clock.now(), ports.axes.sample(), dict(ports.io.inputs())
+            machine,
+            replace(ports, io=outputs),
+            on_event,
+            spindle,
+            ports.clock.now(),
+            ports.axes.sample(),
+            dict(ports.io.inputs()),
+            outputs,
         )
         self._station = StationWatch()
         self._conductor = Conductor(self._bench, passes, note, left)
@@ -115,6 +124,7 @@ class Executor:
         bench.now = self._ports.clock.now()
         bench.sample = self._ports.axes.sample()
         bench.inputs = dict(self._ports.io.inputs())
+        bench.outputs.look(bench.now)
         bench.spindle.look()
         bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
         bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
@@ -159,6 +169,7 @@ class Executor:
                 yield command
 
     def _supervise(self) -> None:
+        self._conductor.disturbance.look()
         self._conductor.supervisor.look(self._conductor.state)
         if self._conductor.state in _POWERED and not self._bench.sample.enabled:
             raise TroubleError("power-lost")
@@ -181,6 +192,8 @@ class Executor:
                 self._conductor.alarm(trouble)
             except MotionError as error:
                 self._conductor.alarm(TroubleError("program", str(error)))
+            except TrippedError:
+                pass  # refused, since the feeder has stopped something: the next look tells what
             except DriverError as error:
                 self._conductor.alarm(TroubleError(error.code, str(error)))
 

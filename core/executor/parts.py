@@ -11,20 +11,22 @@ class Piece:
     """A program from its first line is a new piece; a restart goes on with the one that was given up.
 
     Elementary blocks are numbered through a whole run and a restart keeps their numbers, so they tell what a
-    restart leaves out. A piece of which something was left out makes no part: who did that
-    by other means adds it to the count on F10.
+    restart leaves out. A piece of which something was left out makes no part, nor one in whose cycle spindle
+    or outputs were off that the program had on: who finds it good adds it to the count on F10.
     """
 
     def __init__(self) -> None:
         self._begun = 0  # blocks of it without a gap
         self._whole = True  # nothing is left out by what runs now
         self.restarted = False
+        self.disturbed = ""  # what was switched off behind the program's back
 
     def begin(self, job: Job, begun: int) -> None:
         """What is going to run; ``begun`` blocks of the piece were begun before it was interrupted."""
         begin = job.setup.begin
         self.restarted = begin is not None
         self._begun = 0 if begin is None else begun
+        self.disturbed = "" if begin is None else self.disturbed
         self._whole = begin is None or begin.checkpoint.blocks <= self._begun
 
     def begun_to(self, block: int) -> int:
@@ -33,11 +35,13 @@ class Piece:
 
     def end(self) -> None:
         """The program has come to its end: what follows is another piece."""
-        self._begun, self._whole, self.restarted = 0, True, False
+        self._begun, self._whole, self.restarted, self.disturbed = 0, True, False, ""
 
     @property
     def why_none(self) -> str:
         """Why its end makes no part; empty when it makes one."""
+        if self.disturbed:
+            return f"its cycle was disturbed ({self.disturbed}): measure it, and add it on F10 if it is good"
         return "" if self._whole else "a restart left something of it out"
 
 

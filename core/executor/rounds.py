@@ -83,6 +83,11 @@ class Rounds:
         """Whether a program is under way that will have made a part when it ends."""
         return self.cycle is not None and not (self._line or self._between or self.parts.why_none)
 
+    def disturb(self, why: str) -> None:
+        """Something was off that the program had on: the part under way is not counted."""
+        if not (self._line or self._between):
+            self.parts.piece.disturbed = self.parts.piece.disturbed or why
+
     def leave(self) -> bool:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
         if self.cycle is None or not self.cycle.at_rest:

@@ -137,7 +137,7 @@ class Event:
     """Something worth remembering: goes to the log by a queue."""
 
     t: float
-    # state, alarm, estop, start, restart, mdi, end, part, uncounted, stop,
+    # state, alarm, disturbed, estop, start, restart, mdi, end, part, uncounted, stop,
     # interrupted, cleared, refused, override, switch, force, load, offsets
     kind: str
     text: str

@@ -7,8 +7,8 @@ import queue
 from collections.abc import Mapping
 from typing import Protocol
 
-from core.ports import Clock, DriverError, Fault
-from drivers.feeder.wire import NOTHING, Message, fault_of, texts
+from core.ports import Clock, DriverError, Fault, TrippedError
+from drivers.feeder.wire import NOTHING, Message, fault_of, text, texts
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
@@ -44,6 +44,8 @@ class Line:
         except DriverError as error:
             self.lost = error.fault
             raise
+        if "tripped" in answer.head:
+            raise TrippedError(text(answer.head, "tripped"))
         if why := fault_of(answer.head, "error", "driver"):
             raise DriverError(why)
         return answer

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.ports import AxisSample, Cam, DriverError, Geared, MachinePorts, Segments, StationState, Stop
+from core.ports import (
+    AxisSample,
+    Cam,
+    DriverError,
+    Geared,
+    MachinePorts,
+    Segments,
+    StationState,
+    Stop,
+    Trip,
+)
 from drivers.feeder.client import Line
 from drivers.feeder.wire import (
     NOTHING,
@@ -179,6 +189,27 @@ class FeederStation:
         return StationState(**shown)
 
 
+class FeederTrips:
+    """``core.ports.Tripping``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def tripped(self) -> Trip | None:
+        """What the feeder has switched off since it was last acknowledged."""
+        shown = self._line.look().get("trip")
+        if shown is None:
+            return None
+        count, away, spindle, outputs = items(shown)
+        (away_s,) = floats([away])
+        (number_,) = floats([count])
+        return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)))
+
+    def acknowledge(self, trip: Trip) -> None:
+        """It may go on: the control knows."""
+        self._line.order("acknowledge", number=trip.number)
+
+
 def feeder_ports(line: Line) -> MachinePorts:
     """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
     hello = line.ask(Message({"do": "hello"}, NOTHING)).head
@@ -196,6 +227,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         warnings=tuple(texts(hello.get("warnings"))),
         gear=FeederGear(line) if hello.get("gear") is True else None,
         lock=FeederLock(line) if hello.get("lock") is True else None,
+        trips=FeederTrips(line),
     )
 
 

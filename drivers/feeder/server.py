@@ -9,10 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from core.ports import DriverError, MachinePorts, Stop
+from core.ports import DriverError, MachinePorts, Stop, TrippedError
 from drivers.feeder.orders import act, use_hand
+from drivers.feeder.trip import TripGuard
 from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segments, text, with_code
 
+AWAY = 0.25  # s without a round of its own: modules take their error values after three heartbeats
 LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
 SILENT = 0.2  # s without a word after which the control counts as stalled
 _NOTES = 50
@@ -40,7 +42,8 @@ class Feeder:
     """``handle`` one message, ``tick`` between them. All by one thread.
 
     A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
-    outputs go to their safe states. ``orphaned``: it will never speak again; at rest the drives go off too,
+    outputs go to their safe states: it has tripped, and neither moves nor switches on anything until the
+    control has acknowledged that. ``orphaned``: it will never speak again; at rest the drives go off too,
     and once the spindle stands the feeder is done.
     """
 
@@ -57,6 +60,7 @@ class Feeder:
         self._parted_at = 0.0
         self._latest = 0.0  # s, the worst lateness so far
         self._notes: list[str] = []
+        self._guard = TripGuard()
         self.orphaned = False
         self.done = False  # orphaned, at rest, switched off
         self._answers: Mapping[str, Callable[[Message], Message]] = {
@@ -77,7 +81,10 @@ class Feeder:
         if answer is None:
             return _refused("the feeder does not know this request; are both of the same version?")
         try:
+            self._guard.demand_allowed(message)
             return answer(message)
+        except TrippedError as error:
+            return Message({"tripped": str(error)}, NOTHING)
         except DriverError as error:
             return _refused(error.fault)
         finally:
@@ -96,11 +103,25 @@ class Feeder:
         if seconds > max(self._latest, LATE):
             self._latest = seconds
             self._note(f"the feeder woke up {1000 * seconds:.0f} ms late; has it real-time priority?")
+        if seconds > AWAY and self._resting():
+            self._trip(seconds)
+
+    def _resting(self) -> bool:
+        axes = self._ports.axes
+        return not axes.sample().moving and axes.horizon() <= axes.now()
+
+    def _trip(self, away: float) -> None:
+        """Spindle stopped, outputs safe; what was on is what the control has to be told."""
+        before = dict(self._ports.io.outputs())
+        self._carefully(lambda: self._ports.spindle.run(0.0), self._ports.io.safe)
+        after = self._ports.io.outputs()
+        self._guard.trip(away, [name for name, on in before.items() if on and not after.get(name)])
 
     def _hear(self) -> None:
         now = self._ports.clock.now()
         if now - self._heard > SILENT:
             self._note(f"the control was silent for {now - self._heard:.2f} s")
+            self._guard.back_after(now - self._heard)
         self._heard = now
         self._parted = False
 
@@ -110,16 +131,17 @@ class Feeder:
             if silent > longest and self._ports.io.outputs().get(name):
                 self._note(f"{name} off: the control has been silent for {silent:.2f} s")
                 self._carefully(partial(self._ports.io.write, name, False))
+                self._guard.fell(silent, name)
 
     def _without_control(self) -> None:
         """The queue ends at rest by itself; what does not, is stopped once it is over."""
         axes = self._ports.axes
-        if axes.sample().moving or axes.horizon() > axes.now():
+        if not self._resting():
             return
         if not self._parted:
             self._parted = True
             self._note("the control is silent: spindle stopped, outputs safe")
-            self._carefully(lambda: self._ports.spindle.run(0.0), self._ports.io.safe)
+            self._trip(axes.now() - self._heard)
             self._parted_at = axes.now()
         if self.orphaned and not self.done:
             self._carefully(lambda: axes.stop(Stop.RAMP_OFF))
@@ -164,6 +186,7 @@ class Feeder:
             "station": asdict(ports.station.snapshot()),
             "geared": geared,
             "held": ports.lock is not None and ports.lock.held(),
+            "trip": self._guard.tripped,
             "notes": self._notes,
         }
         self._notes = []
@@ -185,7 +208,10 @@ class Feeder:
         return _value(0.0)
 
     def _act(self, message: Message) -> Message:
-        act(self._ports, message.head)
+        if text(message.head, "what") == "acknowledge":
+            self._guard.acknowledge(number(message.head, "number"))
+        else:
+            act(self._ports, message.head)
         return _value(0.0)
 
     def _hand(self, message: Message) -> Message:

@@ -28,6 +28,7 @@ class Known:
         self.offset: tuple[float, ...] = ()
         self.overrides: tuple[int, ...] | None = None
         self.overrides_told = 0  # how often they have been in a report
+        self.accessories: tuple[float, str] | None = None  # when they were told, and what is on
         self.diameter: bool | None = None
         self.most_free = 0  # blocks of its planner when that is empty
 
@@ -39,6 +40,8 @@ class Known:
         self.offset = report.offset if report.offset is not None else self.offset
         if report.overrides is not None:
             self.overrides, self.overrides_told = report.overrides, self.overrides_told + 1
+        if report.accessories is not None or report.overrides is not None:
+            self.accessories = self.clock.now(), report.accessories or ""  # left out where nothing is on
         self.homed = report.homed if report.homed is not None else self.homed
         if report.state == "Idle" and report.free is not None:
             self.most_free = max(self.most_free, report.free)

@@ -11,6 +11,8 @@ from drivers.grblhal.inputs import GrblInputs
 
 _COOLANT = {"flood": "M8", "mist": "M7"}
 _MIST = "M"  # among the letters of its build
+_LETTERS = {"flood": "F", "mist": "M"}  # among the accessories of its reports
+_OBEYS = 1.0  # s from a line to a report that has it: lines wait behind blocks
 _COLLET = "collet"  # stays closed as it was found
 
 
@@ -24,14 +26,24 @@ class GrblIO:
         outputs = controller.config.outputs
         self._wanted = {name: name == _COLLET for name in outputs}
         self._sent: dict[str, bool] = {}  # what the controller has been told since it last forgot
+        self._said_at: dict[str, float] = {}
 
     def inputs(self) -> Mapping[str, bool]:
         """By the names of the machine file."""
         return self._inputs.states()
 
     def outputs(self) -> Mapping[str, bool]:
-        """As last asked for."""
-        return dict(self._wanted)
+        """Coolant as the controller tells it, a second late; of auxiliary outputs it tells nothing."""
+        told = self._c.accessories
+        shown = dict(self._wanted)
+        for name, output in self._c.config.outputs.items():
+            letter = _LETTERS.get(output.terminal)
+            said_at = self._said_at.get(name)
+            if letter is None or told is None or said_at is None:
+                continue
+            if told[0] > said_at + _OBEYS and self._sent.get(name) == self._wanted[name]:
+                shown[name] = letter in told[1]
+        return shown
 
     def write(self, name: str, on: bool) -> None:
         """Raises DriverError for an output that the machine or the controller has not."""
@@ -40,6 +52,8 @@ class GrblIO:
         why = self.lacking(name)
         if on and why:
             raise DriverError(f"output {name} cannot be switched: {why}", "output")
+        if self.outputs()[name] is not on:
+            self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
         self._wanted[name] = on
         if not why:
             self._tell(name)
@@ -75,6 +89,7 @@ class GrblIO:
             if output.terminal in _COOLANT:
                 self._wanted[name] = False
                 self._sent[name] = False
+                self._said_at[name] = self._c.clock.now()
 
     def pump(self) -> None:
         """Say what could not be said while the controller was locked, jogged or held."""
@@ -87,6 +102,7 @@ class GrblIO:
             self._sent.setdefault(name, not self._wanted[name])
             return
         on = self._sent[name] = self._wanted[name]
+        self._said_at[name] = self._c.clock.now()
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             for line in [_COOLANT[terminal]] if on else self._coolant_off():

@@ -29,6 +29,7 @@ class Report(NamedTuple):
     homed: tuple[int, ...] | None = None
     input: int | None = None  # what M66 has read: 1 on, 0 off, -1 nothing
     full: bool = False
+    accessories: str | None = None  # what is on: S C spindle, F flood, M mist; left out where nothing is
 
     @property
     def moves(self) -> bool:
@@ -106,5 +107,6 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "Pn": lambda text: {"pins": text},
     "In": lambda text: {"input": int(text)} if text in {"-1", "0", "1"} else {},
     "FW": lambda _: {"full": True},
+    "A": lambda text: {"accessories": text},
     "D": lambda text: {"diameter": text == "1"} if text in {"0", "1"} else None,
 }

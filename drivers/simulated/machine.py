@@ -109,6 +109,11 @@ class SimMachine:
             self._plant.advance()
             self._servo(axis).p += way
 
+    def switch_output(self, name: str, on: bool) -> None:
+        """Somebody else switches an output: a fuse, a terminal, a hand at the relay."""
+        with self._plant.lock:
+            self._plant.terminals.write(name, on, self._plant.advance())
+
     def drive_fault(self, axis: str, text: str = "drive fault") -> None:
         """A drive trips."""
         with self._plant.lock:

@@ -44,6 +44,7 @@ class Canopen(Rig):
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {
+        "outputs told": "a module of CiA 401 tells no output back; one that fails is a fault of the bus",
         "blocks": "its motion is planned here",
         "station": "its buttons hang on a module, whose silence is a fault of its own: silent terminals",
     }
@@ -151,6 +152,7 @@ class FedCanopen(Canopen):
         ),
     }
     harmless: ClassVar[tuple[str, ...]] = ()
+    watched = True
 
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         super().__init__(homing=homing, turns=turns)

@@ -142,6 +142,7 @@ class Grblhal(Rig):
         "setpoints": "the controller plans by itself and takes blocks",
     }
     hold = 0.25
+    sees_output = 2.5  # it tells its accessories in every twentieth report
     kept_in_estop: ClassVar[Mapping[str, str]] = {
         "catcher": "a controller in alarm takes no M65 before Reset"
     }
@@ -174,6 +175,10 @@ class Grblhal(Rig):
             "two masters": lambda: self.peer.feed(b"G8\n"),
             "late answers": lambda: setattr(self.wire, "late", 0.15),
         }
+
+    def switch_output(self, name: str, on: bool) -> None:
+        """By a pendant's button, or by the firmware."""
+        self.peer.outputs[self.machine.outputs[name].terminal] = on
 
     def _motor_fault(self) -> None:
         """As its firmware does on this input: all off, then the alarm."""

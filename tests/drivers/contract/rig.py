@@ -59,6 +59,8 @@ class Rig(ABC):
     runs_on: ClassVar[float] = 0.0  # s that a jog let go still goes at its speed
     kept_in_estop: ClassVar[Mapping[str, str]] = {}  # outputs that only Reset switches off, and why
     heals: ClassVar[float] = 0.3  # s until it sees that a wire has been mended
+    sees_output: ClassVar[float] = 0.05  # s until it tells of an output that somebody else has switched
+    watched: ClassVar[bool] = False  # something switches off when the control is silent for 0.2 s at rest
 
     machine: Machine
     clock: StepClock
@@ -80,6 +82,10 @@ class Rig(ABC):
     @abstractmethod
     def close(self) -> None:
         """Let everything go."""
+
+    def switch_output(self, name: str, on: bool) -> None:
+        """Somebody else does: ``missing["outputs told"]`` where no wire tells of it."""
+        raise NotImplementedError(name, on)
 
     @property
     def blocks(self) -> BlockSink | None:

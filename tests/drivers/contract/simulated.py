@@ -79,6 +79,10 @@ class Simulated(Rig):
         """The slide is free."""
         self.hands.jam("X", False)
 
+    def switch_output(self, name: str, on: bool) -> None:
+        """At the terminal."""
+        self.hands.switch_output(name, on)
+
     def close(self) -> None:
         """Nothing to let go."""
 
@@ -133,6 +137,7 @@ class Fed(Simulated):
 
     faults: ClassVar[Mapping[str, Fault]] = {**Simulated.faults, **FEEDER_FAULTS}
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
+    watched = True
     missing: ClassVar[Mapping[str, str]] = {
         **FEEDER_MISSING,
         "bus-off": "a socket pair has no such state",

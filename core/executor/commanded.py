@@ -1,0 +1,82 @@
+"""Outputs as they were commanded, beside what they are: a difference is somebody else's doing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from core.machine.model import OutputModel
+from core.ports import DigitalIO
+
+_TELLS = 0.5  # s in which an output that was written may still be told as it was before
+
+
+class Differing(NamedTuple):
+    """An output that is not what it was commanded to be."""
+
+    name: str
+    wanted: bool
+
+    @property
+    def words(self) -> str:
+        """For the operator."""
+        name = self.name.upper()
+        return f"{name} HAS GONE OFF" if self.wanted else f"{name} HAS COME ON"
+
+
+class CommandedOutputs:
+    """``core.ports.DigitalIO``: every output that the executor writes goes through here and is remembered."""
+
+    def __init__(self, io: DigitalIO, models: Mapping[str, OutputModel]) -> None:
+        self._io = io
+        self._models = models
+        self._wanted = dict(io.outputs())
+        self._written: dict[str, float] = {}  # when each was written last, told late by some drivers
+
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs by name."""
+        return self._io.inputs()
+
+    def outputs(self) -> Mapping[str, bool]:
+        """As they are."""
+        return self._io.outputs()
+
+    def write(self, name: str, on: bool) -> None:
+        """Switch one. Raises DriverError, and then it was not commanded."""
+        self._io.write(name, on)
+        self._wanted[name] = on
+        self._written[name] = self._now
+
+    def safe(self) -> None:
+        """Every output to its safe state."""
+        self._io.safe()
+        for model in self._models.values():
+            if model.safe is not None:
+                self._wanted[model.name], self._written[model.name] = model.safe, self._now
+
+    def look(self, now: float) -> None:
+        """First thing in a tick."""
+        self._now = now
+
+    def fell(self, names: Sequence[str]) -> None:
+        """These are known to have been switched off by somebody else, however lately they were written."""
+        for name in names:
+            self._written.pop(name, None)
+
+    def differing(self) -> list[Differing]:
+        """Those that are not as they were commanded, and ought to be by now."""
+        actual = self._io.outputs()
+        return [
+            Differing(name, wanted)
+            for name, wanted in self._wanted.items()
+            if actual.get(name, wanted) is not wanted and self._now - self._written.get(name, -1e9) > _TELLS
+        ]
+
+    def accept(self) -> list[Differing]:
+        """Where no program is under way they may be as they are; returns what had changed by itself."""
+        changed = self.differing()
+        for each in changed:
+            self._wanted[each.name] = not each.wanted
+        return changed
+
+    _now = 0.0

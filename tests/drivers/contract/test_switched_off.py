@@ -1,0 +1,150 @@
+"""Spindle and outputs that somebody else has switched: nothing is fed, a start says what it switches on."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.executor.commands import CycleStart
+from core.executor.snapshot import State
+from tests.drivers.contract.conftest import need
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.rig import STILL, TICK
+
+CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
+DWELL = "G90G94F300\nM03S600\nM08\nX.1\nG04F3\nG01F60X.5\nM30\n"
+STOP = "G90G94F300\nM03S600\nM08\nX.1\nG01F60X.2\nM00\nG01X.5\nM30\n"
+SILENT = 0.5
+
+
+def on(control: Control) -> set[str]:
+    return {name for name, lit in control.world.outputs().items() if lit}
+
+
+def away(control: Control, seconds: float) -> None:
+    """The control stands still, the machine does not."""
+    for _ in range(round(seconds / TICK)):
+        control.rig.alone(TICK)
+
+
+def in_the_cut(control: Control) -> None:
+    control.start(CUT)
+    control.until_true(lambda _: control.world.place()[1] < -8.0)
+    assert "coolant" in on(control)
+
+
+def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Control) -> None:
+    need(control.rig, "outputs told")
+    in_the_cut(control)
+    control.rig.switch_output("coolant", False)
+    struck = control.clock.now()
+    control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
+    assert control.clock.now() - struck < control.rig.sees_output + control.rig.hold + 0.1
+    assert "COOLANT HAS GONE OFF" in control.shot.waiting_for
+    control.run(0.5)
+    stood = control.world.place()
+    control.run(1.0)
+    assert control.world.place() == pytest.approx(stood, abs=STILL)
+    assert "coolant" not in on(control)  # and nobody has switched it on again
+    assert control.shot.announced == ("COOLANT COMES ON",)
+    control.press()
+    control.until(State.RUN, limit=0.5)
+    control.run(0.1 if control.rig.blocks is None else 1.0)  # a controller does it behind the blocks it has
+    assert "coolant" in on(control)
+    control.until(State.IDLE)
+    assert control.shot.alarms == ()
+    assert control.shot.parts == 0
+    (why,) = control.said("uncounted")
+    assert "coolant has gone off" in why
+
+
+def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
+    need(control.rig, "outputs told")
+    control.start(CUT.replace("M08\n", ""))
+    control.until_true(lambda _: control.world.place()[1] < -8.0)
+    if control.rig.blocks is not None:
+        pytest.skip("what was never switched is not looked for in a controller's reports")
+    control.rig.switch_output("coolant", True)
+    control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
+    assert control.shot.announced == ("COOLANT GOES OFF",)
+    control.press()
+    control.run(0.3)
+    assert "coolant" not in on(control)
+
+
+def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> None:
+    in_the_cut(control)
+    control.world.spindle_dies()
+    control.until(State.HOLD, State.FAULT, limit=6.0)
+    control.run(1.0)
+    stood = control.world.place()
+    control.press()
+    control.run(1.0)
+    assert control.world.place() == pytest.approx(stood, abs=STILL)
+
+
+@pytest.mark.parametrize("text", [DWELL, STOP], ids=["dwell", "stop"])
+def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) -> None:
+    """Where something switches off meanwhile it is declared and announced; else all is as it was."""
+    control.start(text)
+    control.until_true(lambda shot: shot.waiting_for == "DWELL" or shot.state is State.PROGRAM_STOP)
+    control.until_true(lambda _: control.world.rpm() > 590.0)
+    state, place = control.state, control.world.place()
+    away(control, SILENT)
+    control.run(0.1)
+    assert control.world.place() == pytest.approx(place, abs=STILL)
+    if not control.rig.watched:
+        assert control.state is state
+        assert "coolant" in on(control)
+        assert control.world.rpm() == pytest.approx(600.0, rel=0.1)
+        return
+    (said,) = control.said("disturbed")
+    assert said == "CONTROL WAS SILENT FOR 0.5 S, SWITCHED OFF: SPINDLE, COOLANT"
+    assert control.state is (State.HOLD if state is State.WAIT else state)
+    assert on(control) == {"collet"}
+    assert set(control.shot.announced) == {"THE SPINDLE STARTS AT 600 RPM FORWARD", "COOLANT COMES ON"}
+    control.post(CycleStart())
+    control.world.press_start()
+    control.run(0.1)
+    assert control.state in {State.HOLD, State.PROGRAM_STOP}  # nobody has had the time to read it
+    assert "look first" in control.shot.start_refused
+    control.run(2.0)
+    assert on(control) == {"collet"}
+    assert control.world.rpm() == 0.0
+    control.press()
+    least = math.inf
+    while control.state not in {State.IDLE, State.FAULT}:
+        before = control.world.place()
+        control.tick()
+        if math.dist(control.world.place(), before) > STILL and control.world.place()[0] > place[0] + 0.1:
+            least = min(least, abs(control.world.rpm()))
+            if control.state is State.RUN and control.world.place()[0] < 11.0:
+                assert "coolant" in on(control)
+    assert least > 500.0  # not fed before the spindle was at its speed again
+    assert control.shot.alarms == ()
+    assert control.shot.parts == 0
+    assert "disturbed" in control.said("uncounted")[0]
+
+
+def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(control: Control) -> None:
+    """Frozen between the look and the setpoints: the feeder refuses them until the control knows."""
+    if not control.rig.watched:
+        pytest.skip("nothing switches off by itself")
+    control.start("G90G94F300\nM03S600\nM08\nX.1\nG04F1\nG01F60X.5\nM30\n")
+    control.until_true(lambda shot: shot.waiting_for == "DWELL")
+    control.run(0.9)
+    place = control.world.place()
+    look = control.executor._look
+
+    def frozen() -> None:
+        look()
+        away(control, SILENT)
+
+    control.executor._look = frozen  # type: ignore[method-assign]
+    control.run(0.2)
+    control.executor._look = look  # type: ignore[method-assign]
+    control.run(1.0)
+    assert control.world.place() == pytest.approx(place, abs=STILL)
+    assert control.state is State.HOLD
+    assert control.shot.alarms == ()
