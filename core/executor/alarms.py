@@ -9,7 +9,6 @@ from core.executor.snapshot import Alarm
 
 _log = logging.getLogger(__name__)
 HOLDS: dict[str, Code] = {
-    "SPINDLE STOPPED BY THE FEEDER": "feeder-tripped",
     entry.text.upper(): code for code, entry in CATALOGUE.items() if entry.reaction is Reaction.HOLD
 }
 
