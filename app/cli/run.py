@@ -28,6 +28,9 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--realtime", action="store_true", help="at the machine's pace, not as fast as it goes"
     )
+    parser.add_argument(
+        "--anew", action="store_true", help="begin at the first line although a job was interrupted"
+    )
     add_program_options(parser)
 
 
@@ -67,6 +70,7 @@ def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Repo
             around.machine,
             inputs=inputs,
             realtime=args.realtime,
+            anew=args.anew,
             log=log,
             say=lambda text: _say(path, text),
             progress=progress.reach,

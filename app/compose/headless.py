@@ -11,11 +11,14 @@ from types import TracebackType
 from typing import TextIO
 
 from app.cli.errors import CommandError
-from app.compose.backends import Connected, connect, real_time
+from app.compose.backends import Connected, connect, played, real_time
+from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor
 from app.desk.headless import HeadlessRun
 from app.desk.home import home
 from core.executor.executor import Executor
+from core.executor.interrupted import Interrupted
+from core.executor.interruption import Note
 from core.executor.snapshot import Event
 from core.machine.model import Machine
 from core.ports import DriverError
@@ -61,6 +64,7 @@ def headless(
     *,
     inputs: Mapping[str, bool],
     realtime: bool,
+    anew: bool = False,
     log: EventLog,
     say: Callable[[str], None],
     progress: Callable[[float], None],
@@ -68,8 +72,26 @@ def headless(
     """An executor on the machine with these inputs, and somebody to press its buttons.
 
     A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
-    and for inputs that it does not have or that are wires and not to be set.
+    for inputs that it does not have or that are wires and not to be set, and for one on which a job was
+    interrupted, unless the program is to begin ``anew`` all the same.
     """
+    with (
+        _remembered(machine, anew=anew, say=say) as note,
+        _connected(machine, realtime) as (clock, connected),
+    ):
+        _set_inputs(connected, inputs)
+        executor = Executor(machine, connected.ports, log.add, note=note)
+        close_floor = _shop_floor(machine, executor, say, paced=isinstance(clock, RealClock))
+        try:
+            yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
+        finally:
+            executor.shut()  # also on Ctrl-C: the slides brake at once
+            close_floor()
+
+
+@contextmanager
+def _connected(machine: Machine, realtime: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
+    """The machine and the clock that it goes by."""
     paced = realtime or machine.hardware.sim.realtime or real_time(machine)
     clock = RealClock() if paced else StepClock()
     try:
@@ -77,16 +99,40 @@ def headless(
     except DriverError as error:
         raise CommandError(str(error)) from error
     try:
-        _set_inputs(connected, inputs)
-        executor = Executor(machine, connected.ports, log.add)
-        close_floor = _shop_floor(machine, executor, say, paced=paced)
-        try:
-            yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
-        finally:
-            executor.shut()  # also on Ctrl-C: the slides brake at once
-            close_floor()
+        yield clock, connected
     finally:
         connected.close()
+
+
+@contextmanager
+def _remembered(machine: Machine, *, anew: bool, say: Callable[[str], None]) -> Iterator[Note]:
+    """Where what a power cut would leave interrupted is kept: with the screen's store, if the metal is real.
+
+    Simulated slides cut nothing, and forget.
+    """
+    if played(machine):
+        if anew:
+            raise CommandError("--anew: a simulated run remembers no interrupted job")
+        yield lambda _what: None
+        return
+    journal = Journal.at_home()
+    try:
+        if journal.trouble:
+            say(f"an interruption of this run would not be kept: {journal.trouble}")
+        if journal.left is not None:
+            _demand_anew(journal.left, anew=anew)
+            journal.hear(Event(0.0, "cleared", f"{journal.left.words}; begun anew from the command line"))
+        yield journal.note
+    finally:
+        journal.close()
+
+
+def _demand_anew(left: Interrupted, *, anew: bool) -> None:
+    if not anew:
+        raise CommandError(
+            f"a job was interrupted, {left.words}; T{left.tool} may stand in the part. Go on there with the"
+            " screen (SEARCHTO), or clear the tool and give --anew to begin at the first line"
+        )
 
 
 def _shop_floor(

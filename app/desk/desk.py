@@ -7,6 +7,7 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -31,7 +32,6 @@ from core.executor.snapshot import Snapshot, Starts, State
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
-MEANT = 1.0  # s after a question before the same hand can have read it
 
 
 class Desk(DeskParts):
@@ -145,17 +145,13 @@ class Desk(DeskParts):
             self.clear()
             self.session.load(loaded.path, not loaded.block_delete)
 
-    def may_close(self) -> bool:
-        """Whether the control may be left; says once what would be lost, and means it a second later."""
-        waiting, now = self.waiting(), self.clock()
-        if not waiting or (self._closing is not None and now - self._closing >= MEANT):
-            return True
-        if self._closing is None:
-            self._closing = now
-        self.say(
-            tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR CLOSE ONCE MORE").format(what=waiting)
-        )
-        return False
+    def may_close(self, close: Callable[[], None]) -> bool:
+        """Whether the control may be left; where something would be lost by it Y does ``close``."""
+        waiting = self.waiting()
+        if waiting:
+            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY")
+            self.ask(words.format(what=waiting), close)
+        return not waiting
 
     def feed_hold(self, by: str = "key or finger at the screen") -> None:
         """Feed hold, whatever else is going on."""

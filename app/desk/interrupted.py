@@ -89,7 +89,7 @@ def _changed(found: Interrupted, loaded: Loaded) -> bool:
 def _pass(found: Interrupted, loaded: Loaded) -> str:
     """Which time the line was gone through, where it is more than once in a part."""
     picture, job = loaded.picture, loaded.job
-    if picture is None or job is None or job.digest != found.job:
+    if picture is None or job is None or job.text_digest != found.text:
         return ""
     passes = picture.blocks_of_line(found.line)
     now = next((n for n, (a, b) in enumerate(passes, 1) if a <= found.block <= b), 0)

@@ -86,7 +86,6 @@ class DeskParts:
     log: StopLog = field(init=False)
     answers: Answers = field(init=False)
     rebuilding: Rebuilding = field(init=False)
-    _closing: float | None = None  # when it was said what closing would lose
     _pulse: Pulse = field(default_factory=Pulse)
 
     def __post_init__(self) -> None:

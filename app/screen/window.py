@@ -43,6 +43,7 @@ class MainWindow(QWidget):
     def __init__(self, look: Look, closed: Callable[[], None] = _nobody) -> None:
         super().__init__()
         self._closed = closed
+        self._meant = False  # to leave, whatever is lost by it
         self.look = look
         self.frame: Frame | None = None
         self._keys: dict[str, Callable[[], None]] = {}
@@ -278,6 +279,14 @@ class MainWindow(QWidget):
         if self.frame is not None:
             self.frame.setGeometry(self.rect())
 
+    def _may_close(self, frame: Frame) -> bool:
+        return self._meant or frame.desk.may_close(self._close)
+
+    def _close(self) -> None:
+        """Although something is lost by it."""
+        self._meant = True
+        self.close()
+
     def closeEvent(self, event: QCloseEvent) -> None:
         """Not while a program is under way."""
         frame = self.frame
@@ -286,7 +295,9 @@ class MainWindow(QWidget):
             self.refresh()
             event.ignore()
             return
-        if frame is not None and not (frame.page.leave() and frame.desk.may_close()):
+        if frame is not None and not (
+            frame.page.leave() and (self._meant or frame.desk.may_close(self._close))
+        ):
             self.refresh()
             event.ignore()
             return

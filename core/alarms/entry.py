@@ -31,7 +31,6 @@ OwnCode = Literal[
     # the control
     "internal",
     "not-safe",
-    "control-silent",
     "feeder-tripped",
     "switched-off",
     # holds that nobody pressed

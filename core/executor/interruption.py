@@ -142,6 +142,10 @@ class Interruption:
         self._answered = self._bench.now
         return ""
 
+    def withdraw(self) -> None:
+        """The next start is to begin something else."""
+        self._answered = None
+
     @property
     def answered(self) -> bool:
         """Whether that was said, and not too long ago."""

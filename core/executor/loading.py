@@ -64,5 +64,6 @@ class Loading:
 
     def _prepare(self, command: Prepare) -> None:
         standing = self._conductor.standing
+        self._conductor.rounds.interruption.withdraw()
         standing.starts, standing.start_refused = command.starts, ""
         standing.prepared, standing.prepared_proof = command.job, command.proof

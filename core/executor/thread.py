@@ -9,7 +9,6 @@ from core.executor.guard import Guard
 from core.ports import Clock
 
 TICK = 0.01  # s
-_END = 8.0  # s: the longest wait for a drive; one that is stuck longer is left to the watchdog
 
 
 class ExecutorThread:
@@ -20,7 +19,6 @@ class ExecutorThread:
         self._clock = clock
         self._tick = tick
         self._closing = threading.Event()
-        self._shut = False
         self._thread = threading.Thread(target=self._run, name="executor", daemon=True)
 
     @property
@@ -36,14 +34,12 @@ class ExecutorThread:
         """Stop the machine as E-stop would leave it, and end the thread."""
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join(_END)
-        if not self._thread.is_alive() and not self._shut:
-            self.executor.shut()  # it has died: nobody else calls the drivers any more
+            self._thread.join()
 
     def _run(self) -> None:
-        while not self._closing.is_set():
-            with Guard(self.executor.failed):
+        with Guard(self.executor.failed):
+            while not self._closing.is_set():
                 self.executor.tick()
                 self._clock.sleep_until(self._clock.now() + self._tick)
-        self.executor.shut()
-        self._shut = True
+        with Guard(self.executor.failed):
+            self.executor.shut()

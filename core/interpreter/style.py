@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from core.interpreter.statement import Statement
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Line
@@ -28,23 +26,21 @@ class Style:
     def __init__(self, *, strict: bool) -> None:
         self.found: list[Diagnostic] = []
         self._strict = strict
-        self._told: dict[str, int] = {}  # kind → place in what was found
+        self._told: set[str] = set()
 
-    def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
-        """Say that ``kind`` occurs at this place, there and behind it so often."""
-        at = self._told.get(kind)
-        if at is not None and not self._strict:
-            self.found[at] = replace(self.found[at], count=self.found[at].count + count)
+    def tell(self, kind: str, line: int, column: int = 0) -> None:
+        """Say that ``kind`` occurs at this place."""
+        if kind in self._told and not self._strict:
             return
-        self._told[kind] = len(self.found)
+        self._told.add(kind)
         message, hint = _KINDS[kind]
         severity = Severity.ERROR if self._strict else Severity.NOTE
-        self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
+        self.found.append(Diagnostic(line, column, severity, kind, message, hint))
 
     def look_at_file(self, source: Source) -> None:
         """Line ends."""
         if "\r" in source.text:
-            self.tell("line-ends", 1, count=source.text.count("\r"))
+            self.tell("line-ends", 1)
         if source.text and source.text[-1] not in "\r\n":
             self.tell("last-newline", len(source.lines))
 

@@ -104,6 +104,6 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:
-    if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) is not Cause.OTHER:
+    if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
     return StoreError(f"{target} cannot be written ({error}); check the folder, its space and rights")

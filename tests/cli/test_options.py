@@ -66,6 +66,7 @@ COVERED = {
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",
     ("trace", "--out"): "tests/cli/test_trace.py",
+    ("run", "--anew"): "tests/cli/test_run.py",
     ("run", "--headless"): "tests/cli/test_run.py",
     ("run", "--realtime"): "tests/cli/test_run.py",
     ("offsets show", "--json"): "tests/cli/test_offsets.py",

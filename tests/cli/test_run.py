@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from app.compose.journal import Journal
 from tests.cli.conftest import Turndesk
 
 KEYS = {"state", "final", "elapsed_s", "alarms", "underruns", "max_following_error", "events"}
@@ -121,3 +123,43 @@ def test_an_input_that_the_machine_does_not_have_is_told_before_anything_moves(
     assert (told.status, told.out) == (2, "")
     assert "did you mean TB2-5" in told.err
     assert told.err.count("\n") == 1
+
+
+# --- an interrupted job, where the metal is real ------------------------------------------------------------
+
+
+@pytest.fixture
+def metal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The slides are simulated all the same."""
+    monkeypatch.setattr("app.compose.headless.played", lambda _machine: False)
+
+
+@pytest.mark.usefixtures("metal")
+def test_a_run_that_broke_off_is_not_begun_anew_unasked(
+    turndesk: Turndesk, offsets: Path, part: Callable[[str], Path], home: Path
+) -> None:
+    waits = part(HEAD + "X.5Z.1\nM92\nZ.2\nM30\n")
+    told = turndesk("run", waits, "--headless", "--offsets", offsets)
+    assert told.status != 0
+    with closing(Journal(home)) as journal:
+        assert journal.left is not None
+        assert (journal.left.program, journal.left.tool) == ("part.nc", 1)
+    good = part(HEAD + "X.5Z.1\nM30\n")
+    told = turndesk("run", good, "--headless", "--offsets", offsets)
+    assert told.status == 2
+    assert "a job was interrupted, part.nc line" in told.err
+    assert "T1 may stand in the part" in told.err
+    told = turndesk("run", good, "--headless", "--offsets", offsets, "--anew")
+    assert told.status == 0
+    with closing(Journal(home)) as journal:
+        assert journal.left is None
+        assert "begun anew from the command line" in journal.events("", {"cleared"}, 9)[0].text
+
+
+def test_a_simulated_run_remembers_nothing_and_says_so(
+    turndesk: Turndesk, offsets: Path, part: Callable[[str], Path]
+) -> None:
+    path = part(HEAD + "X.5Z.1\nM30\n")
+    told = turndesk("run", path, "--headless", "--offsets", offsets, "--anew")
+    assert told.status == 2
+    assert "a simulated run remembers no interrupted job" in told.err

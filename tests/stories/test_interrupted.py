@@ -1,4 +1,4 @@
-"""A part that was broken off: by the E-stop, by R R, by a killed control; and the next start."""
+"""A part that was broken off: by the E-stop, by R, by a closed or killed control; and the next start."""
 
 from __future__ import annotations
 
@@ -19,6 +19,13 @@ def in_the_cut(operator: Operator) -> None:
     operator.drives_on()
     operator.starts()
     operator.until(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
+
+
+def answers_yes(operator: Operator, question: str) -> None:
+    """Nobody has read a question sooner than half a second after it came."""
+    operator.sees(question)
+    operator.during(0.6)
+    operator.key("y")
 
 
 def shows_the_job_on_every_page(operator: Operator) -> None:
@@ -49,7 +56,8 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     in_the_cut(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    operator.key("e", "shift")
+    operator.key("u")
+    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
     operator.drives_on()
     shows_the_job_on_every_page(operator)
     is_not_begun_by_the_palms(operator)
@@ -64,14 +72,13 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     assert operator.events("interrupted") == ["part.nc line 7, T3, part 1: E-STOP"]
 
 
-def test_r_twice_leaves_the_same_job_and_y_then_the_palms_begin_it_anew(story: Story) -> None:
+def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_anew(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
     operator.key("h")
     operator.reaches("FEED HOLD")
     operator.key("r")
-    operator.sees("GIVE THE PROGRAM UP")
-    operator.key("r")
+    answers_yes(operator, "PRESS Y TO GIVE THE PROGRAM UP")
     operator.reaches("READY")
     is_not_begun_by_the_palms(operator)
     operator.key("y")
@@ -125,9 +132,40 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.keeps(lambda: operator.shows("INTERRUPTED: part.nc LINE 7"), 0.5, "the job")
     operator.key("F2")
     operator.enters("other.nc")
-    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
-    operator.key("y")
+    answers_yes(operator, "Y GIVES THAT JOB UP FOR other.nc")
     operator.until(lambda: not operator.shows("INTERRUPTED:"), "it is given up")
     assert operator.events("cleared") == [
         "part.nc line 7, T3, part 1: E-STOP; other.nc was loaded in its place"
     ]
+
+
+def test_a_computer_that_goes_down_in_the_cut_leaves_the_job(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    os.kill(operator.popen.pid, signal.SIGTERM)
+    operator.until(lambda: operator.popen.poll() is not None, "the end")
+    told = operator.status
+    assert (told["available"], told["interrupted"]["line"]) == (False, 7)
+    again = story.begins(PART)
+    again.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
+    again.sees("THE CONTROL WAS CLOSED")
+    again.drives_on()
+    is_not_begun_by_the_palms(again)
+
+
+def test_a_held_palm_and_a_held_y_begin_nothing(story: Story) -> None:
+    """What lies on the keyboard answers no question, and starts nothing with it."""
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("h")
+    operator.reaches("FEED HOLD")
+    operator.key("r")
+    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
+    operator.during(0.6)
+    operator.down("y")  # and stays: it gives the program up, and answers nothing more
+    operator.reaches("READY")
+    operator.during(2.0)
+    operator.cycle_start()
+    operator.until(lambda: "was interrupted" in operator.machine["refused"], "a sentence")
+    operator.up("y")
+    is_not_begun_by_the_palms(operator)

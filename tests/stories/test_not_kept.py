@@ -31,6 +31,7 @@ def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has
             assert store.parts("part.nc") < made
         operator.key("F4", "alt")
         operator.sees("NOT KEPT, AND LOST BY CLOSING: ")
+        operator.key("Escape")
         disk.make_room()
         operator.until(lambda: not operator.shows("NOT KEPT"), "all is kept")
         with operator.store() as store:

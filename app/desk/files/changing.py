@@ -73,6 +73,10 @@ class Changer:
         """Why a program stays as it is; empty when it may be changed."""
         if program.sample:
             return SAMPLE
+        found = self.desk.snapshot().interrupted
+        if found is not None and found.program == program.name:
+            words = tr("{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST")
+            return words.format(name=program.name)
         state = self.desk.snapshot().state
         if state in UNDER_WAY and self.loaded().path == program.path:
             return tr("{name} IS UNDER WAY: LET IT END FIRST").format(name=program.name)

@@ -101,7 +101,7 @@ class HomeAsk:
             text = tr("HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE")
             order = tr(", THEN ").join(lost)
             question = text.format(first=order, letters=tr(" OR ").join(sorted(lost)))
-            self.desk.ask(question, lambda: self._go(""), "Enter")
+            self.desk.ask(_stands(snapshot) + question, lambda: self._go(""), "Enter")
             self._asked = True
 
     def answer(self, key: str, snapshot: Snapshot) -> bool:
@@ -136,3 +136,11 @@ class HomeAsk:
         if was:
             self.desk.clear()
         return was
+
+
+def _stands(snapshot: Snapshot) -> str:
+    """What goes before the question while a tool may stand in a part."""
+    found = snapshot.interrupted
+    if found is None:
+        return ""
+    return tr("T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. ").format(tool=found.tool)

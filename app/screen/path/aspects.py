@@ -45,7 +45,7 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
     h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
     tip = Tip(snapshot.block, z - modal.tool_z, x - modal.tool_x, turned, h)
     found = snapshot.interrupted
-    if snapshot.block or found is None or job is None or found.job != job.digest:
+    if snapshot.block or found is None or job is None or found.text != job.text_digest:
         return tip
     tool = job.setup.tools.get(found.tool)
     if tool is None:

@@ -1,0 +1,214 @@
+"""The interrupted job on the screen: words and figures, the answer with Y, and what it asks beforehand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from app.desk import interrupted
+from app.desk.desk import Desk
+from app.desk.files.changing import RENAME
+from app.desk.session import Loaded
+from app.desk.settings import Units
+from core.executor.commands import ConfirmStart, LoadJob
+from core.executor.snapshot import Snapshot, Starts, State
+from tests.interrupted import broken_off
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+
+STOOD = Snapshot(
+    state=State.IDLE,
+    program="PIN.NC",
+    interrupted=broken_off(),
+    actual=(9.525, -58.42, 0.0),
+    homed=(True, True, True),
+)
+
+
+def figures(snapshot: Snapshot, units: Units = Units.PROGRAM) -> str:
+    found = interrupted.standing(snapshot, Loaded(), units)
+    assert found is not None
+    return found.figures
+
+
+def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
+    now = datetime.now(UTC).replace(hour=12, minute=30).isoformat()
+    found = interrupted.standing(replace(STOOD, interrupted=broken_off(at=now)), Loaded(), Units.PROGRAM)
+    assert found is not None
+    at = datetime.fromisoformat(now).astimezone().strftime("%H:%M")
+    assert found.text == f"INTERRUPTED: PIN.NC LINE 8, T3, PART 5, {at}: E-STOP"
+
+
+def test_yesterdays_job_has_its_date() -> None:
+    assert interrupted.clock_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
+    assert interrupted.clock_time("half past nine") == "half past nine"
+
+
+def test_where_it_stood_and_where_it_stands_now() -> None:
+    assert figures(STOOD) == "STANDS AT X R0.37500 Z −2.30000 FROM HOME"
+    moved = replace(STOOD, actual=(25.4, -58.42, 0.0))
+    assert figures(moved) == "STOOD AT X R0.37500 Z −2.30000, STANDS AT X R1.00000 Z −2.30000 FROM HOME"
+    dia = replace(STOOD, modal=STOOD.modal._replace(diameter=True))
+    assert figures(dia) == "STANDS AT X Ø0.75000 Z −2.30000 FROM HOME"
+    assert figures(STOOD, Units.METRIC) == "STANDS AT X R9.5250 Z −58.4200 FROM HOME"
+
+
+def test_without_a_home_nobody_knows_where_it_stands() -> None:
+    lost = replace(STOOD, homed=(True, False, True), actual=(9.525, 0.0, 0.0))
+    assert figures(lost) == (
+        "STOOD AT X R0.37500 Z −2.30000 FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING"
+    )
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        replace(STOOD, interrupted=None),
+        replace(STOOD, program="OTHER.NC"),
+        replace(STOOD, state=State.DISABLED),
+        replace(STOOD, starts=Starts.LINE),
+    ],
+)
+def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: Snapshot) -> None:
+    assert interrupted.prompt(STOOD, Loaded(), "PRESS").startswith("LINE 8 WAS INTERRUPTED: F6")
+    assert interrupted.prompt(replace(STOOD, confirmed=True), Loaded(), "PRESS").startswith(
+        "BEGINS AT LINE 1"
+    )
+    assert interrupted.prompt(other, Loaded(), "PRESS") == ""
+
+
+# --- the desk -----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    """PIN.NC is interrupted; OTHER.NC lies beside it."""
+    for name in ("PIN.NC", "OTHER.NC"):
+        (tmp_path / name).write_text("G90G94F300\nT1\nX2Z2\nM30\n")
+    machine = FakeMachine()
+    desk = desk_on(machine, tmp_path)
+    assert desk.choose("PIN.NC")
+    desk.session.settled(20)
+    now = machine.snapshot()
+    machine.posted.clear()
+    desk.snapshot = lambda: replace(now, interrupted=broken_off(), state=State.IDLE, program="PIN.NC")
+    return desk
+
+
+def has_been_read(desk: Desk) -> None:
+    """A question stands for a second."""
+    desk.answers._since -= 1.0
+
+
+def posted(desk: Desk) -> list[object]:
+    return list(desk.post.__self__.posted)  # type: ignore[attr-defined]
+
+
+def test_y_answers_for_the_job_that_is_shown(desk: Desk) -> None:
+    desk.yes()
+    assert posted(desk) == [ConfirmStart(broken_off().at)]
+    desk.close()
+
+
+def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
+    desk.starts_here = False
+    desk.yes()
+    assert posted(desk) == []
+    assert desk.notice.startswith("Y MEANS SOMETHING ON THE AUTOMATIC PAGE")
+    desk.close()
+
+
+def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
+    loads = desk.session.loads
+    assert desk.choose("OTHER.NC")
+    assert desk.session.loads == loads
+    assert (
+        desk.notice
+        == "T3 MAY STAND IN THE PART OF PIN.NC LINE 8: Y GIVES THAT JOB UP FOR OTHER.NC, ESC KEEPS IT"
+    )
+    assert desk.choose("OTHER.NC")  # the same again is no answer
+    assert desk.session.loads == loads
+    has_been_read(desk)
+    desk.yes()
+    assert desk.session.loads == loads + 1
+    assert desk.session.settled(20).name == "OTHER.NC"
+    assert [each for each in posted(desk) if isinstance(each, LoadJob)]
+    desk.close()
+
+
+def test_another_key_takes_the_question_back(desk: Desk) -> None:
+    assert desk.choose("OTHER.NC")
+    assert desk.escape()
+    desk.yes()
+    assert desk.session.now.name == "PIN.NC"
+    assert posted(desk) == [ConfirmStart(broken_off().at)]
+    desk.close()
+
+
+def test_a_question_that_something_else_has_covered_is_not_answered(desk: Desk) -> None:
+    assert desk.choose("OTHER.NC")
+    has_been_read(desk)
+    desk.say("NOT KEPT: the disk is full")
+    desk.yes()
+    assert desk.session.now.name == "PIN.NC"
+    desk.close()
+
+
+@pytest.mark.parametrize("question", ["rename", "delete"])
+def test_the_interrupted_program_keeps_its_name_and_its_file(
+    desk: Desk, question: str, tmp_path: Path
+) -> None:
+    files = desk.files
+    assert files is not None
+    files.opened()
+    files.worker.settle(10)
+    files.look()
+    files.choose([program.name for program in files.shown].index("PIN.NC"))
+    if question == "rename":
+        files.changer.ask(RENAME)
+    else:
+        files.changer.delete()
+    assert desk.notice == "PIN.NC IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST"
+    assert files.changer.question == ""
+    assert (tmp_path / "PIN.NC").exists()
+    desk.close()
+
+
+def test_the_same_program_is_read_again_without_a_question(desk: Desk) -> None:
+    loads = desk.session.loads
+    assert desk.choose("PIN.NC")
+    assert desk.session.loads == loads + 1
+    desk.close()
+
+
+def test_at_the_start_the_interrupted_program_goes_before_the_one_of_the_command_line(desk: Desk) -> None:
+    desk.begin_with("OTHER.NC")
+    assert desk.session.settled(20).name == "PIN.NC"
+    assert desk.notice == "OTHER.NC IS NOT LOADED: A JOB WAS INTERRUPTED"
+    desk.close()
+
+
+def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Desk, tmp_path: Path) -> None:
+    (tmp_path / "PIN.NC").unlink()
+    desk.begin_with(None)
+    assert desk.notice == "THE INTERRUPTED PROGRAM PIN.NC IS NOT IN THE FOLDER: F2"
+    desk.close()
+
+
+def test_closing_with_something_unwritten_says_so_and_means_it_only_later(desk: Desk) -> None:
+    closed: list[bool] = []
+    assert desk.may_close(lambda: closed.append(True))
+    desk.waiting = lambda: "20 parts, 61 events"
+    for _ in range(3):  # a key that repeats
+        assert not desk.may_close(lambda: closed.append(True))
+        assert "20 parts, 61 events" in desk.notice
+    desk.yes()
+    assert closed == []  # nobody has read it yet
+    assert not desk.may_close(lambda: closed.append(True))
+    has_been_read(desk)
+    desk.yes()
+    assert closed == [True]
+    desk.close()
