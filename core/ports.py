@@ -5,7 +5,7 @@ Times are seconds of one monotonic clock; lengths are mm (X a radius), C is degr
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple, Protocol
@@ -252,3 +252,6 @@ class MachinePorts:
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
+    # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
+    # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
+    halt: Callable[[], None] | None = None

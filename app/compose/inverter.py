@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import partial
 
 from app.compose.serial_line import open_wire
 from core.machine.model import Machine
@@ -65,8 +66,16 @@ def with_inverter(
         spindle=spindle,
         gear=ports.gear if encoder else None,
         warnings=(*ports.warnings, *said),
+        halt=partial(halt_with, ports, spindle),
     )
     return joined, keeper.close
+
+
+def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
+    """The inverter's thread takes its stop from any other; then the rest."""
+    spindle.coast()
+    if ports.halt is not None:
+        ports.halt()
 
 
 class WithInverter:

@@ -36,6 +36,7 @@ def control_limits(machine: Machine) -> ControlLimits:
         unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,
+        m_disabled=machine.m_disabled,
         c_enabled=machine.c_enabled,
         c_feedback=machine.c_feedback,
         c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second

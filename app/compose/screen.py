@@ -36,6 +36,7 @@ from core.executor.executor import Executor
 from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Event, Snapshot
 from core.executor.thread import ExecutorThread
+from core.executor.watchdog import Watchdog
 from core.interpreter.modal import Modal
 from core.machine.model import Machine
 from core.ports import Clock, DriverError
@@ -43,6 +44,13 @@ from core.store.errors import StoreError
 from core.store.rows import EventRow
 from drivers.simulated import RealClock, StepClock
 
+# Threads beside the executor, and what an operator misses when they end.
+SUPERVISED = {
+    "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
+    "status": "STATUS.JSON",
+    "mtconnect": "MTCONNECT",
+    "inverter": "WHAT TALKS TO THE INVERTER",
+}
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
 
@@ -61,10 +69,12 @@ def build_desk(
     thread, log = ExecutorThread(executor, clock), Log()
     close_floor = _shop_floor(desk, executor, journal)
 
+    watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
     let_go = desk.shut
 
     def shut() -> None:
-        thread.close()  # first: nothing may keep the machine from being stopped
+        watchdog.close()
+        thread.close()  # first of what can stop the machine: nothing may keep the machine from being stopped
         close_floor()
         let_go()
         lost = journal.close()
@@ -76,7 +86,17 @@ def build_desk(
     desk.unkept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
+    watchdog.start()
     return desk
+
+
+def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
+    """On the watchdog's thread: the machine goes on, but what that thread did is not done any more."""
+    text = tr("{what} HAS ENDED: SAVE THE LOG, END TURNDESK AND START IT AGAIN").format(
+        what=tr(SUPERVISED[name])
+    )
+    desk.say(text)
+    journal.hear(Event(desk.snapshot().t, "warning", text))
 
 
 def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[], None]:

@@ -31,7 +31,7 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
     standing = {
         State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
-        State.FAULT: "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE",
+        State.FAULT: alarm_of(snapshot, release),
         State.RUN: HOW_TO_HOLD,
         State.WAIT: HOW_TO_HOLD,
         State.HOLDING: "COMING TO REST",
@@ -50,7 +50,9 @@ def announced(snapshot: Snapshot) -> str:
 
 def alarm_of(snapshot: Snapshot, release: str) -> str:
     """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
-    if snapshot.state is State.FAULT and snapshot.alarms:
+    if snapshot.state is State.FAULT:
+        if not snapshot.alarms:
+            return "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE"
         return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R ACKNOWLEDGES, F7 LISTS"
     return _estop(release) if snapshot.state is State.ESTOP else ""
 

@@ -112,7 +112,7 @@ class PromptLine(Panel):
         painter.setPen(look.colour("on_state" if self._answer else "text"))
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
         if self.reason:
-            low = room.adjusted(0, 0.52 * room.height(), 0, 0)
+            low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
             painter.setFont(look.fit(self.reason, 1.9, room.width()))
             put(painter, low, LEFT, self.reason)
             room.setBottom(low.top())

@@ -78,11 +78,11 @@ class Notice(Panel):
         if more:
             room = self._draw_more(painter, room, more)
         high = room.height()
-        what = QRectF(room.x(), room.y(), room.width(), 0.24 * high)
+        what = QRectF(room.x(), room.y(), room.width(), 0.19 * high)
         self._wrapped(painter, what, tr(alarm.text), 3.4, "text")
         causes = "\n".join(tr(each) for each in dict.fromkeys((alarm.cause, *alarm.causes)))
         for label, text, y, part in (
-            ("CAUSE, THE LIKELIEST FIRST", causes, 0.26, 0.42),
+            ("CAUSE, THE LIKELIEST FIRST", causes, 0.21, 0.47),
             ("WHAT TO DO", tr(alarm.remedy), 0.70, 0.30),
         ):
             box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)

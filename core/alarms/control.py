@@ -30,6 +30,17 @@ CONTROL: Entries = {
         "PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again",
         tells=True,
     ),
+    "control-silent": Entry(
+        908,
+        OFF,
+        "the control's own thread is dead or stuck",
+        (
+            "a driver does not come back: its wire, its adapter, the computer's disk or network",
+            "a mistake in TurnDesk; the log has it",
+        ),
+        "PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again",
+        tells=True,
+    ),
     "feeder-tripped": Entry(
         906,
         HOLD,

@@ -31,6 +31,7 @@ OwnCode = Literal[
     # the control
     "internal",
     "not-safe",
+    "control-silent",
     "feeder-tripped",
     "switched-off",
     # holds that nobody pressed

@@ -221,14 +221,28 @@ class Conductor:
         alarm, reaction = alarm_of(trouble, bench.line, bench.now)
         if any(old.code == alarm.code for old in self.standing.alarms):
             return
+        log_alarm(alarm)
+        if reaction is Reaction.HOLD and self._holds(trouble):
+            return
         self.standing.alarms = (*self.standing.alarms, alarm)
         self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
         self.safe.react(reaction)
         self._give_up(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
-        log_alarm(alarm)
         bench.tell(Event(bench.now, "alarm", words(alarm), alarm.line, alarm))
+
+    def _holds(self, trouble: TroubleError) -> bool:
+        """What need not cost the part is a hold; False where there is nothing that could be held."""
+        if self.cycle is not None and self.state in ACTIVE:
+            self.cycle.starve(trouble.code, trouble.detail)
+        elif self.state in BY_HAND:
+            self.jogger.stop()
+            stop = self._bench.noted(trouble.code, trouble.detail)
+            self._bench.say("refused", stop.text.lower())
+        else:
+            return False
+        return True
 
     def failed(self, error: BaseException) -> None:
         """A mistake of the control itself, whatever the table of states says about it."""

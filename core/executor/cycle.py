@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.alarms import Code
+from core.alarms import CATALOGUE, Code
 from core.executor.alarms import TroubleError, held_by
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, Pass, needs_speed
@@ -97,12 +97,12 @@ class Cycle:
         else:
             self._change(State.HOLD)
 
-    def starve(self) -> None:
+    def starve(self, code: Code = "low-queue", detail: str = "") -> None:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
         self._mover.let_stop()
         if self._state in _GOING:
-            self._reason, self._held_at = "SETPOINTS RAN LOW", self._bench.now
-            self._bench.stopped("low-queue")
+            self._reason, self._held_at = CATALOGUE[code].text.upper(), self._bench.now
+            self._bench.stopped(code, detail)
             self._change(State.HOLDING)
 
     def wait_for(self, label: str) -> None:

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
-from core.executor.alarms import TroubleError
+from core.executor.alarms import TroubleError, log_alarm, told, words
 from core.executor.bench import Bench
 from core.executor.commanded import CommandedOutputs
-from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Wheel
+from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Reset, Wheel
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
 from core.executor.guard import Attempt, Guard
@@ -32,6 +32,7 @@ from core.ports import DriverError, MachinePorts, TrippedError
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
 _STARTS = (CycleStart, EnableDrives, Home, Jog, JogStep, Wheel)
+_WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
 _TOLD = 0.1  # change of the feed override that is worth an entry in the log
 _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
@@ -76,7 +77,15 @@ class Executor:
         self._orders = Orders(self._bench, self._conductor, self._station)
         self._publisher = Publisher()
         self._told = 1.0
+        self.ticks = 0  # so many have ended: what the watchdog looks at
+        self.patient = False  # it waits for drives, which may take seconds
+        self._silent = ""  # why the watchdog has halted the machine
         self.snapshot: Snapshot = self._publish()
+
+    @property
+    def halt(self) -> Callable[[], None] | None:
+        """The drivers' own way to stop everything, which any thread may use."""
+        return self._ports.halt
 
     def post(self, command: Command) -> None:
         """Ask for something; it is looked at first thing in the next tick. Never waits."""
@@ -88,9 +97,27 @@ class Executor:
             self._look()
         if look.error is not None:
             self._blind()
-        for part in (self._obey, self._supervise, self._go_on, self._turn):
+        for part in (self._mind_watchdog, self._obey, self._supervise, self._go_on, self._turn):
             self._guarded(part)
         self._show()
+        self.patient = False
+        self.ticks += 1
+
+    def declare_silent(self, why: str) -> None:
+        """From the watchdog's thread, which has halted the machine: an alarm on the screen, whose snapshot
+        then stands still. Should this executor ever tick again, the alarm is what it begins with.
+        """
+        self._silent = why
+        alarm = told("control-silent", why, self._bench.line, self.snapshot.t)
+        log_alarm(alarm)
+        shown = replace(self.snapshot, state=State.FAULT, alarms=(*self.snapshot.alarms, alarm))
+        self.snapshot = shown
+        self._bench.tell(Event(shown.t, "alarm", words(alarm), alarm.line, alarm))
+
+    def _mind_watchdog(self) -> None:
+        if self._silent:
+            why, self._silent = self._silent, ""
+            raise TroubleError("control-silent", why)
 
     def failed(self, error: BaseException) -> None:
         """A mistake of the control itself: nothing may go on."""
@@ -146,6 +173,7 @@ class Executor:
         heard, conductor = self._bench.heard, self._conductor
         conductor.mirror_estop(heard.estop)
         for command in self._posted():
+            self.patient = self.patient or isinstance(command, _WAITED_FOR)
             self._guarded(partial(self._orders.obey, command))
         if heard.hold:
             conductor.feed_hold("", "the button at the station")

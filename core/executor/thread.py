@@ -9,6 +9,7 @@ from core.executor.guard import Guard
 from core.ports import Clock
 
 TICK = 0.01  # s
+_END = 8.0  # s: the longest wait for a drive; one that is stuck longer is left to the watchdog
 
 
 class ExecutorThread:
@@ -19,6 +20,7 @@ class ExecutorThread:
         self._clock = clock
         self._tick = tick
         self._closing = threading.Event()
+        self._shut = False
         self._thread = threading.Thread(target=self._run, name="executor", daemon=True)
 
     @property
@@ -34,12 +36,14 @@ class ExecutorThread:
         """Stop the machine as E-stop would leave it, and end the thread."""
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(_END)
+        if not self._thread.is_alive() and not self._shut:
+            self.executor.shut()  # it has died: nobody else calls the drivers any more
 
     def _run(self) -> None:
-        with Guard(self.executor.failed):
-            while not self._closing.is_set():
+        while not self._closing.is_set():
+            with Guard(self.executor.failed):
                 self.executor.tick()
                 self._clock.sleep_until(self._clock.now() + self._tick)
-        with Guard(self.executor.failed):
-            self.executor.shut()
+        self.executor.shut()
+        self._shut = True

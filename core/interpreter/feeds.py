@@ -145,9 +145,14 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
     most = state.setup.limits.max_feed
     if speed > most * _ROUNDING:
-        shown = units.feed(speed, per_rev=False, metric=modal.metric)
         limit = units.feed(most, per_rev=False, metric=modal.metric)
-        message = f"At {rpm:.0f} rpm this feed is {shown}; {limit} is the most."
+        if modal.per_rev:
+            shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
+            most_per_rev = units.feed(most * 60 / rpm, per_rev=True, metric=modal.metric)
+            message = f"Feed {shown} is over {most_per_rev} at {rpm:.0f} rpm, which is {limit}."
+        else:
+            shown = units.feed(speed, per_rev=False, metric=modal.metric)
+            message = f"Feed {shown} is over {limit}."
         raise ProgramError(refusal(line, 0, "feed-over-speed", message, "Lower F or S."))
     _warn_slow(state, line, length, speed)
 
@@ -163,5 +168,7 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
     state.slow_length = speed * _SLOW_MOVE
     if length > state.slow_length:
         seconds = length / speed
-        hint = "Look at F and at G94/G95."
-        state.log.warn(line, 0, "feed-low", f"This move takes {seconds:.0f} s at its feed.", hint)
+        modal = state.modal
+        shown = units.feed(modal.feed or 0.0, per_rev=modal.per_rev, metric=modal.metric)
+        text = f"This move takes {seconds:.0f} s at {shown}."
+        state.log.warn(line, 0, "feed-low", text, "Look at F and at G94/G95.")

@@ -3,10 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from core.language.diagnostics import Diagnostic, Severity
 
 MOST_OF_A_KIND = 100
+MOST_COUNTED = 10_000
+
+REPEATS = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
+"""What is wrong in the same way in line after line: told once, where it is first, with its count."""
+
+
+def told_once(found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Findings in which what repeats is told at its first place, with its count."""
+    kept: dict[object, Diagnostic] = {}
+    for each in found:
+        repeats = each.code in REPEATS
+        place = (each.line, each.column, each.message)
+        key: object = (each.code, each.severity) if repeats else (each.code, each.severity, place)
+        known = kept.get(key)
+        kept[key] = each if known is None else replace(known, count=known.count + each.count * repeats)
+    return list(kept.values())
 
 
 class Log:
@@ -14,6 +31,8 @@ class Log:
 
     def __init__(self, first: Iterable[Diagnostic] = ()) -> None:
         self.found: list[Diagnostic] = list(first)
+        self._repeated: dict[str, int] = {}  # code → place in what was found
+        self._counted = 0
         self.errors = [each for each in self.found if each.severity is Severity.ERROR]
         self._known = {(each.line, each.code, each.column) for each in self.found}
         self._others = len(self.found) - len(self.errors)
@@ -25,8 +44,8 @@ class Log:
 
     @property
     def silent(self) -> bool:
-        """Whether there are so many warnings and notes that no further one is kept."""
-        return self._others >= MOST_OF_A_KIND
+        """Whether there are so many warnings and notes that no further one is kept or counted."""
+        return self._others >= MOST_OF_A_KIND or self._counted >= MOST_COUNTED
 
     def add(self, found: Diagnostic) -> None:
         """Keep a finding unless it is known or there are too many."""
@@ -39,9 +58,36 @@ class Log:
             self.errors.append(found)
         elif self.silent:
             return
+        elif found.code in REPEATS:
+            self._known.add(key)
+            self._once(found)
+            return
         else:
             self._others += 1
         self._known.add(key)
+        self.found.append(found)
+
+    def _once(self, found: Diagnostic) -> None:
+        at = self._repeated.get(found.code)
+        if at is None:
+            self._repeated[found.code] = len(self.found)
+            self._others += 1
+            self.found.append(found)
+        else:
+            self._counted += 1
+            self.found[at] = replace(self.found[at], count=self.found[at].count + 1)
+
+    def again(self, found: Diagnostic) -> None:
+        """The same as has been told, at another place: it stays where it was, with a new text and count."""
+        key = (found.line, found.code, found.column)
+        if key in self._known:
+            return
+        self._known.add(key)
+        for at, each in enumerate(self.found):
+            if each.code == found.code:
+                self.found[at] = replace(found, line=each.line, column=each.column, count=each.count + 1)
+                return
+        self._others += 1
         self.found.append(found)
 
     def warn(self, line: int, column: int, code: str, message: str, hint: str = "") -> None:

@@ -21,6 +21,7 @@ from core.interpreter.spindle import rpm_at, stop_block
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
 from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.omniturn import habits
 
 _WAITS = {91: ("TB2-5", False), 92: ("TB2-5", True), 93: ("TB2-7", False), 94: ("TB2-7", True)}
 
@@ -36,7 +37,7 @@ def before_motion(state: State, made: Statement) -> Block | None:
         return _done(state, made, WaitInput(*_WAITS[m]))
     output = state.setup.limits.m_outputs.get(m)
     if output is None:
-        raise ProgramError(_unknown(made))
+        raise ProgramError(_unknown(state, made))
     return _output(state, made, *output) if output[1] else None
 
 
@@ -70,13 +71,18 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     """Report the M codes that neither the control nor the machine file knows."""
     for made in lines:
         if made.m not in state.setup.limits.m_outputs:
-            state.log.add(_unknown(made))
+            state.log.add(_unknown(state, made))
 
 
-def _unknown(made: Statement) -> Diagnostic:
-    column = made.m_word.column if made.m_word else 0
-    text = f"M{made.m:02d} is no code of this machine."
-    return refusal(made.line, column, "m-unknown", text, "The machine file assigns the outputs.")
+def _unknown(state: State, made: Statement) -> Diagnostic:
+    column, name = made.m_word.column if made.m_word else 0, f"M{made.m:02d}"
+    if made.m in state.setup.limits.m_disabled:
+        text = f"{name} is defined, and not switched on in the machine file."
+        hint = f"Set enabled = true for {made.m} under [m_codes]."
+        return refusal(made.line, column, "m-disabled", text, hint)
+    habit, hint = habits.here(name) or ("", "The machine file assigns the outputs.")
+    text = f"{name} is no code of this machine. {habit}".rstrip()
+    return refusal(made.line, column, "m-unknown", text, hint)
 
 
 def _done(state: State, made: Statement, action: Action) -> Block:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from core.interpreter import codes
+from core.interpreter.log import told_once
 from core.interpreter.plain import read_move
 from core.interpreter.reading import statement, unreadable
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
@@ -14,13 +16,14 @@ from core.interpreter.structure import Structure, call_target, find_structure
 from core.interpreter.style import Style
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, lex_line
-from core.language.omniturn.plane import PlaneLine, ends_program, lex_plane, plane_entry
+from core.language.omniturn.plane import PlaneLine, ends_program, lacks_sign, lex_plane, plane_entry
 from core.language.source import Source
 
 LONG = 5_000
 """Lines from which on a program is read into columns."""
 
 _MOST_PROBLEMS = 100
+_NEAR = 5  # lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +95,22 @@ class _Reader:
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
             made = unreadable(line)
+        self._suspect_plane(number, text)
         self.style.look_at(line, made)
         self.statements.append(made)
         return made
+
+    def _suspect_plane(self, number: int, text: str) -> None:
+        """(PLXC) without its ~ is a comment, and so are the moves behind it: nothing would be milled."""
+        following = islice(self.source.lines, number, number + _NEAR)
+        lacks = lacks_sign(text, following) if "(" in text else None
+        if lacks is not None:
+            name = text.strip().upper()
+            message = (
+                f"{name} is a comment without its ~, and so are the lines up to (END): nothing is milled."
+            )
+            weight = Severity.ERROR if lacks else Severity.WARNING
+            self.problems.append(Diagnostic(number, 1, weight, "plane-sign", message, f"Write (~{name[1:]}."))
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
         """A line from the entry to (END), both included."""
@@ -135,6 +151,7 @@ def read_program(source: Source, strict: bool = False) -> Program:
     if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
         problems += _beyond_the_end(reader.steps, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
+    problems = told_once(problems)
     return Program(
         source=source,
         steps=reader.steps,

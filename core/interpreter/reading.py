@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.interpreter import codes
 from core.interpreter.statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
-from core.language.omniturn import Line, Word
+from core.language.omniturn import Line, Word, habits
 
 _SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
 _SIMPLE_MODAL = frozenset({0, 1})
@@ -76,10 +76,9 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
     if code in codes.MODAL_GROUPS:
         modal.append(word)
     elif code not in codes.ONE_SHOT:
-        message = f"{word.text} is no code of this control."
-        raise ProgramError(
-            Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, "Look it up.")
-        )
+        habit, hint = habits.here(word.text.upper()) or ("", "Look it up.")
+        message = f"{word.text} is no code of this control. {habit}".rstrip()
+        raise ProgramError(Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, hint))
     elif made.code is not None:
         message = f"{made.code.text} and {word.text} cannot act on one line."
         raise ProgramError(
@@ -108,7 +107,8 @@ def _check_words(made: Statement, line: Line) -> None:
     for letter, word in made.words.items():
         if letter not in allowed:
             what = f"holds {word.text}, which nothing on it takes"
-            raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
+            habit, hint = habits.here(letter) or ("", "Take it out or add its code.")
+            raise _refused(line, word, "word-unused", f"{what}. {habit}".removesuffix(". "), hint)
 
 
 def _check_flow(made: Statement, line: Line) -> None:
@@ -167,5 +167,5 @@ def _group(made: Statement, word: Word) -> str:
 
 
 def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
-    message = f"The line {what}."
+    message = f"The line {what}".removesuffix(".") + "."
     return ProgramError(Diagnostic(line.number, word.column, Severity.ERROR, code, message, hint))

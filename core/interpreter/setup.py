@@ -47,6 +47,7 @@ class ControlLimits:
     unclamp_while_turning: bool = True
     start_with_collet_open: bool = False
     m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
+    m_disabled: frozenset[int] = frozenset()  # M codes that the machine file defines and does not switch on
     c_enabled: bool = True  # the spindle can be positioned
     c_feedback: bool = False  # its drive tells when it has arrived
     c_max_rpm: float = 200.0

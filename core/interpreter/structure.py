@@ -44,7 +44,7 @@ class _Finder:
         if made.flow == "}":
             self._open_subroutine(made)
             return
-        ends_job = made.m in codes.ENDS and not made.block_delete
+        ends_job = _ends(made) and not made.block_delete
         self._job_end = made.line - 1 if ends_job and self._inside is not None else None
         if made.flow == "M99":
             self._close_subroutine(made)
@@ -168,8 +168,13 @@ class _Finder:
         self.problems.append(Diagnostic(made.line, 1, Severity.ERROR, code, text, hint))
 
 
+def _ends(made: Statement) -> bool:
+    """Whether the line ends the job, or was meant to."""
+    return made.m in codes.ENDS or _unread(made, "M30") or _unread(made, "M02")
+
+
 def _unread(made: Statement, word: str) -> bool:
-    """Whether this line was meant to begin or end a loop: what it belongs to is no second mistake."""
+    """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
     return made.flow == UNREADABLE and made.text.lstrip(" /").upper().startswith(word)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from core.interpreter.statement import Statement
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Line
@@ -26,21 +28,23 @@ class Style:
     def __init__(self, *, strict: bool) -> None:
         self.found: list[Diagnostic] = []
         self._strict = strict
-        self._told: set[str] = set()
+        self._told: dict[str, int] = {}  # kind → place in what was found
 
-    def tell(self, kind: str, line: int, column: int = 0) -> None:
-        """Say that ``kind`` occurs at this place."""
-        if kind in self._told and not self._strict:
+    def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
+        """Say that ``kind`` occurs at this place, there and behind it so often."""
+        at = self._told.get(kind)
+        if at is not None and not self._strict:
+            self.found[at] = replace(self.found[at], count=self.found[at].count + count)
             return
-        self._told.add(kind)
+        self._told[kind] = len(self.found)
         message, hint = _KINDS[kind]
         severity = Severity.ERROR if self._strict else Severity.NOTE
-        self.found.append(Diagnostic(line, column, severity, kind, message, hint))
+        self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
 
     def look_at_file(self, source: Source) -> None:
         """Line ends."""
         if "\r" in source.text:
-            self.tell("line-ends", 1)
+            self.tell("line-ends", 1, count=source.text.count("\r"))
         if source.text and source.text[-1] not in "\r\n":
             self.tell("last-newline", len(source.lines))
 

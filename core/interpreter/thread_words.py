@@ -162,8 +162,8 @@ def _angle(made: Statement) -> float:
     if word is None:
         return 0.0
     angle = _BARE_C if word.value is None else word.value
-    if abs(angle) > MOST_ANGLE:
-        text = f"{word.text}: the angle of infeed is 30 degrees at most."
+    if not 0.0 <= angle <= MOST_ANGLE:
+        text = f"{word.text}: the angle of infeed goes from 0 to 30 degrees."
         raise _refused(made, "C", "thread-angle", text, "Correct C; bare C is 29 degrees.")
     return radians(angle)
 

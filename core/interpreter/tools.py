@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from core.interpreter.actions import Preset, ToolChange, WorkShift
 from core.interpreter.blocks import Block
 from core.interpreter.log import refusal
@@ -10,7 +12,7 @@ from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
 from core.interpreter.statement import Statement
-from core.language.diagnostics import ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
 
 
@@ -33,9 +35,20 @@ class ToolUse:
             return offset
         if number not in self.missing:
             self.missing.append(number)
-        text = f"Tool {number} has no offset; 0 is used, and the machine will refuse to start."
-        state.log.warn(line, word.column, "tool-offset-missing", text, "Set the tool's offset.")
+        state.log.again(missing_offset(self.missing, line, word.column))
         return ToolOffset()
+
+
+def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
+    """The warning for tools whose offset nobody has set."""
+    if len(tools) == 1:
+        text = f"Tool {tools[0]} has no offset; 0 is used, and the machine will refuse to start."
+        return Diagnostic(
+            line, column, Severity.WARNING, "tool-offset-missing", text, "Set the tool's offset."
+        )
+    names = ", ".join(f"T{number}" for number in tools)
+    text = f"{names} have no offset; 0 is used, and the machine will refuse to start."
+    return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, "Set their offsets.")
 
 
 def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Block:

@@ -113,6 +113,7 @@ def _machine(
         outputs={name: _output(reading, name) for name in reading.outputs},
         inputs={name: _input(reading, name) for name in reading.inputs},
         m_codes={code: (output, on) for code, output, on in signals.enabled_codes(reading)},
+        m_disabled=frozenset(signals.disabled_codes(reading)),
         source=source,
         clearance=values.number("limits.clearance"),
         inch=bool(values.inch),

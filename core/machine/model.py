@@ -108,6 +108,7 @@ class Machine:
     outputs: Mapping[str, OutputModel]
     inputs: Mapping[str, InputModel]
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
+    m_disabled: frozenset[int] = frozenset()  # defined with enabled = false
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
     inch: bool = True  # what its builder counts in

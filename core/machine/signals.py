@@ -70,6 +70,15 @@ def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
             yield int(code), values.text(f"{path}.output"), values.flag(f"{path}.on")
 
 
+def disabled_codes(reading: Reading) -> Iterator[int]:
+    """M codes that are defined and not enabled."""
+    values = reading.values
+    for code in reading.m_codes:
+        path = f"m_codes.{code}.enabled"
+        if code in _NUMBERS and values.has(path) and not values.flag(path):
+            yield int(code)
+
+
 def _never_off(reading: Reading) -> Iterator[Finding]:
     """An output that some code switches on must have one that switches it off; M12 closes the collet."""
     if any(path.startswith("m_codes.") for path in reading.values.wrong):

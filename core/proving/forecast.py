@@ -43,14 +43,10 @@ class SpindleForecast:
         self._turns, self._counted = self.turns(t), t
         self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
 
-    def follow(self, t: float, rpm: float, dt: float) -> None:
-        """Constant surface speed: go towards ``rpm`` as far as the drive can within ``dt``."""
-        now = self.speed(t)
+    def towards(self, now: float, rpm: float, dt: float) -> float:
+        """Constant surface speed: how far the drive comes from ``now`` towards ``rpm`` within ``dt``."""
         rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
-        step = max(-rate * dt, min(rate * dt, rpm - now))
-        self._turns, self._counted = self.turns(t), t
-        self._from = self._to = now + step
-        self._since = t
+        return now + max(-rate * dt, min(rate * dt, rpm - now))
 
     def settle(self, t: float, rpm: float) -> None:
         """At ``t`` the spindle turns at ``rpm``: what a move under constant surface speed has led to."""

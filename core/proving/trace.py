@@ -77,15 +77,18 @@ class _Sampler:
         return (t, at, self._angle, self._line)
 
     def _turn(self, t: float, machine_x: float, block: Block | None) -> None:
-        """Turn the spindle on by one interval: the mean of the speeds at its two ends."""
+        """Turn the spindle on by one interval: the mean of the speeds at its two ends.
+
+        The timeline's forecast is only asked: what it waits for must not depend on who looks.
+        """
         spindle = self._timeline.spindle
+        speed = spindle.speed(t)
         if block is not None and block.css is not None and block.modal.spindle:
             modal = block.modal
             rpm = surface_rpm(
                 block.css, machine_x - block.offset_x, modal.css_min, modal.css_max or spindle.rpm_max
             )
-            spindle.follow(t, math.copysign(rpm, modal.spindle), self._dt)
-        speed = spindle.speed(t)
+            speed = spindle.towards(self._rpm, math.copysign(rpm, modal.spindle), self._dt)
         if self._row:
             self._angle += (self._rpm + speed) / 2 * self._dt * 6  # 1 rpm is 6 degrees a second
         self._rpm = speed

@@ -21,6 +21,10 @@ class Link(Protocol):
         """Raises DriverError when there is no answer."""
         ...
 
+    def hang_up(self) -> None:
+        """From any thread: nothing is said or heard any more."""
+        ...
+
     def close(self) -> None: ...
 
 
@@ -73,6 +77,10 @@ class Line:
             for note in texts(self._state.get("notes")):
                 _log.warning("feeder: %s", note)
         return self._state
+
+    def hang_up(self) -> None:
+        """From any thread: the feeder sees that its control is gone, and stops the machine for good."""
+        self._link.hang_up()
 
     def close(self) -> None:
         """End it."""

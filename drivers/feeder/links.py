@@ -5,6 +5,7 @@ from __future__ import annotations
 import select
 import socket
 import time
+from contextlib import suppress
 
 from core.ports import DriverError
 from drivers.feeder.server import Feeder
@@ -29,9 +30,13 @@ class LoopLink:
         (answer,) = Inbox().feed(packed(self._feeder.handle(request)))
         return answer
 
-    def close(self) -> None:
+    def hang_up(self) -> None:
         """The control has gone."""
         self._feeder.orphaned = True
+
+    def close(self) -> None:
+        """The same."""
+        self.hang_up()
 
 
 class SocketLink:
@@ -58,6 +63,11 @@ class SocketLink:
             raise DriverError(
                 f"the feeder process has ended ({error.strerror}); start the control again", "feeder-gone"
             ) from error
+
+    def hang_up(self) -> None:
+        """Both directions end, whoever waits on it."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
         """The feeder sees the end and stops what is left."""

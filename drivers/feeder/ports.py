@@ -228,6 +228,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         gear=FeederGear(line) if hello.get("gear") is True else None,
         lock=FeederLock(line) if hello.get("lock") is True else None,
         trips=FeederTrips(line),
+        halt=line.hang_up,
     )
 
 

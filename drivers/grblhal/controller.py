@@ -29,6 +29,7 @@ class Controller(Hearing):
         self._inbox = b""
         self._next_question = 0.0
         self._sees_overrides = False
+        self._halted = False
 
     def send(self, line: str, ticket: int = 0) -> Ask:
         """A line for the controller; its answer comes with later pumps."""
@@ -73,6 +74,14 @@ class Controller(Hearing):
             self._watch()
         except WireLostError as error:
             self._gone(error)
+
+    def halt(self) -> None:
+        """From any thread, when nobody pumps any more: hold or end the jog; asked again, reset at rest.
+
+        Bytes that bypass every buffer, straight to the wire: a reset ends spindle and coolant.
+        """
+        self._wire.write(bytes([codes.RESET] if self._halted else [codes.JOG_CANCEL, codes.HOLD]))
+        self._halted = True
 
     def close(self) -> None:
         """Let the wire go."""

@@ -61,6 +61,7 @@ class GrblMachine:
             station=GrblStation(self.panel, self.inputs),
             warnings=self._warnings(),
             blocks=self.blocks,
+            halt=self.controller.halt,
         )
 
     def pump(self) -> None:

@@ -46,6 +46,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         io=SimIO(plant),
         station=SimStation(plant),
         gear=SimGear(plant),
+        halt=plant.halt,
     )
     machine = SimMachine(plant)
     if config.faults:

@@ -23,6 +23,7 @@ from drivers.straight import straight
 
 _NEVER = float("inf")
 _PAST = 0.1  # s of setpoints that may still be asked for
+_HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
 
 
@@ -156,6 +157,17 @@ class Plant:
             self.panel.estop = True
             self.stop(Stop.RAMP_OFF)
             self.spindle.cut(now)
+
+    def halt(self) -> None:
+        """From any thread: all off, unless somebody is stuck inside the machine itself."""
+        if not self.lock.acquire(timeout=_HALT):
+            raise DriverError("the simulated machine does not come back")
+        try:
+            self.stop(Stop.RAMP_OFF)
+            self.spindle.order(self.advance(), 0.0, coast=True)
+            self.terminals.safe(self.clock.now())
+        finally:
+            self.lock.release()
 
     def trip(self, fault: str) -> None:
         """A drive gives up: no axis is kept alive without the others."""

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from pathlib import Path
+
+import pytest
 
 from core.alarms import CATALOGUE, Reaction
 from core.executor.alarms import HOLDS, held_by
-from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
+from core.executor.commands import CycleStart, FeedHold, Jog, Reset, SetSwitch
 from core.executor.snapshot import State
+from core.ports import DriverError, Segments
 from tests.executor.rig import Rig
 
 CUT = "G90G94F300\nM03S1000\nX0Z0\nG01F20\nX.5Z-.5\nM00\nX0Z0\nM01\nM30\n"
@@ -91,6 +95,68 @@ def test_a_silent_station_is_a_hold_of_its_own() -> None:
     rig.until(State.HOLD)
     assert stop_of(rig)[0] == "station-silent"
     assert rig.shot.waiting_for == "OPERATOR STATION SILENT"
+
+
+@pytest.fixture
+def too_late(monkeypatch: pytest.MonkeyPatch) -> Callable[[Rig, bool], None]:
+    """Every setpoint comes too late, as on a computer that is busy with something else."""
+
+    def refuse(_segments: Segments) -> None:
+        raise DriverError("setpoints start 349.4 ms too early to be changed any more; splice later", "late")
+
+    def turn(rig: Rig, late: bool) -> None:
+        if late:
+            monkeypatch.setattr(rig.sim.ports.axes, "splice", refuse)
+        else:
+            monkeypatch.undo()
+
+    return turn
+
+
+def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
+    too_late: Callable[[Rig, bool], None],
+) -> None:
+    rig = cutting()
+    too_late(rig, True)
+    rig.until(State.HOLD)
+    assert stop_of(rig)[0] == "late"
+    assert rig.shot.alarms == ()
+    assert "349.4" not in rig.shot.waiting_for + stop_of(rig)[1]
+    assert rig.shot.rpm_command == 1000.0
+    too_late(rig, False)
+    rig.run(0.5)
+    rig.post(CycleStart())
+    rig.until(State.PROGRAM_STOP)
+    assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
+
+
+def test_a_late_computer_before_the_first_move_is_a_hold_too(
+    too_late: Callable[[Rig, bool], None],
+) -> None:
+    rig = Rig()
+    too_late(rig, True)
+    rig.start(CUT)
+    stood = rig.shot.demand
+    rig.until(State.HOLD)
+    assert stop_of(rig)[0] == "late"
+    assert rig.shot.demand == stood
+    too_late(rig, False)
+    rig.run(0.5)
+    rig.post(CycleStart())
+    rig.until(State.PROGRAM_STOP)
+
+
+def test_a_late_computer_in_a_jog_ends_the_jog_and_is_in_the_log(
+    too_late: Callable[[Rig, bool], None],
+) -> None:
+    rig = Rig()
+    rig.ready()
+    too_late(rig, True)
+    rig.post(Jog("X", 5.0, 0.2))
+    rig.run(1.0)
+    assert rig.state is State.IDLE
+    assert rig.shot.alarms == ()
+    assert rig.said("refused")[0] == "the computer was too late"
 
 
 def test_a_hold_without_an_entry_tells_its_reason_all_the_same() -> None:

@@ -46,15 +46,24 @@ def test_everything_else_is_read_word_by_word(text: str) -> None:
 
 
 def test_a_flood_of_warnings_hides_no_error() -> None:
-    inside = [f"X1(C{n})" for n in range(150)]
-    program = read_program(Source("A", lines("G90F300", "LS2", *inside, "LF", "X1N5", "M30")))
-    assert len(program.diagnostics) == 100
-    assert [found.code for found in program.diagnostics][-1] == "n-word"
+    inside = ["(PLXC)"] * 150
+    program = read_program(Source("A", lines("G90F300", *inside, "X1N5", "M30")))
+    weighty = [found for found in program.diagnostics if found.severity != "note"]
+    assert len(weighty) == 100
+    assert weighty[-1].code == "n-word"
 
 
 def test_a_flood_of_errors_is_cut_too() -> None:
+    program = read_program(Source("A", lines("G90F300", *["G2X1"] * 300, "M30")))
+    assert [found.code for found in program.diagnostics] == ["g-digits"] * 100
+
+
+def test_what_repeats_in_every_line_is_told_once_with_its_count() -> None:
     program = read_program(Source("A", lines("G90F300", *["N5X1"] * 300, "M30")))
-    assert [found.code for found in program.diagnostics] == ["n-word"] * 100
+    assert [(found.line, found.code, found.count) for found in program.diagnostics] == [(2, "n-word", 300)]
+    text = "\r\n".join(("G90F300", "", "X1", "", "", "M30", ""))
+    told = [(found.code, found.line, found.count) for found in read_program(Source("A", text)).diagnostics]
+    assert told == [("blank-line", 2, 3), ("line-ends", 1, 6)]
 
 
 def test_reading_raises_nothing_for_a_program_of_faults() -> None:

@@ -209,9 +209,17 @@ def test_a_flood_of_errors_is_cut() -> None:
 
 
 def test_errors_are_never_crowded_out_by_warnings() -> None:
-    result = passed(body(*["X.00001"] * 300, "S9000"))
-    assert result.errors == [(303, 1, "speed-range")]
+    result = passed(body("F.05", *["X9", "X0"] * 150, "S9000"))
+    assert result.errors == [(304, 1, "speed-range")]
     assert len(result.warnings) == 100
+
+
+def test_a_warning_that_repeats_takes_the_room_of_one() -> None:
+    result = passed(body(*["X.00001"] * 300, "F.05X9"))
+    assert [(d.line, d.code, d.count) for d in result.interpreter.diagnostics] == [
+        (3, "finer-than-step", 300),
+        (303, "feed-low", 1),
+    ]
 
 
 @pytest.mark.parametrize(

@@ -108,7 +108,7 @@ def test_the_end_clears_the_work_shift(end: str) -> None:
         (("G96S300", "T1"), [(4, 1, "tool-under-css")]),
         (("G96S300", "G97S500", "T1"), []),
         (("T7",), [(3, 1, "tool-offset-missing")]),
-        (("T7", "X1Z1", "T7"), [(3, 1, "tool-offset-missing"), (5, 1, "tool-offset-missing")]),
+        (("T7", "X1Z1", "T7"), [(3, 1, "tool-offset-missing")]),
     ],
 )
 def test_warnings(program: tuple[str, ...], warnings: list[tuple[int, int, str]]) -> None:

@@ -138,7 +138,7 @@ REFUSED = [
     ("X1 (a", 4, "comment-open"),
     ("X1)", 3, "comment-close"),
     ("X1/", 3, "block-delete-place"),
-    ("%", 1, "character"),
+    ("%", 1, "transfer-line"),
     ("X1;end", 3, "character"),
     ("X1=2", 3, "character"),
     ("ſ1", 1, "character"),

@@ -39,5 +39,7 @@ def test_blanks_change_columns_and_nothing_else(text: str) -> None:
     if "(" in text or ")" in text:
         return
     tight, loose = lex_line(1, text.replace(" ", "")), lex_line(1, " ".join(text))
+    if any(error.code == "text-outside" for error in (*tight.errors, *loose.errors)):
+        return  # letters side by side are text, and apart they are codes without numbers
     assert [word[:2] for word in tight.words] == [word[:2] for word in loose.words]
     assert [error.code for error in tight.errors] == [error.code for error in loose.errors]

@@ -111,6 +111,7 @@ class Eyes(QObject):
             "screen": lambda _asked: self._screen(),
             "freeze": lambda told: time.sleep(told["seconds"]),
             "touch": self._finger,
+            "break": _break,
         }
         tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
 
@@ -149,6 +150,14 @@ class Eyes(QObject):
             at = window.mapFromGlobal(QPoint(round(x), round(y)))
             getattr(event, do)(finger, at, window)
         event.commit()
+
+
+def _break(told: Told) -> None:
+    """Something of the simulated lathe breaks, by the name of its method."""
+    desk = _desk()
+    assert desk is not None
+    assert isinstance(desk.station, SimMachine)
+    getattr(desk.station, told["name"])(*told["values"])
 
 
 def _field(widget: QWidget | None) -> str:

@@ -279,6 +279,10 @@ class Operator:
         """Qt's thread does nothing for as long; ``answered`` tells when it is over."""
         return self.post("freeze", seconds=seconds)
 
+    def breaks(self, what: str, *values: object) -> None:
+        """Something of the simulated lathe breaks: ``jam``, ``spindle_fault``, ``station_silent`` …"""
+        self.ask("break", name=what, values=values)
+
     def stops_the_process(self) -> None:
         """As a debugger or a suspended computer stops it: every thread of it."""
         os.kill(self.popen.pid, signal.SIGSTOP)

@@ -8,10 +8,12 @@ from functools import lru_cache
 from core.language.diagnostics import ProgramError
 from core.language.klartext import faults
 from core.language.klartext.nodes import Value
+from core.language.typography import typed
 
 _NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
 _VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|Q\s*([0-9]+))(?![0-9A-Z.,])")
 _PLAIN = re.compile(rf"([+-]?)\s*({_NUMBER})(?![0-9.,])")
+_TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
 _WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
 _QUOTED = re.compile(r'"([^"]*)"')
 _WORD = re.compile(r"[^\s]+")
@@ -125,7 +127,15 @@ class Cursor:
     def expected(self, message: str, hint: str = "") -> ProgramError:
         """A syntax error here, saying what stands in the place."""
         here = f"; '{self.next_word}' stands here" if not self.done else "; the line ends here"
-        return faults.syntax(self.line, self.column, f"{message}{here}.", hint)
+        return faults.syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
+
+    def advice(self, hint: str) -> str:
+        """A hint, and what to do where text or a typographic character stands in the place."""
+        word = "" if self.done else self.next_word
+        instead = next(filter(None, map(typed, word)), None)
+        if instead is not None:
+            return instead[1]
+        return f"{hint} A comment begins with ;.".lstrip() if _TEXT.match(word) else hint
 
     def parameter(self) -> int:
         """The number of a Q parameter."""

@@ -121,6 +121,5 @@ def _no_block(cursor: Cursor) -> ProgramError:
         if pattern.match(cursor.upper, cursor.at):
             return faults.unsupported(cursor.line, column, name)
     text = f"'{cursor.next_word}' begins no block."
-    return faults.syntax(
-        cursor.line, column, text, "A block begins with L, PLANE, TOOL CALL, LBL or the like."
-    )
+    hint = cursor.advice("A block begins with L, PLANE, TOOL CALL, LBL or the like.")
+    return faults.syntax(cursor.line, column, text, hint)

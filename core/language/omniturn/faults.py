@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from core.language.diagnostics import Diagnostic, Severity
+from core.language.omniturn import habits
 from core.language.omniturn.words import COUNTING, RANGES, Word
 
 _MOST_DIGITS = 15
+_MOST_SHOWN = 40  # characters of a text
 _SIGNS = {
     ",": ("comma", "A comma is not allowed anywhere.", "Write a decimal point."),
     ")": ("comment-close", "')' closes no comment.", "Add '(' or take it out."),
@@ -26,6 +30,13 @@ def error(line: int, column: int, code: str, message: str, hint: str = "") -> Di
 def too_long(line: int, length: int) -> Diagnostic:
     """More on one line than a program line can hold."""
     return error(line, 0, "line-too-long", f"The line has {length} characters.", "Break it into lines.")
+
+
+def text_outside(line: int, column: int, text: str) -> Diagnostic:
+    """Words for a reader that stand among those for the control."""
+    shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
+    message = f"'{shown}' is text outside parentheses."
+    return error(line, column, "text-outside", message, f"Write ({shown}).")
 
 
 def open_comment(line: int, column: int) -> Diagnostic:
@@ -68,6 +79,10 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
     if sign in "0123456789+-.":
         return error(line, column, "letter-missing", "A number stands without a letter.", "Write its letter.")
     shown = sign if sign.isprintable() else f"U+{ord(sign):04X}"
+    habit = habits.sign(sign)
+    if habit is not None:
+        what, hint = habit
+        return error(line, column, "character", f"'{shown}' is {what}.", hint)
     return error(
         line, column, "character", f"'{shown}' is no part of the language.", "Comments go in parentheses."
     )
@@ -91,6 +106,28 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
     return _size(line, word, digits)
 
 
+def _tool(text: str, _value: float) -> tuple[str, str, str]:
+    habit = habits.tool(text)
+    return ("tool-number", *(habit or (f"{text}: tools go from 1 to 32.", "T0 cancels the tool.")))
+
+
+def _offset(text: str, _value: float) -> tuple[str, str, str]:
+    return "offset-number", f"{text}: offsets go from 1 to 32.", "D0 cancels."
+
+
+def _no_feed(text: str, value: float) -> tuple[str, str, str] | None:
+    if value:
+        return None
+    return "out-of-range", f"{text}: a feed of 0 moves nothing; a rapid is G00 here.", "Write the feed."
+
+
+_SIZES: dict[str, Callable[[str, float], tuple[str, str, str] | None]] = {
+    "T": _tool,
+    "D": _offset,
+    "F": _no_feed,
+}
+
+
 def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     letter, value, column, text = word
     least, most = RANGES[letter]
@@ -100,10 +137,9 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
         )
     if value is None or least <= value <= most:
         return None
-    if letter == "T":
-        return error(line, column, "tool-number", f"{text}: tools go from 1 to 32.", "T0 cancels the tool.")
-    if letter == "D":
-        return error(line, column, "offset-number", f"{text}: offsets go from 1 to 32.", "D0 cancels.")
+    special = _SIZES.get(letter)
+    if special is not None and (fault := special(text, value)) is not None:
+        return error(line, column, *fault)
     if letter == "LS":
         message = f"{text} is out of range: a loop runs {least:g} to {most:,.0f} times."
         return error(line, column, "loop-count", message, "Correct the count.")
@@ -134,5 +170,10 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
         return error(
             line, column, "n-word", "Lines have no numbers here: N is not allowed.", "Take the N word out."
         )
-    hint = "A feed is F." if letter == "E" else "Look the word up in the language page."
+    habit = habits.here(letter)
+    if habit is not None:
+        return error(
+            line, column, "unknown-letter", f"{letter} is no word of the language. {habit[0]}", habit[1]
+        )
+    hint = "Look the word up in the language page."
     return error(line, column, "unknown-letter", f"{letter} is no word of the language.", hint)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
-from core.language.omniturn import faults
+from core.language.omniturn import faults, habits
 from core.language.omniturn.words import BARE, Line, Word
 
 LONGEST_LINE = 8192
@@ -20,6 +21,15 @@ _THREAD = re.compile(r"G3[34](?![0-9.])")
 _TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
 _ZERO_LETTER = re.compile(r"O[0-9.]*")
 _EXPONENT = re.compile(r"E[+-]?[0-9]+")
+_THREE_LETTERS = re.compile(r"[^\W\d_]{3}")
+_COMMENT = re.compile(r"\([^)]*\)?")
+_LETTERS = re.compile(r"[^\W\d_]+")
+# Three letters and more are no code; one or two are none where no number follows. Numbers may stand between.
+_LONG, _SHORT = r"(?>[^\W\d_]{3,})", r"(?>[^\W\d_]+)(?!\s*[+\-.]*\d)"
+_NEXT = rf"(?:{_LONG}|{_SHORT}|(?>[^\W\d_]{{2}})(?=\s)|\d+(?:\.\d*)?|\.\d+)"
+_PROSE = re.compile(rf"(?<![^\W\d_])(?:{_LONG}|{_SHORT})(?:[\s,.;:!?'\"/&+-]*{_NEXT})*[.,;:!?]*")
+_THREAD_SIGNS = frozenset("PCO")
+_ZERO_SLIPS = re.compile(r"(?:[GMXZFS]O+)+[A-Z]?")
 _NUMBER_SIGNS = frozenset("0123456789.")
 _SPACE = re.compile(r"\s")
 
@@ -41,11 +51,45 @@ def lex_line(number: int, text: str) -> Line:
         if words is not None:
             return Line(number, words, text=text)
     errors: list[Diagnostic] = []
+    if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
+        text, told = _without_prose(number, text)
+        errors += told
     written, columns, comment, comment_column = _without_comment(number, text, errors)
     code = _Code(written.upper() if written.isascii() else _upper(written), written, columns)
     block_delete = code.text.startswith("/")
     words = _Scanner(number, code, errors).words(1 if block_delete else 0)
     return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+
+
+def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
+    """The line with blanks where text stands that is no code, and one error for each stretch of it."""
+    bare = _COMMENT.sub(lambda found: " " * len(found[0]), text)
+    habit = habits.whole_line(bare)
+    if habit is not None:
+        column = len(bare) - len(bare.lstrip()) + 1
+        kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
+        return kept, [faults.error(number, column, *habit)]
+    told: list[Diagnostic] = []
+    for found in _stretches(bare):
+        start, end = found.span()
+        if bare[start - 1 : start] == ";":  # a comment as others write it
+            start -= 1
+            told.append(faults.of_sign(number, start + 1, ";", after_number=False))
+        else:
+            told.append(faults.text_outside(number, start + 1, found[0].strip()))
+        text = text[:start] + " " * (end - start) + text[end:]
+    return text, told
+
+
+def _stretches(bare: str) -> Iterator[re.Match[str]]:
+    """Words that somebody reads, with what stands between them."""
+    thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
+    for found in _PROSE.finditer(bare):
+        words = _LETTERS.findall(found[0].upper())
+        if thread:
+            words = [word for word in words if not _THREAD_SIGNS.issuperset(word)]
+        if any(len(word) >= 3 and not _ZERO_SLIPS.fullmatch(word) for word in words):
+            yield found
 
 
 def _usual_words(text: str) -> tuple[Word, ...] | None:
@@ -142,7 +186,7 @@ class _Scanner:
         follower = text[end : end + 1]
         if follower == "O":
             return self._letter_o(end)
-        if follower == ",":
+        if follower == "," or habits.sign(follower) is not None:
             return self._skip(end, after_number=False)
         column = self._column(match.start())
         self._errors.append(faults.no_number(self._number, column, letter, follower))

@@ -6,6 +6,7 @@ The original control's checker does not know them, so programs hide them from it
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from core.language.diagnostics import ProgramError
@@ -13,6 +14,8 @@ from core.language.omniturn.faults import error
 from core.language.omniturn.words import Word
 
 _ENTRY = re.compile(r"\s*\(\s*~\s*(PLXC|PLZC)\s*\)\s*", re.IGNORECASE)
+_BARE_ENTRY = re.compile(r"\s*\(\s*PL[XZ]C\s*\)\s*", re.IGNORECASE)
+_FIRST_WORD = re.compile(r"\s*\(\s*[XYZFGHD]\s*[+-]?\s*[0-9.]", re.IGNORECASE)
 _STATEMENT = re.compile(r"\s*\(([^()]*)\)\s*")
 _WORD = re.compile(r"([A-Z])\s*([+-]?\s*(?:[0-9][0-9\s]*(?:\.[0-9\s]*)?|\.\s*[0-9][0-9\s]*))\s*")
 _END = re.compile(r"\s*M(?:30|02)\s*(?:\([^()]*\)\s*)?", re.IGNORECASE)
@@ -37,6 +40,19 @@ def plane_entry(text: str) -> PlaneLine | None:
     """The line as an entry to plane switching, None where it is anything else."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
     return PlaneLine(match[1].upper(), {}) if match else None
+
+
+def lacks_sign(text: str, following: Iterable[str]) -> bool | None:
+    """Whether an entry lacks its ~, so that it and its lines are comments; None where it is no entry at all.
+
+    ``following``: the lines behind it. True where the next of them is a line of a plane; else it may be one.
+    """
+    if _BARE_ENTRY.fullmatch(text) is None:
+        return None
+    for line in following:
+        if line.strip():
+            return _FIRST_WORD.match(line) is not None
+    return False
 
 
 def ends_program(text: str) -> bool:

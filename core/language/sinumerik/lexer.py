@@ -9,6 +9,7 @@ from core.language.sinumerik import vocabulary as known
 from core.language.sinumerik.faults import SYNTAX, alarm, refused
 from core.language.sinumerik.values import NUMBER, PARAMETER, beyond, value_at
 from core.language.sinumerik.words import LONGEST_LINE, Form, Line, Word
+from core.language.typography import typed
 
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
 # Nearly all words are these; they need no look at each sign.
@@ -83,7 +84,8 @@ class _Scanner:
             elif text[at].isalpha() and text[at].isascii():
                 at = self._letter(at)
             else:
-                at = self._skip(at, f"{text[at]} is no word", "Take it out; a comment begins with ;")
+                _, hint = typed(text[at]) or ("", "Take it out; a comment begins with ;")
+                at = self._skip(at, f"{text[at]} is no word", hint)
 
     def _plain(self, match: re.Match[str]) -> int:
         """A letter and its number, with nothing behind that could belong to it."""
@@ -125,7 +127,9 @@ class _Scanner:
             return self._outside(at, at + 1, letter, why)
         match = NUMBER.match(text, at + 1)
         if match is None:
-            return self._skip(at, f"{letter} has no number", f"Write {letter} with a number, or {letter}=…")
+            instead = typed(self._text[at + 1 : at + 2])
+            hint = instead[1] if instead else f"Write {letter} with a number, or {letter}=…"
+            return self._skip(at, f"{letter} has no number", hint)
         return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
 
     def _named(self, match: re.Match[str]) -> int:
@@ -140,7 +144,9 @@ class _Scanner:
         if name in known.ASSIGNED or base in known.ASSIGNED - {"X", "Z", "C", "I", "K", "F", "S"}:
             return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
         if self.words or self.call or self._text[end : end + 1] == "(":
-            return self._skip(at, f"{name} is no word", "A subprogram's name stands alone in its block.")
+            return self._skip(
+                at, f"{name} is no word", "A comment begins with ;, and a subprogram's name stands alone."
+            )
         return self._called(name, at, end)
 
     def _called(self, name: str, at: int, end: int) -> int:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import dataclasses
 import threading
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.inverter import ClearingAxes
+from app.compose.inverter import ClearingAxes, halt_with
 from core.machine.load import parse_machine
 from drivers.inverter.building import attendant
 from drivers.inverter.keeper import Keeper
@@ -98,7 +99,11 @@ class OnALine(Simulated):
             estop=lambda: ports.station.snapshot().estop,
         )
         self.ports = dataclasses.replace(
-            ports, axes=ClearingAxes(ports.axes, spindle.clear_fault), spindle=spindle, gear=None
+            ports,
+            axes=ClearingAxes(ports.axes, spindle.clear_fault),
+            spindle=spindle,
+            gear=None,
+            halt=partial(halt_with, ports, spindle),
         )
         self.world = InverterWorld(self.hands, ports.io.outputs)
         self.world.inverter = self.inverter

@@ -1,0 +1,99 @@
+"""The watchdog: a thread of its own that sees when another one is dead or stuck, and makes the machine safe.
+
+It counts its own looks, not time: when the whole process stands still, so does it, and nobody is blamed. It
+touches no driver that belongs to the executor but by ``MachinePorts.halt``, which any thread may call.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterable
+
+from core.executor.guard import Attempt
+from core.executor.thread import ExecutorThread
+
+_log = logging.getLogger(__name__)
+LOOK = 0.1  # s between two looks
+STUCK = 10  # looks without a tick: a second
+PATIENT = 70  # the same while the executor waits for a drive to come on, which may take five seconds
+AGAIN = 5  # looks after which the machine is halted once more: a controller that holds is then reset
+HALTS = 10
+
+Tell = Callable[[str], None]
+
+
+def running(name: str) -> bool:
+    """Whether a thread of this name is alive."""
+    return any(thread.name == name for thread in threading.enumerate())
+
+
+class Watchdog:
+    """Watches the executor's thread, and others by their names: those that run when it starts.
+
+    ``halt`` is the drivers' own way to stop everything, None where there is none. ``tell`` is told of another
+    thread's end, once; the executor's own end is an alarm.
+    """
+
+    def __init__(
+        self, executor: ExecutorThread, halt: Callable[[], None] | None, others: Iterable[str], tell: Tell
+    ) -> None:
+        self._executor, self._halt, self._tell = executor, halt, tell
+        self._others = list(others)
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
+        self._ticks = -1
+        self._still = 0  # looks without a tick
+        self._halted = 0
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still looks."""
+        return self._thread.is_alive()
+
+    def start(self) -> None:
+        """Once the others run."""
+        self._others = [name for name in self._others if running(name)]
+        self._thread.start()
+
+    def close(self) -> None:
+        """Before anything else is closed: what ends then ends in good order."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def look(self) -> None:
+        """One look; raises nothing."""
+        with Attempt() as trial:
+            self._mind_executor()
+            self._mind_others()
+        if trial.error is not None:
+            _log.error("the watchdog has failed", exc_info=trial.error)
+
+    def _watch(self) -> None:
+        while not self._closing.wait(LOOK):
+            self.look()
+
+    def _mind_executor(self) -> None:
+        thread = self._executor
+        executor = thread.executor
+        moved = executor.ticks != self._ticks
+        self._ticks = executor.ticks
+        self._still = 0 if moved else self._still + 1
+        dead = not thread.alive
+        if not dead and self._still < (PATIENT if executor.patient else STUCK):
+            self._halted = 0
+            return
+        if self._halted % AGAIN == 0 and self._halted < AGAIN * HALTS and self._halt is not None:
+            with Attempt() as halting:
+                self._halt()
+            if halting.error is not None:
+                _log.error("the drivers cannot be halted", exc_info=halting.error)
+        if self._halted == 0:
+            executor.declare_silent("its thread has ended" if dead else "its thread is stuck")
+        self._halted += 1
+
+    def _mind_others(self) -> None:
+        for name in [name for name in self._others if not running(name)]:
+            self._others.remove(name)
+            self._tell(name)

@@ -1,0 +1,230 @@
+"""The watchdog: threads that are killed, stuck, late; and a process that merely stood still."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Callable
+
+import pytest
+
+from core.executor.commands import EnableDrives
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.executor.thread import ExecutorThread
+from core.executor.watchdog import AGAIN, PATIENT, STUCK, Watchdog, running
+from drivers.grblhal import codes
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.grbl import Grblhal
+from tests.drivers.contract.rig import TICK, Rig
+from tests.drivers.contract.rigs import make
+from tests.executor.rig import Rig as Simulated
+
+CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
+
+
+class Ticked:
+    """Stands for the thread: the test ticks."""
+
+    def __init__(self, executor: Executor) -> None:
+        self.executor = executor
+        self.alive = True
+
+
+def watched(executor: Executor, halt: Callable[[], None] | None) -> tuple[Watchdog, Ticked]:
+    thread = Ticked(executor)
+    return Watchdog(thread, halt, (), lambda _: None), thread  # type: ignore[arg-type]
+
+
+def cutting(name: str) -> tuple[Rig, Control]:
+    rig = make(name)
+    control = Control(rig)
+    control.start(CUT)
+    control.until_true(lambda _: control.world.place()[1] < -8.0)
+    return rig, control
+
+
+def away(rig: Rig, seconds: float, look: Callable[[], None] | None = None) -> None:
+    """Nobody ticks; the watchdog looks ten times a second."""
+    for n in range(round(seconds / TICK)):
+        rig.alone(TICK)
+        if look is not None and n % 10 == 0:
+            look()
+
+
+@pytest.mark.parametrize("name", ["simulated", "fed", "fed canopen", "grblhal", "delta"])
+@pytest.mark.parametrize("dead", [True, False], ids=["dead", "stuck"])
+def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, dead: bool) -> None:
+    rig, control = cutting(name)
+    dog, thread = watched(control.executor, control.executor.halt)
+    dog.look()
+    thread.alive = not dead
+    place = control.world.place()[1]
+    away(rig, 6.0, dog.look)
+    # a second to be sure that it is stuck, what was queued meanwhile, and the ramp
+    assert abs(control.world.place()[1] - place) < 12.7 * (
+        0.5 if dead and not name.startswith("fed") else 3.5
+    )
+    stood = control.world.place()
+    away(rig, 1.0)
+    assert control.world.place() == pytest.approx(stood, abs=0.002)
+    assert control.world.rpm() == 0.0
+    assert not control.world.outputs()["coolant"]
+    assert control.world.outputs()["collet"]
+    assert control.shot.state is State.FAULT
+    (alarm,) = control.shot.alarms
+    assert alarm.code == "control-silent"
+    assert ("ended" if dead else "stuck") in alarm.cause
+    assert "PRESS E-STOP" in alarm.remedy
+    assert len(control.said("alarm")) == 1
+    rig.close()
+
+
+def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
+    rig, control = cutting("simulated")
+    dog, _ = watched(control.executor, control.executor.halt)
+    away(rig, 2.0, dog.look)
+    for _ in range(100):
+        control.tick()
+        dog.look()
+    assert control.state is State.FAULT
+    assert [alarm.code for alarm in control.shot.alarms] == ["control-silent"]
+    assert not rig.ports.axes.sample().enabled
+    assert control.nothing_moves()
+
+
+def test_a_process_that_stood_still_is_not_blamed() -> None:
+    rig, control = cutting("simulated")
+    dog, _ = watched(control.executor, control.executor.halt)
+    for _ in range(5):
+        away(rig, 5.0)  # both stood
+        for _ in range(STUCK - 2):
+            dog.look()  # and the watchdog is the first to be woken
+        control.tick()
+        dog.look()
+    assert control.shot.alarms == ()
+
+
+def test_a_wait_for_drives_is_no_stuck_thread() -> None:
+    rig = Simulated()
+    dog, _ = watched(rig.executor, rig.executor.halt)
+    enable = rig.sim.ports.axes.enable
+    waited: list[bool] = []
+
+    def slow(on: bool) -> None:
+        for _ in range(PATIENT - 5):
+            dog.look()
+        waited.append(True)
+        enable(on)
+
+    rig.sim.ports.axes.enable = slow  # type: ignore[method-assign]
+    rig.post(EnableDrives())
+    assert waited
+    assert rig.state is State.IDLE
+    assert rig.shot.alarms == ()
+
+
+def test_a_controller_is_held_first_and_then_reset() -> None:
+    rig, control = cutting("grblhal")
+    assert isinstance(rig, Grblhal)
+    sent: list[bytes] = []
+    write = rig.wire.write
+
+    def noting(data: bytes) -> None:
+        sent.append(data)
+        write(data)
+
+    rig.wire.write = noting  # type: ignore[method-assign]
+    dog, thread = watched(control.executor, control.executor.halt)
+    thread.alive = False
+    for _ in range(3 * AGAIN):
+        away(rig, 0.1)
+        dog.look()
+    assert sent[0] == bytes([codes.JOG_CANCEL, codes.HOLD])
+    assert set(sent[1:]) == {bytes([codes.RESET])}
+    rig.close()
+
+
+def kill(thread: threading.Thread, error: type[BaseException]) -> None:
+    """Raise it in there, whatever it does."""
+    assert thread.ident is not None
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), ctypes.py_object(error))
+
+
+def thread_of(name: str) -> threading.Thread:
+    return next(thread for thread in threading.enumerate() if thread.name == name)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+@pytest.mark.parametrize("error", [SystemExit, ValueError, KeyboardInterrupt])
+def test_a_thread_that_is_killed_leaves_nothing_on(error: type[BaseException]) -> None:
+    """SystemExit and mistakes it outlives, with an alarm; what ends it is the watchdog's business."""
+    rig = Simulated()
+    rig.start(CUT)
+    rig.until_true(lambda shot: shot.actual[1] < -3.0)
+    thread = ExecutorThread(rig.executor, Waiting(rig), tick=0.01)
+    dog = Watchdog(thread, rig.executor.halt, (), lambda _: None)
+    thread.start()
+    kill(thread_of("executor"), error)
+    for _ in range(400):
+        if rig.executor.snapshot.alarms:
+            break
+        Waiting.pause()
+        dog.look()
+    assert rig.executor.snapshot.alarms
+    thread.close()
+    assert not thread.alive
+    rig.clock.advance(3.0)
+    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert {name for name, on in rig.sim.ports.io.outputs().items() if on} == {"collet"}
+    assert not rig.sim.ports.axes.sample().enabled
+
+
+class Waiting:
+    """Machine time, a hundredth a wait, that takes a blink."""
+
+    def __init__(self, rig: Simulated) -> None:
+        self._rig = rig
+
+    def now(self) -> float:
+        return self._rig.clock.now()
+
+    def sleep_until(self, t: float) -> None:
+        self._rig.clock.advance(max(t - self.now(), 0.0))
+        self.pause()
+
+    @staticmethod
+    def pause() -> None:
+        threading.Event().wait(0.002)
+
+
+def test_another_thread_that_ends_is_told_once() -> None:
+    rig = Simulated()
+    ending = threading.Event()
+    other = threading.Thread(target=ending.wait, name="store-writer", daemon=True)
+    other.start()
+    told: list[str] = []
+    dog = Watchdog(Ticked(rig.executor), None, ("store-writer", "never-there"), told.append)  # type: ignore[arg-type]
+    dog.start()
+    dog.close()
+    assert told == []
+    ending.set()
+    other.join()
+    assert not running("store-writer")
+    dog.look()
+    dog.look()
+    assert told == ["store-writer"]
+
+
+def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
+    rig, control = cutting("simulated")
+
+    def broken() -> None:
+        raise ValueError("no way")
+
+    dog, thread = watched(control.executor, broken)
+    thread.alive = False
+    for _ in range(20):
+        dog.look()
+    assert control.shot.alarms[0].code == "control-silent"
+    rig.close()

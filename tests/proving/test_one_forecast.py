@@ -1,0 +1,78 @@
+"""One forecast: proof, trace and what is shown of a program end at the same time, whoever looks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.cli.offset_file import read_offsets
+from app.compose.machine import setup_for
+from core.interpreter.setup import SecondaryOffset, Setup
+from core.language.source import Source, load_source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from core.proving.timeline import Timeline, timed_series
+from core.proving.trace import setpoints
+from tests.interpreter.programs import ALL_TOOLS
+from tests.interpreter.test_golden import PROGRAMS, circumstances
+from tests.screen.desks import SAMPLES
+from tests.worked import FOLDER
+
+MACHINE = load_machine(None)
+DT = 0.05
+R = 0.015 * 25.4
+NOSE = {n: SecondaryOffset(-R, -R, R) for n in (1, 2, 3, 4)}
+
+
+def ends(source: Source, setup: Setup) -> tuple[float, float, float]:
+    """Cycle time of the proof, last time of the trace, and end of the timeline that is drawn."""
+    shown = Timeline.of(source, setup, MACHINE)
+    for _ in timed_series(shown):
+        pass
+    last = 0.0
+    for rows in setpoints(Timeline.of(source, setup, MACHINE), DT):
+        last = rows[-1][0] if rows else last
+    return prove(source, setup, MACHINE).times.cycle, last, shown.t
+
+
+def check(source: Source, setup: Setup) -> None:
+    proof, trace, shown = ends(source, setup)
+    assert shown == pytest.approx(proof, abs=1e-6)
+    assert proof - 1e-6 <= trace <= proof + DT + 1e-6
+
+
+WORKED = sorted(FOLDER.glob("*.nc")) if FOLDER.exists() else []
+GOLDEN = [
+    path
+    for path in sorted(PROGRAMS.glob("*.nc"))
+    if not path.stem.startswith("refuse") and not path.stem.endswith(("_dia", "_mm_rad"))
+]
+
+
+@pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
+@pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
+def test_worked_examples(path: Path) -> None:
+    check(load_source(path), setup_for(MACHINE, tools=ALL_TOOLS, secondary=NOSE))
+
+
+@pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
+def test_samples(path: Path) -> None:
+    tools, secondary = read_offsets(SAMPLES / "offsets.toml")
+    check(load_source(path), setup_for(MACHINE, tools=tools, secondary=secondary))
+
+
+@pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
+def test_golden_programs(path: Path) -> None:
+    table = path.with_suffix(".expected").read_text("utf-8").splitlines()
+    setup = circumstances([line[1:].split() for line in table if line.startswith("#")])
+    check(load_source(path), setup)
+
+
+def test_a_wait_for_speed_after_constant_surface_speed_is_the_same_for_all() -> None:
+    """G97 with another S behind a G96 move: the ramp begins at the speed that the move has led to."""
+    css = ("G96S250", "G77S2500", "Z0", "G95F.002X0", "G94F300Z2", "G97", "S500")
+    lines = ("G90G94F300", "M03S1500", "T1", "X.25Z.2", *css, "T2", "X0Z.2", "G95F.003Z-.5", "M30", "")
+    source, setup = Source("A", "\n".join(lines)), setup_for(MACHINE, tools=ALL_TOOLS, secondary={})
+    proof, trace, _ = ends(source, setup)
+    assert proof <= trace <= proof + DT

@@ -1,0 +1,195 @@
+"""Alarms, E-stops and holds as an operator finds them: number, cause and remedy on every page, and in F7."""
+
+from __future__ import annotations
+
+from core.alarms import CATALOGUE, Code
+from tests.stories.conftest import Story
+from tests.stories.operator import Operator, Told
+
+LONG = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG94F4Z-.2\nZ-1.4\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
+STOPS = "G90G94F300G72\nT3\nX1.2Z.2\nM00(CHECK THE BORE)\nX1.3\nM01\nX2Z2\nM30\n"
+TOOLS = {3: (-0.5, -2.0)}
+PAGES = (
+    (("F1", "F2"), "AUTOMATIC"),
+    (("F1", "F4"), "MDI"),
+    (("F1", "F5"), "JOG"),
+    (("F1", "F6"), "PROGRAMS"),
+    (("F1", "F8"), "TOOL OFFSETS"),
+    (("F1", "F9"), "SECONDARY OFFSETS"),
+    (("F1", "F10"), "SPECIAL FUNCTIONS"),
+    (("F1",), "MAIN MENU"),
+)
+OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control
+
+
+def in_the_cut(operator: Operator) -> None:
+    operator.drives_on()
+    operator.starts()
+    operator.until(lambda: operator.machine["line"] == 7, "the cut")
+    operator.until(lambda: operator.state == "RUNNING", "feeding")
+
+
+def in_status(operator: Operator, number: int) -> Told:
+    """The alarm as status.json has it."""
+
+    def found() -> list[Told]:
+        return [each for each in operator.status.get("alarms", ()) if each["number"] == number]
+
+    operator.until(lambda: bool(found()), f"{number} in status.json")
+    return found()[0]
+
+
+def is_told_on_every_page(operator: Operator, code: Code, exactly: str = "") -> None:
+    entry = CATALOGUE[code]
+    for keys, page in PAGES:
+        if page == "MDI" and operator.state == "FEED HOLD":
+            continue  # it does not open while a program is under way
+        operator.keys(*keys)
+        operator.opens(page)
+        operator.sees(f"{entry.number}: {entry.text.upper()}")
+        operator.sees(exactly or entry.causes[0])
+        operator.sees(entry.remedy)
+
+
+def is_in_f7(operator: Operator, *codes: Code) -> None:
+    operator.key("F7")
+    for code in codes:
+        entry = CATALOGUE[code]
+        operator.sees(f"{entry.number}  ·  {entry.text.upper()}")
+    operator.key("Escape")
+    operator.until(lambda: not operator.shows("ALARMS AND STOPS"), "the list closed")
+
+
+def test_a_jammed_slide_is_named_with_cause_and_remedy_on_every_page(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.breaks("jam", "Z")
+    operator.reaches("ALARM")
+    number, text = operator.machine["alarms"][0]
+    found = [code for code, entry in CATALOGUE.items() if entry.number == number]
+    operator.rests()
+    is_told_on_every_page(operator, found[0], "Z")
+    is_in_f7(operator, found[0])
+    told = in_status(operator, number)
+    assert told["text"].startswith(text)
+    assert "Z" in told["cause"]
+    assert told["remedy"] == CATALOGUE[found[0]].remedy
+    operator.until(lambda: any(each.startswith(str(number)) for each in operator.events("alarm")), "the log")
+
+
+def test_an_estop_is_in_f7_with_its_reason_also_after_the_computer_was_off(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    operator.rests()
+    is_told_on_every_page_as_estop(operator)
+    is_in_f7(operator, "estop")
+    operator.until(lambda: any(each.startswith("701 E-STOP") for each in operator.events("estop")), "the log")
+    operator.leaves()
+    again = story.begins(LONG)
+    again.key("F7")
+    again.sees("701  ·  E-STOP")
+    again.sees(CATALOGUE["estop"].remedy)
+    assert not again.shows("No alarm")
+
+
+def is_told_on_every_page_as_estop(operator: Operator) -> None:
+    for keys, page in PAGES:
+        operator.keys(*keys)
+        operator.opens(page)
+        operator.sees("E-STOP: MAKE THE MACHINE SAFE")
+        operator.sees(CATALOGUE["estop"].causes[0])
+
+
+def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
+    operator = story.begins(STOPS, tools=TOOLS)
+    operator.drives_on()
+    operator.key("o")
+    operator.starts()
+    operator.reaches("PROGRAM STOP")
+    operator.key("s")
+    operator.cycle_start()
+    operator.reaches("SINGLE BLOCK")
+    operator.key("s")
+    operator.during(0.4)
+    operator.cycle_start()
+    operator.reaches("PROGRAM STOP")
+    operator.key("r")
+    operator.sees("ONCE MORE")
+    operator.during(0.3)
+    operator.key("r")
+    operator.reaches("READY")
+    operator.key("F7")
+    for text in ("703  ·  RESET", "part.nc was given up", "705  ·  OPTIONAL STOP", "706  ·  SINGLE BLOCK"):
+        operator.sees(text)
+    operator.key("Next")
+    operator.sees("704  ·  PROGRAM STOP")
+    operator.sees("CHECK THE BORE")
+
+
+def test_of_two_alarms_the_first_is_named_first_and_the_other_is_there(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.breaks("drive_fault", "X", "over current")
+    operator.reaches("ALARM")
+    operator.breaks("spindle_fault", "undervoltage")
+    operator.until(lambda: len(operator.machine["alarms"]) == 2, "two alarms")
+    operator.sees("X: over current")
+    operator.sees("ALARM 101: AXIS DRIVE FAULT")
+    operator.sees("201 SPINDLE DRIVE FAULT")
+    operator.keys("F1", "F8")
+    operator.sees("ALARM 101: AXIS DRIVE FAULT")
+    operator.sees("AND 1 MORE")
+    is_in_f7(operator, "axis", "spindle")
+
+
+def test_a_silent_station_is_a_hold_with_its_cause_and_goes_on(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.breaks("station_silent")
+    operator.reaches("FEED HOLD")
+    operator.rests()
+    is_told_on_every_page(operator, "station-silent")
+    assert in_status(operator, 601)["cause"] == CATALOGUE["station-silent"].causes[0]
+    operator.breaks("station_silent", False)
+    operator.keys("F1", "F2")
+    operator.during(0.5)
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+
+
+def test_a_computer_that_was_away_is_told_in_an_operators_words(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.stops_the_process()
+    operator.during(2.5)  # longer than what is queued
+    operator.lets_it_go_on()
+    operator.reaches("FEED HOLD")
+    operator.rests()
+    assert operator.machine["alarms"] == []
+    screen = operator.screen
+    texts = " ".join([screen["prompt"], screen["state"], *(each[0] for each in screen["texts"])])
+    assert "this computer busy" in texts
+    assert not [word for word in OURS if word in texts]
+    operator.during(0.5)
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+    operator.reaches("READY")
+    assert operator.machine["parts"] == 1
+
+
+def test_h_and_esc_are_told_apart_in_f7(story: Story) -> None:
+    operator = story.begins(LONG, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("h")
+    operator.reaches("FEED HOLD")
+    operator.rests()
+    operator.cycle_start()
+    operator.reaches("RUNNING")
+    operator.during(0.2)
+    operator.key("Escape")
+    operator.reaches("FEED HOLD")
+    operator.key("F7")
+    operator.sees("by key or finger at the screen")
+    operator.sees("by Esc at the screen")
