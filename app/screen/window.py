@@ -98,6 +98,8 @@ class MainWindow(QWidget):
                 frame.page.pressed()
             action()
             self.refresh()
+        elif frame is not None and key.startswith("F") and key[1:].isdecimal():
+            frame.desk.say(tr("{key} HAS NO FUNCTION ON THIS PAGE").format(key=key))
 
     def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
         return {

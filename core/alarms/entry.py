@@ -43,7 +43,6 @@ OwnCode = Literal[
     "spindle-switch",
     "spindle-pot",
     "controller-holds",
-    "feed-lost",
     "held",
     "spindle-has-stopped",
     "spindle-late",

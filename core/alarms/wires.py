@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.alarms.entry import HOLD, OFF, STOP, Entries, Entry
+from core.alarms.entry import OFF, STOP, Entries, Entry
 
 WIRES: Entries = {
     "bus": Entry(
@@ -111,14 +111,6 @@ WIRES: Entries = {
         "the safety door is open",
         ("the door was opened in the cycle", "the door's switch or cable"),
         "spindle and coolant are off: close the door, Reset, Drives On",
-        tells=True,
-    ),
-    "feed-lost": Entry(
-        529,
-        HOLD,
-        "spindle or output fell in the cycle",
-        ("the feeder had no word of the control for a moment and made the machine safe",),
-        "look at spindle and outputs; Cycle Start says what it starts again",
         tells=True,
     ),
 }

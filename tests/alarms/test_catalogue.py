@@ -100,6 +100,21 @@ def test_no_alarm_exists_outside_the_catalogue() -> None:
     assert found > 60
 
 
+def test_every_entry_is_raised_somewhere() -> None:
+    """An entry that nothing raises is a promise that nobody keeps."""
+    sources = [path for room in ("core", "drivers", "app") for path in (HOUSE / room).rglob("*.py")]
+    catalogue = {HOUSE / "core" / "faults.py", *(HOUSE / "core" / "alarms").iterdir()}
+    said = {
+        node.value
+        for path in sources
+        if path not in catalogue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    }
+    unused = [code for code, entry in CATALOGUE.items() if not {code, entry.text.upper()} & said]
+    assert unused == []
+
+
 def test_an_alarm_is_made_in_one_place() -> None:
     """Whoever makes an Alarm by hand goes round the catalogue."""
     makers = [

@@ -8,7 +8,7 @@ from PySide6.QtTest import QTest
 from app.desk import pages
 from app.desk.prompts import NOT_HERE
 from core.executor.commands import CycleStart, FeedHold
-from core.executor.snapshot import Alarm, State
+from core.executor.snapshot import Alarm, Event, State
 from tests.screen.hands import Hands, Key
 
 
@@ -90,3 +90,31 @@ def test_the_run_stays_in_sight_on_every_other_page(hands: Hands) -> None:
         assert hands.frame.run.comment == hands.machine.now.comment
         assert [name for name, _figure in hands.frame.run.times] == ["PARTS", "CYCLE", "LEFT", "LAST"]
         hands.frame.run.grab()
+
+
+def test_a_function_key_without_a_label_says_so(hands: Hands) -> None:
+    hands.key(Key.Key_F1)
+    hands.key(Key.Key_F10)
+    hands.key(Key.Key_F8)
+    assert hands.frame.keys.labels[7] == ""
+    assert hands.prompt() == "F8 HAS NO FUNCTION ON THIS PAGE"
+
+
+def test_f7_looks_through_the_stops_and_esc_closes_it(hands: Hands) -> None:
+    for line in range(40):
+        alarm = Alarm(102, "following", "FOLLOWING ERROR", f"cause {line}", "free the slide", line=line)
+        hands.desk.hear(Event(0.0, "alarm", "", line, alarm))
+    hands.key(Key.Key_F7)
+    log = hands.frame.log
+    hands.sees(lambda: len(log.entries) == 40)
+    assert log.entries[0].alarm.line == 39
+    top = log._top
+    hands.key(Key.Key_PageDown)
+    assert log._top == top + log.rows
+    for _ in range(40):
+        hands.key(Key.Key_PageDown)
+    assert log._top == 40 - log.rows
+    hands.key(Key.Key_PageUp)
+    assert log._top == 40 - 2 * log.rows
+    hands.key(Key.Key_Escape)
+    assert not log.isVisible()
