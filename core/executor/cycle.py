@@ -208,10 +208,12 @@ class Cycle:
             case Progress.STILL:
                 self._change(State.WAIT)
             case Progress.BLOCK_END:
+                self._show_later(self._mover.block)
                 self._change(State.BLOCK_END)
             case Progress.HELD:
                 self.hold("THE CONTROLLER HOLDS")
             case Progress.DONE:
+                self._show_later(self._mover.ended_with)
                 self._stand()
 
     def _stand(self) -> None:
@@ -274,6 +276,11 @@ class Cycle:
             self._change(State.HOLDING)
         elif (block.per_rev and not block.modal.c_locked) or spindle.fails:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
+
+    def _show_later(self, block: Block | None) -> None:
+        """At rest: blocks that go nowhere have been executed too."""
+        if block is not None and (self.current is None or block.n > self.current.n):
+            self._show(block)
 
     def _show(self, block: Block) -> None:
         self.current = block

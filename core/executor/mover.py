@@ -20,6 +20,7 @@ class Mover:
         self._scales = Scales()
         self._single = False  # the present plan stops at the end of a block
         self._single_from: int | None = None  # the block from which on it may stop
+        self._last: int | None = None  # the block at whose end the present plan stops
         self._retreat: Retreat | None = None
 
     @property
@@ -45,7 +46,13 @@ class Mover:
     @property
     def complete(self) -> bool:
         """Whether what is queued ends where the stretch does."""
-        return self.player.complete()
+        left = self._bench.switches.single_block and self.player.steps_left()
+        return self.player.complete() and not left
+
+    @property
+    def ended_with(self) -> Block | None:
+        """At the end of the stretch: its last block."""
+        return self.player.ended_with()
 
     @property
     def starving(self) -> float:
@@ -71,10 +78,10 @@ class Mover:
         bench, player = self._bench, self.player
         self._scales = self.wanted()
         self._single = bench.switches.single_block
-        last = self._last_block() if self._single else None
+        self._last = self._last_block() if self._single else None
         if not self._single:
             self._single_from = None
-        player.go(self._scales, last, soon=soon)
+        player.go(self._scales, self._last, soon=soon)
 
     def progress(self, feed: BlockFeed) -> Progress:
         """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
@@ -86,12 +93,12 @@ class Mover:
         if self.moving:
             self._refill(feed)
             return Progress.MOVING
-        if player.complete():
+        if self._last is not None and player.step_over(self._last):
+            return Progress.BLOCK_END if player.steps_left() else Progress.DONE
+        if self._last is None and player.complete():
             return Progress.DONE
         if not (self._scales.feed and self._scales.rapid and self._scales.turn):
             return Progress.STILL
-        if self._single:
-            return Progress.BLOCK_END
         self.go()
         return Progress.MOVING
 

@@ -48,6 +48,11 @@ class Moving(Protocol):
         ...
 
     @property
+    def ended_with(self) -> Block | None:
+        """At the end of the stretch: its last block, which may go nowhere."""
+        ...
+
+    @property
     def starving(self) -> float:
         """When the slides stop for want of setpoints; endless where that cannot be."""
         ...

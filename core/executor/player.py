@@ -35,6 +35,7 @@ class Player:
         self._stretch: Stretch | None = None
         self._pass: ThreadPass | GearedPass | None = None  # instead of a stretch
         self._shown: Block | None = None
+        self._stepped: int | None = None  # the block at whose end single block has come to rest
 
     @property
     def active(self) -> bool:
@@ -83,7 +84,7 @@ class Player:
 
     def forget(self) -> None:
         """The stretch is over, or nothing of it holds any more."""
-        self._stretch = self._shown = self._pass = None
+        self._stretch = self._shown = self._pass = self._stepped = None
         self._queue.clear()
 
     def go(self, scales: Scales, last: int | None = None, *, soon: bool = True) -> None:
@@ -144,6 +145,24 @@ class Player:
             return True
         return track is not None and track.profile.end_s >= self._stretch.end_s - 1e-9
 
+    def step_over(self, last: int) -> bool:
+        """At rest: whether block ``last`` is done, with way or without; it then is the one being played."""
+        if self._pass is not None:
+            return self._pass.complete
+        assert self._stretch is not None
+        track = self._queue.last
+        if track is None or track.profile.end_s < self._stretch.end_of(last) - 1e-9:
+            return False
+        self._stepped = last
+        return True
+
+    def steps_left(self) -> bool:
+        """At rest: whether there are blocks behind the one that was reached, if only such as go nowhere."""
+        if self._stretch is None:
+            return False
+        at = self.block(self._axes.now())
+        return at is None or bool(self._stretch.behind(at.n))
+
     def block(self, now: float) -> Block | None:
         """The block being played, not one planned ahead."""
         if self._pass is not None:
@@ -152,8 +171,16 @@ class Player:
             return None
         track = self._queue.at(now)
         playing = self._stretch.block(track.block(now)) if track else None
+        if self._stepped is not None and (playing is None or playing.n < self._stepped):
+            playing = self._stretch.block(self._stepped)
         self._shown = playing or self._shown or self._stretch.first_block
         return self._shown
+
+    def ended_with(self) -> Block | None:
+        """At the end of the stretch: its last block, which may go nowhere."""
+        if self._pass is not None:
+            return self._pass.blocks[-1]
+        return self._stretch.last_block if self._stretch is not None else None
 
     def following(self) -> Block | None:
         """The block behind the one being played, when it belongs to the stretch."""

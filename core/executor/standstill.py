@@ -7,7 +7,7 @@ from enum import Enum, auto
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, needs_speed
 from core.executor.waits import Wait, at_speed, carry_out, in_position
-from core.interpreter.blocks import Block
+from core.interpreter.blocks import Block, Kind
 
 
 class Next(Enum):
@@ -60,7 +60,7 @@ class Standstill:
         if block.action is not None:
             self._wait = carry_out(block, self._bench)
         elif needs_speed(block):
-            self._wait = at_speed(self._bench)
+            self._wait = at_speed(self._bench, thread=block.kind is Kind.THREAD)
         if self._wait is None:
             self._waited()
 

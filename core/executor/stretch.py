@@ -55,6 +55,16 @@ class Stretch:
         """Distance of the end."""
         return float(self._builder.path().s[-1])
 
+    @property
+    def last_block(self) -> Block | None:
+        """The block with the highest number."""
+        return self._blocks[max(self._blocks)] if self._blocks else None
+
+    def end_of(self, n: int) -> float:
+        """Distance at which this block ends; behind everything when it is not held."""
+        path = self._builder.path()
+        return path.block_span(n)[1] if n in self._blocks else np.inf
+
     def drop_before(self, n: int | None) -> None:
         """Forget what lies behind block ``n``."""
         if n is None or n not in self._blocks:

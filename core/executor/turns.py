@@ -37,9 +37,14 @@ class Turns:
             return
         self._fit = None
 
+    @property
+    def known(self) -> bool:
+        """Whether enough was read of late: not right after the control was away, never without encoder."""
+        return len(self._reads) >= _LEAST
+
     def at(self, t: float) -> tuple[float, float] | None:
         """(revolutions, revolutions per second) at ``t``; None as long as too little has been read."""
-        if len(self._reads) < _LEAST:
+        if not self.known:
             return None
         if self._fit is None:
             self._fit = self._fitted()

@@ -56,8 +56,11 @@ def in_position(bench: Bench) -> Wait:
     return Wait(lambda: "", lambda _: bench.in_position(), bench.now, _IN_POSITION, "in-position")
 
 
-def at_speed(bench: Bench) -> Wait:
-    """Until the spindle turns as commanded. While the operator keeps it still there is no time limit."""
+def at_speed(bench: Bench, *, thread: bool = False) -> Wait:
+    """Until the spindle turns as commanded, and for a thread until its encoder is read again after a stall.
+
+    While the operator keeps it still there is no time limit.
+    """
     spindle = bench.spindle
     wait = Wait(
         lambda: spindle.why_slow or "AT SPEED",
@@ -70,7 +73,8 @@ def at_speed(bench: Bench) -> Wait:
     def done(_: float) -> bool:
         if spindle.why_slow:
             wait.since = bench.now
-        return spindle.at_speed(bench.now)
+        read = spindle.turns.known or bench.ports.spindle.angle() is None
+        return spindle.at_speed(bench.now) and (read or not thread)
 
     wait.done = done
     return wait

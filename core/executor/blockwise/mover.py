@@ -82,6 +82,11 @@ class BlockMover:
         return not (self._waiting or self._pieces or self._sent)
 
     @property
+    def ended_with(self) -> Block | None:
+        """At the end of the stretch: its last block."""
+        return self.block
+
+    @property
     def starving(self) -> float:
         """A controller comes to rest by itself; only one that was left alone for long shall not go on."""
         return -math.inf if self._dry else math.inf

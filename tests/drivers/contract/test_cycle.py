@@ -131,6 +131,21 @@ def test_single_block_stops_behind_each_block(control: Control) -> None:
         assert place == pytest.approx((x * INCH, z * INCH), abs=0.003)
 
 
+def test_single_block_gets_past_blocks_that_go_nowhere(control: Control) -> None:
+    control.post(SetSwitch("single_block", True))
+    control.start("G90G94F300\nX.3Z.1\nX.3\nG01X.3F100\nX.35\nX.35\nM30\n")
+    lines = []
+    while control.state is not State.IDLE:
+        control.until(State.BLOCK_END, State.IDLE, State.FAULT, limit=5.0)
+        if control.state is State.BLOCK_END:
+            lines.append(control.shot.line)
+            assert len(lines) < 12, lines
+            control.press()
+    assert lines == [2, 3, 4, 5, 6]
+    assert control.world.place() == pytest.approx((0.35 * INCH, 0.1 * INCH), abs=0.003)
+    assert control.shot.parts == 1
+
+
 def test_reset_in_motion_stops_and_starts_nothing(control: Control) -> None:
     cutting(control)
     control.post(Reset())

@@ -1,0 +1,110 @@
+"""A job in single block, start by start, to its end: what it stopped at, against its blocks."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from core.executor.commands import CycleStart, LoadJob, SetSwitch
+from core.executor.feed import Pass
+from core.executor.interpret import interpret
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import State
+from core.interpreter.actions import Dwell, ProgramEnd
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.dialects import interpretation
+from core.interpreter.setup import Setup
+from core.language.diagnostics import Severity
+from core.language.source import Source
+from core.machine.model import Machine
+from tests.executor.rig import Rig
+
+STOPPED = {State.BLOCK_END, State.PROGRAM_STOP}
+_QUICK = 8.0  # times the feeds and through the dwells: steps and places are the same
+_TICK = 0.02
+_APART = 5  # ticks of .08 s between a stop and the next start
+
+
+def with_room(machine: Machine) -> Machine:
+    """The same machine with slides long enough for any program."""
+    axes = [
+        axis if axis.travel is None else dataclasses.replace(axis, travel=(-1e4, 1e4))
+        for axis in machine.axes
+    ]
+    return dataclasses.replace(machine, axes=tuple(axes))
+
+
+def _quick(block: Block) -> Block:
+    if isinstance(block.action, Dwell):
+        return dataclasses.replace(block, action=Dwell(block.action.seconds / _QUICK))
+    if block.action is None and block.kind is not Kind.THREAD and not block.rapid:
+        return dataclasses.replace(block, feed=block.feed * _QUICK)
+    return block
+
+
+@dataclass
+class QuickRig(Rig):
+    """Feeds several times as fast; threads and rapids as they are."""
+
+    blocks: list[Block] = field(default_factory=list)  # of the last pass
+
+    def _passes(self, job: Job, setup: Setup) -> Pass:
+        self.blocks = []
+        whole = interpret(job, setup)
+        return whole._replace(blocks=self._kept(whole.blocks))
+
+    def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        for block in blocks:
+            self.blocks.append(block)
+            yield _quick(block)
+
+
+def has_errors(source: Source, setup: Setup) -> bool:
+    """Whether a program is refused."""
+    program = interpretation(source, setup)
+    for _ in program.blocks():
+        pass
+    return any(found.severity is Severity.ERROR for found in program.diagnostics)
+
+
+def steps_of(blocks: Iterable[Block]) -> list[int]:
+    """Numbers of the blocks at which single block stops: all, a thread with its pull-out, not the end."""
+    steps: list[int] = []
+    threading = False
+    for block in blocks:
+        moves = block.action is None
+        pulls = moves and threading and (block.kind is Kind.THREAD or (block.rapid and block.z == block.z0))
+        if pulls:
+            steps[-1] = block.n
+        elif not isinstance(block.action, ProgramEnd):
+            steps.append(block.n)
+        threading = moves and block.kind is Kind.THREAD and not pulls
+    return steps
+
+
+def stepped_through(
+    source: Source, setup: Setup, machine: Machine, limit: int = 2000
+) -> tuple[QuickRig, list[int]]:
+    """The rig at the end, and the block at which each start of single block ended."""
+    rig = QuickRig(machine=dataclasses.replace(with_room(machine), inch=not setup.metric))
+    for model in rig.machine.inputs.values():
+        if model.terminal and setup.inputs(model.terminal):
+            rig.sim.machine.set_input(model.name, True)
+    rig.ready()
+    rig.post(SetSwitch("single_block", True))
+    rig.run(0.3)
+    job = make_job(source, setup)
+    rig.post(LoadJob(job, Proof(job.digest, ())), CycleStart())
+    stops: list[int] = []
+    while rig.state not in {State.IDLE, State.FAULT}:
+        assert rig.state is not State.HOLD, rig.shot.waiting_for
+        if rig.state not in STOPPED:
+            rig.tick(_TICK)
+            continue
+        stops.append(rig.shot.block)
+        assert len(stops) <= limit, f"still in line {rig.shot.line} after {limit} starts"
+        for _ in range(_APART):
+            rig.tick(0.08)
+        rig.post(CycleStart())
+    return rig, stops
