@@ -69,7 +69,7 @@ def jog_words(found: Retract, tool: int) -> str:
         words = tr("T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING")
     elif found.lies is Lies.THREAD:
         words = tr("T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z")
-    elif found.lies is Lies.MILL:
+    elif found.lies is Lies.TURNED:
         words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
     else:
         words = _towards(found.away)

@@ -90,7 +90,7 @@ def _held(way: Retract, now: Now) -> Retract:
     if way.lies is not Lies.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
         return way
     turned = abs(now.at[2] - broken.at[2]) % _TURN
-    return way if min(turned, _TURN - turned) <= _HELD else replace(way, hops=())
+    return way if min(turned, _TURN - turned) <= _HELD else replace(way, lies=Lies.TURNED, hops=())
 
 
 def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:

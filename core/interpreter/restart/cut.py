@@ -59,6 +59,7 @@ class Cut:
     bar: Ints
     offsets: dict[int, tuple[float, float]]  # of tools: machine less tip, mm
     radius: float
+    begins: float  # the greatest Z at which a cut begins
     over: float
     face: float
     faces: dict[int, float]  # of each tool that has shown one itself
@@ -80,6 +81,10 @@ class Cut:
     def front(self, tool: int) -> float:
         """The Z of the tip from which on nothing is before the part."""
         return self.faces.get(tool, self.face)
+
+    def beyond(self, x: float, z: float) -> bool:
+        """Whether a point that was come to by rapid lies over all that is cut, or before all of it."""
+        return abs(x) >= self.radius - SAME or z >= self.begins - SAME
 
     def outside(self, x: float, z: float, tool: int) -> bool:
         """Whether the tip of this tool is where no metal can be: over the bar or before its face."""
@@ -166,6 +171,7 @@ def _told(rows: _Rows, blocks: int) -> Cut:
     radius = _greatest(np.abs(np.concatenate((x0[feeds], x[feeds]))), 0.0)
     radius = max(radius, _ON_CENTRE) if feeds.any() else 0.0
     faces = _faces(feeds, x0, x, z, tool, radius)
+    farthest = _farthest(feeds, z0, z, tool)
     machine = {each: rows.offsets[each] for each in rows.offsets}
     clear, reach = -inf, {}
     for each, (off_x, off_z) in machine.items():
@@ -174,8 +180,8 @@ def _told(rows: _Rows, blocks: int) -> Cut:
         clear = max(clear, _greatest(z[own], -inf) + off_z)
     return Cut(
         n, line, x0, z0, x, z, how, tool, bar, machine,
-        radius, _over(feeds, x0, z0, x, z, radius),
-        min(faces.values(), default=inf), faces, reach, clear, blocks,
+        radius, _greatest(np.concatenate((z0[feeds], z[feeds])), -inf), _over(feeds, x0, z0, x, z, radius),
+        min(faces.values(), default=inf), {**farthest, **faces}, reach, clear, blocks,
     )  # fmt: skip
 
 
@@ -189,8 +195,17 @@ def _faces(
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME, _ON_CENTRE)
     across = ~(np.abs(x - x0) <= SAME)  # the first move of all comes from nobody knows where
-    known = ~feeds & across & (z >= cut - SAME) & (np.abs(x) < within)
+    called = np.concatenate(([True], tool[1:] != tool[:-1])) if len(tool) else across
+    before = (z > cut + SAME) | (called & (z >= cut - SAME))
+    known = ~feeds & across & before & (np.abs(x) < within)
     return {int(each): float(z[known & (tool == each)].min()) for each in np.unique(tool[known])}
+
+
+def _farthest(feeds: npt.NDArray[np.bool_], z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
+    """Of each tool the greatest Z to which it goes by rapid, where that is beyond the start of all cuts."""
+    cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
+    told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
+    return {each: far for each, far in told.items() if far > cut + SAME}
 
 
 def _over(feeds: npt.NDArray[np.bool_], x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:

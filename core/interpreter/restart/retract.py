@@ -22,6 +22,7 @@ _END = 0.005  # mm: nearer to its end a row is done
 _ASIDE = 0.01  # mm: a cut that leaves a radius or a Z by less stays on it
 _BETWEEN = 1.1  # mm: no tool is narrower, so that nothing is left between passes nearer to each other
 _BACK_A_LITTLE = 0.25  # mm
+_FROM_A_SHOULDER = 0.1  # mm: no nearer to a face that is still to be cut
 _ON_CENTRE = 0.05  # mm of radius; a tool there drills or taps
 _AHEAD, _BACK, _LEGS = 400, 400, 60  # rows looked at; legs that an operator can still follow
 
@@ -34,6 +35,7 @@ class Lies(Enum):
     THREAD = "thread"
     TAP = "tap"
     MILL = "mill"  # C is held
+    TURNED = "turned"  # a mill whose part has been turned since
     UNKNOWN = "unknown"
 
 
@@ -78,6 +80,10 @@ class _Seg:
     z: float
     how: int
     row: int
+
+    @property
+    def length(self) -> float:
+        return hypot(self.x - self.x0, self.z - self.z0)
 
     @property
     def outwards(self) -> float:
@@ -135,17 +141,18 @@ class _Search:
     def found(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
         how = self.how
         if how & (FACE | SIDE):
-            return self._off_the_mill()
+            return self._off_the_mill(how & (FACE | SIDE))
         if self._tap():
             return Retract(Lies.TAP)
         clear = _clear(self.cut, self.place) or (self._brings_it(self.row) and not self.within)
+        clear = clear or (not how & FEED and self.z >= self.cut.begins)
         if clear and not (self.within and how & FEED):
             return Retract(Lies.CLEAR)
         on = self._going_on()
         if on is not None:
             return on
         if how & STILL:
-            return self._off_a_held_spindle()
+            return self._off_the_mill(self._axis_of_the_mill())
         ahead = self._as_the_program_does()
         if ahead is not None:
             return ahead
@@ -184,7 +191,7 @@ class _Search:
             if seg.how & FEED or len(hops) >= _LEGS:
                 return None
             hops.append(Hop(seg.x, seg.z))
-            if self.cut.outside(seg.x, seg.z, self.place.tool) or self._brings_it(seg.row):
+            if self._out(hops[-1]) or self._brings_it(seg.row):
                 return self._made(hops)
         return None
 
@@ -204,7 +211,8 @@ class _Search:
                 continue
             if max(seg.z, seg.z0) > level or seg.how & (STILL | FACE | SIDE):
                 return None
-            if not seg.how & THREAD and seg.z > self.z - _ASIDE and abs(seg.outwards) > _ASIDE:
+            here = max(seg.z, seg.z0 if seg.row != self.row else seg.z)
+            if not seg.how & THREAD and here > self.z - _FROM_A_SHOULDER and abs(seg.outwards) > _ASIDE:
                 return None  # it cuts along X right here
             if not seg.how & THREAD:
                 grew, shrank = grew or seg.outwards > _ASIDE, shrank or seg.outwards < -_ASIDE
@@ -221,12 +229,16 @@ class _Search:
         if out > _ASIDE and grew and abs(to_x) < self.cut.over - SAME and not self._swept(abs(to_x)):
             return None
         hops = [Hop(to_x, self.z), Hop(seg.x, seg.z)]
-        while not self.cut.outside(hops[-1].x, hops[-1].z, self.place.tool):
+        while not self._out(hops[-1]):
             after = next(steps, None)
             if after is None or after.how & FEED or len(hops) >= _LEGS:
                 return None
             hops.append(Hop(after.x, after.z))
         return self._made(hops)
+
+    def _out(self, hop: Hop) -> bool:
+        """Whether a rapid of the program that ends here has left the work."""
+        return hop.z >= self.cut.begins - SAME or self.cut.outside(hop.x, hop.z, self.place.tool)
 
     def _swept(self, end: float) -> bool:
         """Whether passes of this tool that are done have left nothing between here and this radius.
@@ -306,16 +318,15 @@ class _Search:
         return None if found is None or not found.hops else (hop, found.hops)
 
     def _brings_it(self, row: int) -> bool:
-        """Whether the row is the rapid with which the tool comes to its work after its T."""
+        """Whether the row is the rapid with which the tool comes to its work after its T, from beyond it."""
         cut = self.cut
         if row < 0 or cut.how[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
             return False
         before = row - 1
-        return (
-            before < 0
-            or bool(cut.tool[before] != cut.tool[row])
-            or bool(not cut.how[before] & FEED and (isnan(cut.x[before]) or isnan(cut.z[before])))
-        )
+        first = before < 0 or bool(cut.tool[before] != cut.tool[row])
+        unknown = not first and (isnan(cut.x[before]) or isnan(cut.z[before]))
+        first = first or (unknown and not cut.how[before] & FEED)
+        return first and cut.beyond(float(cut.x[row]), float(cut.z[row]))
 
     def _lost(self) -> Retract:
         """Only where it would leave to is known: as its next rapid does, or back as it came."""
@@ -347,37 +358,31 @@ class _Search:
                 return _sign(seg.x - self.x), 0
         return 0, 0
 
-    def _off_the_mill(self) -> Retract:
+    def _off_the_mill(self, axis: int) -> Retract:
         """A mill leaves along its own axis: on the face along Z, on the side along X."""
-        if self.how & FACE:
-            face = self.cut.front(self.place.tool)
-            far = face if np.isfinite(face) else self._farthest_z()
-            hops = [Hop(self.x, far)] if far > self.z + SAME else []
-            return Retract(Lies.MILL if hops else Lies.CLEAR, tuple(hops), (0, 1))
-        return self._off_the_side()
-
-    def _farthest_z(self) -> float:
-        own = self.cut.tool == self.place.tool
-        return float(np.nanmax(self.cut.z[own]))
-
-    def _off_the_side(self) -> Retract:
         low, high = self.cut.reach[self.place.tool]
         offset = self.cut.offsets[self.place.tool][0]
         far = low - offset if self.x < 0.0 else high - offset
-        if abs(far) <= abs(self.x) + SAME:
-            return Retract(Lies.CLEAR)
-        return Retract(Lies.MILL, (Hop(far, self.z),), (_sign(far), 0))
+        to = Hop(self.x, self._before_the_face()) if axis == FACE else Hop(far, self.z)
+        away = (0, 1) if axis == FACE else (-1 if self.x < 0.0 else 1, 0)
+        out = to.z - self.z if axis == FACE else abs(far) - abs(self.x)
+        return Retract(Lies.MILL, (to,), away) if out > SAME else Retract(Lies.CLEAR)
 
-    def _off_a_held_spindle(self) -> Retract:
-        """A live tool leaves along its own axis, as the next rapid of the program takes it off."""
-        for seg in self._ahead():
-            if seg.how & FEED or hypot(seg.x - seg.x0, seg.z - seg.z0) <= _ASIDE:
-                continue
-            if abs(seg.x - seg.x0) > abs(seg.z - seg.z0):
-                return self._off_the_side()
-            hop = Hop(self.x, max(seg.z, seg.z0))
-            return Retract(Lies.MILL, (hop,), (0, 1))
-        return Retract(Lies.MILL)
+    def _before_the_face(self) -> float:
+        face, own = self.cut.front(self.place.tool), self.cut.tool == self.place.tool
+        return face if face < inf else float(np.nanmax(self.cut.z[own]))
+
+    def _axis_of_the_mill(self) -> int:
+        """FACE or SIDE as its plane switching says, as its next rapid takes it off, or as it has gone in."""
+        cut, row = self.cut, self.row
+        near = slice(max(0, row - _BACK), row + _AHEAD)
+        own = cut.how[near][cut.tool[near] == self.place.tool]
+        for axis in (FACE, SIDE):
+            if (own & axis).any():
+                return axis
+        off = next((seg for seg in self._ahead() if not seg.how & FEED and seg.length > _ASIDE), None)
+        seg = off or self._seg(row)
+        return SIDE if abs(seg.x - seg.x0) > abs(seg.z - seg.z0) else FACE
 
     def _made(self, hops: list[Hop]) -> Retract:
         kept: list[Hop] = []

@@ -1,0 +1,138 @@
+"""How a tool is taken out of the work: worked out by hand, one case for each way of standing in it."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.restart.cut import Cut
+from core.interpreter.restart.rebuild import Rebuild
+from core.interpreter.restart.retract import Lies, Place, Retract, retract
+from core.interpreter.setup import ControlLimits
+from core.language.source import Source
+from tests.interpreter.programs import INCH, OUTPUTS, setup
+
+HEAD = "G90G94F300\nT1\nM03S900\n"
+LIMITS = ControlLimits(m_outputs={**OUTPUTS, 27: ("mill", True)})
+
+
+def cut_of(text: str) -> Cut:
+    return Rebuild(Source("PART", f"{HEAD}{text}M30\n"), setup(limits=LIMITS), lambda _count: None).cut
+
+
+def standing(text: str, line: int, x: float, z: float, nth: int = 1) -> Retract:
+    """The tip at (x, z), inches, on the ``nth`` move of this line of the text (the first is 4)."""
+    cut = cut_of(text)
+    rows = [row for row in range(len(cut)) if cut.line[row] == line]
+    n = sorted({int(cut.n[row]) for row in rows})[nth - 1]
+    return retract(cut, Place(n, 1, x * INCH, z * INCH), n)
+
+
+def hops(found: Retract) -> list[tuple[float, float]]:
+    return [(round(hop.x / INCH, 3), round(hop.z / INCH, 3)) for hop in found.hops]
+
+
+GROOVE = "X.5Z.1\nZ-.3\nG95F.002X.3\nG94F300X.5\nZ1\n"
+BORE = "X.25Z.1\nG95F.004Z-.8\nX.24\nG94F300Z.1\nX1Z1\n"
+BACK_BORE = "X.2Z.1\nZ-.8\nG95F.003X.35\nZ-.6\nX.2Z-.6\nG94F300Z.1\nX1Z1\n"
+INSIDE_GROOVE = "X.2Z.1\nZ-.5\nG95F.002X.3\nG94F300X.2\nZ.1\nX1Z1\n"
+FACE_GROOVE = "X.3Z.1\nG95F.002Z-.2\nG94F300Z.1\nX1Z1\n"
+WIDENED = "X.3Z.1\nG95F.002Z-.2\nX.35\nG94F300Z.1\nX1Z1\n"
+HOLE = "X0Z.1\nG95F.003Z-1\nG94F300Z.1\nX1Z1\n"
+TURNED = "X.4Z.1\nG95F.005Z-.9\nG94F300X.55\nZ.1\nX1Z1\n"
+FAR_SIDE = "X-.4Z.1\nG95F.005Z-.9\nG94F300X-.55\nZ.1\nX-1Z1\n"
+TWO_WAYS = "X.5Z.1\nZ-.6\nG95F.003X.4\nZ-.2\nG94F300X.5\nZ1\n"  # enters behind, and turns towards Z+
+FACED = "X.5Z.2\nG95F.003Z0\nX-.02\nG94F300Z.2\nX1Z1\n"
+PARTED = "X.6Z-.5\nG95F.002X0\nG94F300X.6\nX1Z1\n"
+THREAD = "X.5Z.3\nG33X.46Z-.6I.02K.05\nX.6\nZ1\n"
+TAP = "X0Z.2\nG95F.05Z-.5\nM04S900\nZ.2\nG94F300Z1\n"
+CROSS = "X.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\nF300X.75\nZ1\nM05\n"
+ON_THE_SIDE = "X-1Z1\nZ-.1\nM27\nM19\n(~PLZC)\n(D.9)\n(Z.8F10)\n(X.4)\n(END)\nF300X-1\nZ1\nM05\n"
+ON_THE_FACE = "X-.8Z1\nM27\nM19\nG94F10Z-.1\n(~PLXC)\n(X.4Y.3)\n(END)\nF300Z1\nM05\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "x", "z", "way"),
+    [
+        pytest.param(GROOVE, 6, 0.42, -0.3, [(0.5, -0.3)], id="groove: X out of it"),
+        pytest.param(GROOVE, 6, 0.3, -0.3, [(0.5, -0.3)], id="bottom of a groove"),
+        pytest.param(BORE, 5, 0.25, -0.4, [(0.25, 0.1)], id="bore: Z out of it"),
+        pytest.param(BORE, 6, 0.24, -0.8, [(0.24, 0.1)], id="drawn off the wall of the bore: Z"),
+        pytest.param(BACK_BORE, 6, 0.3, -0.8, [(0.2, -0.8), (0.2, 0.1)], id="recess in a bore: X in, then Z"),
+        pytest.param(
+            BACK_BORE, 7, 0.35, -0.7, [(0.35, -0.8), (0.2, -0.8), (0.2, 0.1)], id="back-boring"
+        ),
+        pytest.param(INSIDE_GROOVE, 6, 0.26, -0.5, [(0.2, -0.5), (0.2, 0.1)], id="groove in a bore"),
+        pytest.param(FACE_GROOVE, 5, 0.3, -0.15, [(0.3, 0.1)], id="groove in the face: Z"),
+        pytest.param(WIDENED, 5, 0.3, -0.1, [(0.3, 0.1)], id="groove in the face, yet to be widened: Z"),
+        pytest.param(WIDENED, 6, 0.33, -0.2, [(0.3, -0.2), (0.3, 0.1)], id="while it is widened: as it came"),
+        pytest.param(HOLE, 5, 0.0, -0.7, [(0.0, 0.1)], id="drilled hole: Z"),
+        pytest.param(TURNED, 5, 0.4, -0.5, [(0.55, -0.5), (0.55, 0.1)], id="turning: X off it, then Z"),
+        pytest.param(FAR_SIDE, 5, -0.4, -0.5, [(-0.55, -0.5), (-0.55, 0.1)], id="far side: X-"),
+        pytest.param(TWO_WAYS, 7, 0.4, -0.4, [(0.4, -0.6), (0.5, -0.6)], id="turning towards Z+"),
+        pytest.param(FACED, 6, 0.2, 0.0, [(0.5, 0.0), (0.5, 0.2)], id="facing: back along the face"),
+        pytest.param(PARTED, 5, 0.2, -0.5, [(0.6, -0.5)], id="parting off: X"),
+    ],
+)  # fmt: skip
+def test_the_way_out_of(text: str, line: int, x: float, z: float, way: list[tuple[float, float]]) -> None:
+    found = standing(text, line, x, z)
+    assert found.lies is Lies.WORK
+    assert hops(found) == way
+
+
+def test_out_of_a_thread_it_is_x_alone_first_and_never_back_along_z() -> None:
+    # S is X.5, I .02 a side: it is drawn back to S + 3 I.
+    found = standing(THREAD, 5, 0.5, -0.2)
+    assert found.lies is Lies.THREAD
+    assert hops(found)[0] == (0.56, -0.2)
+
+
+def test_a_tap_has_no_way_out_by_the_slides() -> None:
+    found = standing(TAP, 5, 0.0, -0.3)
+    assert found.lies is Lies.TAP
+    assert not found.known
+    assert standing(TAP, 7, 0.0, -0.3).lies is Lies.TAP  # on its way back too
+
+
+def test_a_live_drill_in_a_cross_hole_leaves_along_x() -> None:
+    found = standing(CROSS, 8, 0.6, -0.3)
+    assert (found.lies, hops(found)) == (Lies.MILL, [(0.75, -0.3)])
+
+
+def test_a_mill_leaves_along_its_own_axis() -> None:
+    side = standing(ON_THE_SIDE, 11, -0.4, -0.2)
+    assert side.lies is Lies.MILL
+    assert hops(side)[0][0] == -1.0  # X, away from the centre, as far as it has been
+    face = standing(ON_THE_FACE, 9, -0.6, -0.1)
+    assert (face.lies, hops(face)) == (Lies.MILL, [(-0.6, 1.0)])
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "x", "z"),
+    [(GROOVE, 6, 0.42, -0.35), (BORE, 5, 0.3, -0.4), (TURNED, 5, 0.45, -0.5)],
+)
+def test_a_tool_that_the_program_did_not_bring_there_has_no_way_known(
+    text: str, line: int, x: float, z: float
+) -> None:
+    found = standing(text, line, x, z)
+    assert (found.lies, found.known) == (Lies.UNKNOWN, False)
+
+
+def test_where_the_collet_was_opened_since_nothing_of_before_counts() -> None:
+    """The bar has been pulled: where the tool came through is metal now."""
+    pulled = "X.5Z.1\nZ-.3\nM05\nM13\nF20Z.3\nM12\nF300Z1\nX1\n"
+    found = standing(pulled, 8, 0.5, 0.0)
+    assert not found.known
+
+
+def test_the_largest_cut_of_a_program_that_only_bores_is_not_the_outside_of_its_bar() -> None:
+    """G74 inside: a wall stands around the last pass, however large that is."""
+    found = standing("X.25Z.05\nG95F.004\nG74X.5Z-.5I.125\nG94F300X1Z1\n", 6, 0.5, -0.3, nth=6)
+    assert hops(found) == [(0.48, -0.3), (0.48, 0.05)]  # .02 off the wall as the cycle is, and out along Z
+
+
+def test_a_pass_that_is_fed_off_the_part_is_left_by_x_where_passes_before_it_have_made_room() -> None:
+    rough = "X.46Z.1\nG95F.008Z-.9\nX.5\nG94F300Z.1\nX.42\nG95F.008Z-.9\nX.5\nG94F300Z.1\nX1Z1\n"  # .04 each
+    first = standing(rough, 5, 0.46, -0.4)
+    assert hops(first) == [(0.46, 0.1)]  # a groove in the face would be cut just so
+    second = standing(rough, 9, 0.42, -0.4)
+    assert hops(second) == [(0.5, -0.4), (0.5, 0.1)]
