@@ -159,6 +159,6 @@ class Frame(FrameParts):
         name = view.program or loaded.name
         self.title.show_page(self.page.NAME)
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
-        text = desk.prompt(snapshot, loaded, self.page.prompt())
+        text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
         reason = prompts.reason(view)
         self.prompt.show_text(text, answer=bool(desk.notice), asked=desk.asked, reason=reason)

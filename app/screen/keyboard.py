@@ -200,11 +200,15 @@ class Keyboard(QObject):
                 return False
             return True
         self._down[code] = event.key()
-        paired = bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= TOGETHER
-        if event.isAutoRepeat() or paired:
+        if event.isAutoRepeat() or self._paired(code):
             self._dead.add(code)  # nobody has seen it go down
             return True
         return False
+
+    def _paired(self, code: int) -> bool:
+        """Whether a press belongs to the release before it: of a server that makes repeats so."""
+        tells = self._server is not None and self._server.tells_repeats
+        return not tells and bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= TOGETHER
 
     def _stop_of(self, event: QKeyEvent) -> Callable[[], None] | None:
         """What a key does that stops the machine, whatever else is so; None for any other key."""

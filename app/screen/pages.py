@@ -19,6 +19,7 @@ It is made when it is first opened. What a page gives:
               that has the focus takes its keys by itself.
 ``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
 ``has_field()`` whether an entry has the keyboard: characters that it does not take mean nothing then.
+``asks()``    a question of its own: it goes before anything else on the prompt line.
 ``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
 ``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
 ``opened()``  it has come up; it may take the focus (the window has it otherwise).
@@ -106,6 +107,10 @@ class Page(QWidget):
     def has_field(self) -> bool:
         """Whether an entry of the page has the keyboard."""
         return False
+
+    def asks(self) -> str:
+        """A question of the page's own, which nothing hides; empty without one."""
+        return ""
 
     def prompt(self) -> str:
         """Empty: the desk's standing prompt."""

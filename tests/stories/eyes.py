@@ -124,6 +124,7 @@ class Eyes(QObject):
             "page": frame.page.NAME,
             "state": frame.title.state,
             "prompt": frame.prompt.text,
+            "forgotten": _FORGOTTEN[0],
             "theme": window.look.palette.name,
             "active": window.isActiveWindow(),
             "minimised": window.isMinimized(),
@@ -177,6 +178,7 @@ def _desk() -> Desk | None:
 
 
 _WINDOW: list[MainWindow] = []
+_FORGOTTEN = [0]  # presses that the screen has said to have forgotten
 
 
 def _machine(desk: Desk) -> Told:
@@ -213,7 +215,14 @@ def main() -> int:
         made(window, *what)
         _WINDOW.append(window)
 
+    forgotten = MainWindow.forgotten
+
+    def forgetting(window: MainWindow, seconds: float) -> None:
+        _FORGOTTEN[0] += 1
+        forgotten(window, seconds)
+
     setattr(MainWindow, "__init__", making)  # noqa: B010
+    setattr(MainWindow, "forgotten", forgetting)  # noqa: B010
     for each in (eyes.watch, eyes.listen):
         threading.Thread(target=each, daemon=True).start()
     status = console()

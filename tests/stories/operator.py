@@ -31,9 +31,11 @@ class Operator:
 
     def __init__(self, server: Server, home: Path, *arguments: str) -> None:
         self.server, self.home = server, home
+        self.once = False  # keys are pressed once, whatever the screen says of them
         self.seen: list[Told] = []  # every change of the machine since the start
         self._answers: dict[int, Any] = {}
         self._asked = 0
+        self._window = ""
         self._told = threading.Condition()
         environment = server.environment | {"TURNDESK_HOME": str(home)}
         self._errors = (home.parent / "stderr.txt").open("wb")
@@ -203,10 +205,21 @@ class Operator:
     # --- hands -----------------------------------------------------------------------------------------
 
     def key(self, key: str | int, *modifiers: str) -> None:
-        """A key goes down and comes up; modifiers before and after it."""
+        """A key goes down and comes up; modifiers before and after it.
+
+        Where the screen says that it stood still and has forgotten it, it is pressed again, as anybody would.
+        """
         held = [MODIFIERS[each] for each in modifiers]
-        self.server.down(*held, key)
-        self.server.up(key, *reversed(held))
+        before = self._forgotten()
+        while True:
+            self.server.down(*held, key)
+            self.server.up(key, *reversed(held))
+            if self.once or self._forgotten() == before:
+                return
+            before = self._forgotten()
+
+    def _forgotten(self) -> int:
+        return 0 if self.once else int(self.screen.get("forgotten", 0))
 
     def keys(self, *keys: str | int) -> None:
         """One after the other."""
@@ -214,8 +227,14 @@ class Operator:
             self.key(key)
 
     def down(self, *keys: str | int) -> None:
-        """Keys go down and stay; the server repeats the last one."""
+        """Keys go down and stay; the server repeats the last one. Forgotten ones are pressed anew."""
+        before = self._forgotten()
         self.server.down(*keys)
+        while not self.once and self._forgotten() != before:
+            before = self._forgotten()
+            self.server.up(*keys)
+            self.during(0.1)
+            self.server.down(*keys)
 
     def up(self, *keys: str | int) -> None:
         """They come up."""
@@ -262,17 +281,27 @@ class Operator:
     def touches(self, *texts: str, on: str = "") -> None:
         """As many fingers, each on a text; they come up together (inside Qt: XTEST has no touch)."""
         at = [self.find(text, on) for text in texts]
-        for do in ("press", "release"):
-            self.ask("touch", fingers=[(number, do, *place) for number, place in enumerate(at)])
+        for number, place in enumerate(at):
+            self.finger(number, place)
+        self.ask("touch", fingers=[(number, "release", *place) for number, place in enumerate(at)])
+
+    def finger(self, number: int, at: tuple[float, float]) -> None:
+        """A finger goes down there, and stays; again where the screen has forgotten it."""
+        before = self._forgotten()
+        self.ask("touch", fingers=[(number, "press", *at)])
+        while self._forgotten() != before:
+            before = self._forgotten()
+            self.ask("touch", fingers=[(number, "release", *at)])
+            self.ask("touch", fingers=[(number, "press", *at)])
 
     def minimises(self) -> None:
         """The window goes into the task bar."""
-        self.server.run("xdotool", "search", "--name", "^TurnDesk$", "windowminimize")
+        self.server.run("xdotool", "windowminimize", self._window)
         self.until(lambda: not self.screen["active"], "the window away")
 
     def comes_back(self) -> None:
         """And comes to the front again, with the keyboard."""
-        self.server.run("xdotool", "search", "--name", "^TurnDesk$", "windowactivate")
+        self.server.run("xdotool", "windowactivate", self._window)
         self.until(lambda: bool(self.screen["active"]), "the window back")
 
     def freezes(self, seconds: float) -> int:
@@ -296,6 +325,7 @@ class Operator:
     def arrives(self) -> None:
         """In front of a desk that is open and has the keyboard."""
         self.until(lambda: bool(self.seen) and bool(self.screen.get("active")), "the window")
+        self._window = self.server.run("xdotool", "getactivewindow").strip()
 
     def drives_on(self) -> None:
         """D, and the machine is ready."""
@@ -305,6 +335,7 @@ class Operator:
 
     def cycle_start(self) -> None:
         """Both palms at once, and hands off; they are held as long as a relay wants it."""
+        self.during(0.1)
         self.down("F11", "F12")
         self.during(0.15)
         self.up("F11", "F12")

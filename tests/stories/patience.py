@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Callable
 
-PATIENCE = 60.0  # s for what comes at once on a computer that is not busy
+PATIENCE = float(
+    os.environ.get("STORY_PATIENCE", "60")
+)  # s for what comes at once on a computer that is not busy
 LOOK = 0.02  # s
 
 

@@ -27,7 +27,9 @@ def frozen(operator: Operator) -> Iterator[None]:
     """Qt's thread does something else for three seconds; the control goes on."""
     number = operator.freezes(3.0)
     operator.during(0.3)
+    operator.once = True
     yield
+    operator.once = False
     assert not operator.answered(number), "it took longer than the screen was frozen"
     operator.until(lambda: operator.answered(number), "the screen again")
 
@@ -36,7 +38,9 @@ def frozen(operator: Operator) -> Iterator[None]:
 def stopped(operator: Operator) -> Iterator[None]:
     """The whole process is stopped, as by a computer that swaps."""
     operator.stops_the_process()
+    operator.once = True
     yield
+    operator.once = False
     operator.lets_it_go_on()
 
 

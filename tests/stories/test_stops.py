@@ -65,9 +65,24 @@ def test_a_shifted_stop_key_never_frees_the_stop(story: Story) -> None:
     operator.reaches("E-STOP")
     for key in ("e", "Scroll_Lock", "Pause", "h"):
         for modifiers in MODIFIERS:
-            operator.key(key, *modifiers)
+            if modifiers != ("meta",):  # with it the letters are the window manager's
+                operator.key(key, *modifiers)
     operator.keeps(lambda: operator.state == "E-STOP", 0.5, "the stop")
     released(operator)
+
+
+def back_to_automatic(operator: Operator) -> None:
+    """Esc, and in the editor what leaves it."""
+
+    def there() -> bool:
+        if operator.page == "EDITOR":
+            operator.key("F6" if operator.shows("F6 LEAVES") else "F10")
+        elif operator.page != "AUTOMATIC":
+            operator.key("Escape")
+        operator.during(0.2)
+        return operator.page == "AUTOMATIC"
+
+    operator.until(there, "the Automatic page")
 
 
 def test_the_stop_keys_act_on_every_page_and_in_every_field(story: Story) -> None:
@@ -94,12 +109,7 @@ def test_the_stop_keys_act_on_every_page_and_in_every_field(story: Story) -> Non
         operator.key("Scroll_Lock", "shift")
         operator.reaches("E-STOP")
         assert operator.page == page
-        operator.key("Escape")
-        operator.during(0.1)
-        while operator.page != "AUTOMATIC":
-            leave = "F6" if operator.shows("F6 LEAVES") else "F10"
-            operator.key(leave if operator.page == "EDITOR" else "Escape")
-            operator.during(0.2)
+        back_to_automatic(operator)
         released(operator)
 
 

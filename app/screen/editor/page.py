@@ -88,6 +88,10 @@ class EditorPage(EditorParts):
             self.abandon()
         return True
 
+    def asks(self) -> str:
+        """What F6 would do now."""
+        return self.editor.notice if self.editor.asked else ""
+
     def prompt(self) -> str:
         """The answer of the last key, or else what was found in the cursor's line."""
         if self.editor.notice:

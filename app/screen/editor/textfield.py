@@ -126,6 +126,13 @@ class TextField(QPlainTextEdit):
         else:
             super().keyPressEvent(event)
 
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """No marked text is dragged: a drag has the whole keyboard, the stop keys too, to its end."""
+        shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+        if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
+            self.setTextCursor(self.cursorForPosition(event.position().toPoint()))
+        super().mousePressEvent(event)
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         """The margin keeps its place."""
         super().resizeEvent(event)

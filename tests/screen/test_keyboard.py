@@ -1,0 +1,215 @@
+"""The keyboard layer without a server: stops, repeats, dead keys, stalls, answers."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from PySide6.QtCore import QCoreApplication, QEvent, Qt
+from PySide6.QtGui import QKeyEvent, QWindow
+from PySide6.QtWidgets import QApplication
+
+from app.desk import pages
+from app.screen.eventtime import FRAMES, STALL, EventTimes
+from app.screen.window import MainWindow
+from core.executor.commands import CycleStart, FeedHold
+from core.executor.snapshot import State
+from tests.screen.hands import Hands, Key
+from tests.screen.yes import read
+
+NONE = Qt.KeyboardModifier.NoModifier
+SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
+ALT, META = Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.MetaModifier
+MODIFIERS = [a | b | c for a, b, c in itertools.product((NONE, SHIFT), (NONE, CTRL), (NONE, ALT, META))]
+
+
+def window_of(hands: Hands) -> QWindow:
+    """What the platform sends keys to."""
+    handle = hands.window.windowHandle()
+    assert handle is not None
+    return handle
+
+
+def send(
+    hands: Hands,
+    key: Key,
+    *,
+    up: bool = False,
+    text: str = "",
+    modifiers: Qt.KeyboardModifier = NONE,
+    repeat: bool = False,
+    at: int = 0,
+) -> None:
+    """A key as the platform brings it, with a time stamp."""
+    kind = QEvent.Type.KeyRelease if up else QEvent.Type.KeyPress
+    event = QKeyEvent(kind, key, modifiers, text, repeat)
+    event.setTimestamp(at)
+    QCoreApplication.sendEvent(window_of(hands), event)
+
+
+@pytest.fixture
+def watched(hands: Hands) -> Hands:
+    """A window that sits in front and has the keyboard."""
+    hands.sees(lambda: QApplication.focusWindow() is window_of(hands))
+    return hands
+
+
+@pytest.mark.parametrize("modifiers", MODIFIERS)
+@pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])
+def test_hold_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
+    send(watched, key, modifiers=modifiers)
+    assert watched.machine.posted[-1] == FeedHold()
+
+
+@pytest.mark.parametrize("modifiers", MODIFIERS)
+@pytest.mark.parametrize("key", [Key.Key_ScrollLock, Key.Key_E])
+def test_estop_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
+    for _ in range(3):  # nor does it free itself
+        send(watched, key, modifiers=modifiers)
+        assert watched.desk.hands.estop_pressed
+
+
+def test_the_stop_key_acts_though_it_counts_as_down(watched: Hands) -> None:
+    for _ in range(3):  # its releases were lost
+        send(watched, Key.Key_Pause)
+    assert watched.machine.posted.count(FeedHold()) == 3
+
+
+def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
+    send(watched, Key.Key_S, text="s", at=10_000)
+    for at in range(10_400, 11_000, 40):  # a server that was not asked to tell repeats
+        send(watched, Key.Key_S, up=True, at=at)
+        send(watched, Key.Key_S, text="s", at=at)
+    send(watched, Key.Key_S, up=True, at=11_000)
+    assert watched.machine.now.single_block
+    send(watched, Key.Key_S, text="s", at=11_400)
+    assert not watched.machine.now.single_block
+
+
+def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> None:
+    send(watched, Key.Key_S, text="s", repeat=True)
+    send(watched, Key.Key_S, text="s", repeat=True)
+    assert not watched.machine.now.single_block
+    send(watched, Key.Key_S, up=True)
+    send(watched, Key.Key_S, text="s")
+    assert watched.machine.now.single_block
+
+
+def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
+    send(watched, Key.Key_S, text="s")
+    watched.frame.go(pages.MENU)
+    watched.window.refresh()
+    watched.frame.go(pages.AUTOMATIC)
+    watched.window.refresh()
+    send(watched, Key.Key_S, text="s", repeat=True)
+    assert watched.machine.now.single_block  # from the press, and turned once
+
+
+def test_an_answer_is_no_answer_while_another_key_is_down(watched: Hands) -> None:
+    said: list[str] = []
+    watched.desk.ask("PRESS Y", lambda: said.append("yes"))
+    read(watched.desk)
+    send(watched, Key.Key_R, text="r")  # asks something else? it is down, in any case
+    watched.desk.ask("PRESS Y", lambda: said.append("yes"))
+    read(watched.desk)
+    send(watched, Key.Key_Y, text="y")
+    send(watched, Key.Key_Y, up=True)
+    assert said == []
+    send(watched, Key.Key_R, up=True)
+    send(watched, Key.Key_Y, text="y")
+    assert said == ["yes"]
+
+
+def test_a_finger_answers_on_the_prompt_line(watched: Hands) -> None:
+    said: list[str] = []
+    watched.desk.ask("PRESS Y TO DO IT", lambda: said.append("yes"))
+    watched.window.refresh()
+    assert watched.frame.prompt.asked == "Y"
+    watched.window.press("Yes")
+    assert said == []  # a double tap is quicker than any reading
+    assert not watched.desk.asked
+    watched.desk.ask("PRESS Y TO DO IT", lambda: said.append("yes"))
+    read(watched.desk)
+    watched.window.press("Yes")
+    assert said == ["yes"]
+
+
+class Time:
+    """Of the test's own."""
+
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_what_waited_behind_a_stall_is_late() -> None:
+    time = Time()
+    times = EventTimes(time)
+    for _ in range(3):
+        time.now += 0.016
+        times.frame()
+    assert not times.late(50_000)  # the stamps count from somewhere else: now
+    before, during = 50_100, 52_900
+    time.now += 3.0
+    times.alive()
+    assert times.late(before)
+    assert times.late(during)
+    for _ in range(FRAMES):
+        time.now += 0.016
+        times.frame()
+    assert times.late(during)
+    assert not times.late(50_000 + round(1000 * 3.0 + 32))
+    assert times.stalled == pytest.approx(3.0)
+
+
+def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
+    time = Time()
+    times = EventTimes(time)
+    assert not times.late(50_000)
+    for _ in range(100):
+        time.now += 0.01
+        times.frame()
+    assert not times.late(51_000 - round(900 * STALL))
+    assert times.late(51_000 - round(1100 * STALL))
+
+
+def test_stamps_that_run_over_are_no_stall() -> None:
+    time = Time()
+    times = EventTimes(time)
+    assert not times.late(2**32 - 5)
+    time.now += 0.02
+    assert not times.late(15)
+    assert times.at(15) == pytest.approx(time.now, abs=0.01)
+
+
+def test_palms_late_by_their_stamps_start_nothing(watched: Hands) -> None:
+    watched.load("pin")
+    times = watched.window.times
+    now = round(1000 * times.clock())
+    send(watched, Key.Key_F5, at=now)  # the stamps are of our own clock
+    send(watched, Key.Key_F11, at=now - 2000)
+    send(watched, Key.Key_F12, at=now - 2000)
+    assert CycleStart() not in watched.machine.posted
+    assert not watched.desk.hands.palms.down
+    assert "FORGOTTEN" in watched.desk.notice
+
+
+def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:
+    watched.load("pin")
+    now = round(1000 * watched.window.times.clock())
+    send(watched, Key.Key_F5, at=now)
+    send(watched, Key.Key_F11, at=now - 280)  # both within what is not late
+    watched.desk.hands.palms.down["left"] -= 0.4
+    send(watched, Key.Key_F12, at=now)
+    assert watched.desk.hands.palms.dead
+    assert watched.machine.now.state is State.IDLE
+
+
+def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> None:
+    assert isinstance(watched.window, MainWindow)
+    watched.window.hide()
+    watched.window.show()
+    send(watched, Key.Key_Pause)
+    assert watched.machine.posted[-1] == FeedHold()
+    assert watched.machine.posted.count(FeedHold()) == 1
