@@ -29,6 +29,7 @@ from app.desk.editing.editor import Editor
 from app.desk.home import home
 from app.desk.keep import NothingKept
 from app.desk.offsets.effect import Effect
+from app.desk.program_file import ProgramFile
 from app.desk.session import Session, Workshop
 from app.desk.shelf import Shelf
 from app.desk.words import tr
@@ -49,6 +50,7 @@ SUPERVISED = {
     "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
     "status": "STATUS.JSON",
     "mtconnect": "MTCONNECT",
+    "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
     "inverter": "WHAT TALKS TO THE INVERTER",
 }
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
@@ -68,25 +70,29 @@ def build_desk(
     desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
     thread, log = ExecutorThread(executor, clock), Log()
     close_floor = _shop_floor(desk, executor, journal)
+    file = ProgramFile(lambda: desk.session.now)
 
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
     let_go = desk.shut
 
     def shut() -> None:
         watchdog.close()
+        file.close()
         thread.close()  # first of what can stop the machine: nothing may keep the machine from being stopped
         close_floor()
         let_go()
         lost = journal.close()
         if lost:
-            sys.stderr.write(f"turndesk: {lost} could not be kept and are lost: {journal.trouble}\n")
+            sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")
         log.close()
 
     desk.shut = shut
+    desk.differs = lambda: file.differs
     desk.unkept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     thread.start()
     watchdog.start()
+    file.start()
     return desk
 
 

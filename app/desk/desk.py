@@ -70,7 +70,9 @@ class Desk(DeskParts):
             return self.notice
         if page:
             return prompts.alarm_of(snapshot, self.release_words) or page
-        return prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
+        standing = prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
+        other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
+        return f"{other} · {standing}" if other else standing
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""

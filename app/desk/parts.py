@@ -65,6 +65,7 @@ class DeskParts:
     simulated: bool = True
     shut: Callable[[], None] = _nothing
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
+    differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
     unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day

@@ -29,7 +29,7 @@ SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 def test_an_offsets_file_takes_the_place_of_the_store() -> None:
     tools, secondary = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
-    assert sorted(tools) == [1, 2, 3, 20]
+    assert sorted(tools) == [1, 2, 3, 4, 20]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
 
@@ -81,7 +81,7 @@ def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(
 def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     book = book_of(chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml")), journal)
-    assert sorted(book.tools) == [1, 2, 3, 20]
+    assert sorted(book.tools) == [1, 2, 3, 4, 20]
     assert "READ ONLY" in book.change(Kind.TOOL, 1, {"x": 1.0}, "try")
     assert "READ ONLY" in book.clear_secondary()
     assert "READ ONLY" in book.undo(Kind.TOOL)

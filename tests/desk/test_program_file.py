@@ -1,0 +1,88 @@
+"""The file that was read, changed behind the desk's back by somebody else."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+from app.desk.program_file import ProgramFile
+from app.desk.session import Loaded, Phase
+from core.language.source import load_source
+
+TEXT = "G90G94\nX.5F10\nM30\n"
+
+
+def on_the_desk(path: Path) -> Loaded:
+    """What loading this file leaves on the desk."""
+    return Loaded(Phase.READY, path, source=load_source(path))
+
+
+def touched(path: Path, text: str) -> None:
+    """Written by somebody, a second later by the clock of the disk."""
+    before = path.stat().st_mtime_ns if path.exists() else 0
+    path.write_text(text)
+    os.utime(path, ns=(before + 10**9, before + 10**9))
+
+
+def test_a_file_that_stays_is_no_news(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    file = ProgramFile(lambda: on_the_desk(path))
+    file.look()
+    assert file.differs == ""
+    touched(path, TEXT)  # saved again as it was
+    file.look()
+    assert file.differs == ""
+
+
+def test_a_changed_file_is_told_until_it_is_read_or_put_back(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    desk = [on_the_desk(path)]
+    file = ProgramFile(lambda: desk[0])
+    file.look()
+    touched(path, TEXT.replace("X.5", "X1.5"))
+    file.look()
+    assert file.differs.startswith("part.nc HAS CHANGED")
+    touched(path, TEXT)
+    file.look()
+    assert file.differs == ""
+    touched(path, TEXT.replace("X.5", "X2.5"))
+    desk[0] = on_the_desk(path)
+    file.look()
+    assert file.differs == ""
+
+
+def test_a_file_that_is_gone_or_spoilt_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    loaded = on_the_desk(path)
+    file = ProgramFile(lambda: loaded)
+    path.write_bytes(b"G90\0\0")
+    file.look()
+    assert file.differs.startswith("part.nc HAS CHANGED")
+    path.unlink()
+    file.look()
+    assert file.differs.startswith("part.nc IS NOT ON THE DISK")
+
+
+def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
+    path, called = tmp_path / "ring.mpf", tmp_path / "cut.spf"
+    path.write_text(TEXT)
+    called.write_text("G1 X5\nM17\n")
+    loaded = on_the_desk(path)
+    assert loaded.source is not None
+    loaded = replace(loaded, source=replace(loaded.source, subprograms=(load_source(called),)))
+    file = ProgramFile(lambda: loaded)
+    file.look()
+    assert file.differs == ""
+    touched(called, "G1 X50\nM17\n")
+    file.look()
+    assert file.differs.startswith("cut.spf HAS CHANGED")
+
+
+def test_without_a_program_there_is_nothing_to_compare() -> None:
+    file = ProgramFile(Loaded)
+    file.look()
+    assert file.differs == ""
