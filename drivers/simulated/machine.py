@@ -168,6 +168,11 @@ class SimMachine:
             self._plant.advance()
             return tuple(servo.p for servo in self._plant.servos)
 
+    def outputs(self) -> dict[str, bool]:
+        """What hangs on the outputs, whatever anybody has written."""
+        with self._plant.lock:
+            return dict(self._plant.terminals.outputs)
+
     def spindle_turns(self) -> float:
         """How many turns the spindle has really made, signed."""
         with self._plant.lock:

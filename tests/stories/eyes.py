@@ -7,6 +7,7 @@ there: ``{"ask": "freeze", "seconds": 2}``, or fingers that touch: ``{"ask": "to
 
 from __future__ import annotations
 
+import ctypes
 import json
 import sys
 import threading
@@ -112,6 +113,8 @@ class Eyes(QObject):
             "freeze": lambda told: time.sleep(told["seconds"]),
             "touch": self._finger,
             "break": _break,
+            "spoil": _spoil,
+            "kill": _kill,
         }
         tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
 
@@ -161,6 +164,30 @@ def _break(told: Told) -> None:
     getattr(desk.station, told["name"])(*told["values"])
 
 
+def _executor() -> Any:
+    """What ticks, by its thread."""
+    thread = next(each for each in threading.enumerate() if each.name == "executor")
+    return thread, getattr(thread, "_target").__self__.executor  # noqa: B009 - for this process alone
+
+
+def _spoil(told: Told) -> None:
+    """A driver raises what nobody has thought of, whenever this is asked of one of its ports."""
+
+    def odd(*_what: object) -> None:
+        raise RuntimeError("nobody has thought of this")
+
+    _thread, executor = _executor()
+    setattr(getattr(executor._ports, told["port"]), told["call"], odd)
+
+
+def _kill(_told: Told) -> None:
+    """The executor's thread ends, wherever it is."""
+    thread, _ = _executor()
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+        ctypes.c_ulong(thread.ident), ctypes.py_object(KeyboardInterrupt)
+    )
+
+
 def _field(widget: QWidget | None) -> str:
     if isinstance(widget, QLineEdit):
         return widget.text()
@@ -185,8 +212,12 @@ def _machine(desk: Desk) -> Told:
     """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
     shot = desk.snapshot()
     station = desk.station
-    true = station.true_position() if isinstance(station, SimMachine) else shot.actual
+    played = isinstance(station, SimMachine)
+    true = station.true_position() if played else shot.actual
+    outputs = station.outputs() if played else dict.fromkeys(shot.outputs, True)
     return {
+        "turning": round(station.spindle_rpm() if played else shot.rpm_actual),
+        "lit": sorted(name for name, on in outputs.items() if on),
         "state": shot.state.value,
         "line": shot.line,
         "parts": shot.parts,

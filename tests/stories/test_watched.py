@@ -1,0 +1,124 @@
+"""What is late, jammed or broken is seen and told: a stalled control, a slide at rest, a thread that dies."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.stories.conftest import INCH, Story
+from tests.stories.operator import Operator
+
+DWELL = "G90G94T1\nM03S600\nM08\nG01X.05Z0F20\nG04F5\nX.1\nM30\n"
+STOP = "G90G94T1\nM03S600\nM08\nG01X.05Z0F20\nM00\nX.1\nM30\n"
+CUT = "G90G94T1\nM03S600\nM08\nG01X0Z-5.F10\nM30\n"
+TOOLS = {1: (0.0, 0.0)}
+FED = {"[machine]\n": "[machine]\nfeeder = true\n"}
+
+
+def stalls(operator: Operator, seconds: float) -> None:
+    """The whole process, as a computer that swaps."""
+    operator.stops_the_process()
+    operator.during(seconds)
+    operator.lets_it_go_on()
+
+
+def cutting(operator: Operator) -> None:
+    operator.drives_on()
+    operator.starts()
+    operator.until(lambda: operator.slides[1] < -8.0, "a cut")
+    assert operator.machine["lit"] == ["collet", "coolant"]
+
+
+@pytest.mark.parametrize("text", [DWELL, STOP], ids=["in a dwell", "at M00"])
+def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unread(
+    story: Story, text: str
+) -> None:
+    operator = story.begins(text, tools=TOOLS, changes=FED)
+    operator.drives_on()
+    operator.starts()
+    operator.until(lambda: operator.is_at((0.05 * INCH, 0.0)) and operator.machine["rpm"] > 590, "standstill")
+    operator.reaches("WAITING" if text is DWELL else "PROGRAM STOP")
+    stalls(operator, 0.7)
+    operator.until(lambda: operator.machine["outputs"] == ["collet"], "coolant off")
+    operator.reaches("FEED HOLD" if text is DWELL else "PROGRAM STOP")
+    operator.sees("THE SPINDLE STARTS AT 600 RPM FORWARD")
+    operator.sees("COOLANT COMES ON")
+    operator.until(lambda: operator.machine["rpm"] == 0, "a spindle that stands")
+    operator.keeps(lambda: operator.is_at((0.05 * INCH, 0.0)), 1.0, "rest")
+    operator.cycle_start()
+    operator.until(lambda: operator.machine["outputs"] == ["collet", "coolant"], "coolant")
+    operator.until(lambda: not operator.is_at((0.05 * INCH, 0.0)), "feeding")
+    assert operator.machine["rpm"] > 500
+    operator.reaches("READY")
+    operator.sees("NOT COUNTED AS A PART")
+    assert operator.machine["parts"] == 0
+    operator.until(lambda: len(operator.events("uncounted")) == 1, "told in the store")
+    (said,) = operator.events("disturbed")
+    assert "SWITCHED OFF: SPINDLE, COOLANT" in said
+    operator.until(lambda: operator.status["parts"] == 0, "status.json")
+
+
+def test_a_slide_jammed_beside_its_place_does_not_stand_in_ready(story: Story) -> None:
+    operator = story.begins(CUT, tools=TOOLS)
+    operator.drives_on()
+    operator.during(0.5)
+    operator.breaks("jam", "Z")
+    operator.breaks("push", "Z", 1.9)
+    operator.reaches("ALARM")
+    operator.sees("AN AXIS IS NOT WHERE IT OUGHT TO STAND")
+    operator.breaks("jam", "Z", False)
+    operator.keeps(lambda: operator.is_at((0.0, 1.9)), 1.0, "no leap when it comes free")
+    operator.until(lambda: operator.status["alarms"] != [], "status.json")
+    operator.key("r")
+    operator.reaches("DRIVES OFF")
+    operator.key("d")
+    operator.reaches("READY")
+    operator.keeps(lambda: operator.is_at((0.0, 1.9)), 1.0, "no leap with the drives on")
+
+
+def test_an_encoder_that_stops_as_a_hold_begins_stops_the_machine(story: Story) -> None:
+    operator = story.begins(CUT, tools=TOOLS)
+    cutting(operator)
+    before = operator.slides[1]
+    operator.breaks("encoder_stuck", "Z")
+    operator.key("Pause")
+    operator.reaches("ALARM")
+    operator.rests()
+    assert abs(operator.slides[1] - before) < 10.0
+    assert operator.machine["lit"] == ["collet"]
+    operator.until(lambda: any(text.startswith(("116", "117", "102")) for text in operator.events("alarm")))
+
+
+def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> None:
+    operator = story.begins(CUT, tools=TOOLS)
+    operator.reaches("DRIVES OFF")
+    operator.during(1.0)
+    operator.breaks("push", "X", 0.5)
+    operator.sees("AN AXIS HAS MOVED AND NOBODY ASKED FOR IT")
+
+
+@pytest.mark.parametrize(("port", "call"), [("io", "safe"), ("axes", "stop"), ("spindle", "coast")])
+def test_estop_with_a_driver_that_breaks_leaves_nothing_on_that_obeys(
+    story: Story, port: str, call: str
+) -> None:
+    operator = story.begins(CUT, tools=TOOLS)
+    cutting(operator)
+    operator.ask("spoil", port=port, call=call)
+    operator.key("e", "shift")
+    operator.reaches("E-STOP")
+    operator.until(lambda: operator.machine["turning"] == 0, "a spindle that stands")
+    operator.rests()
+    assert operator.machine["lit"] == ["collet"]
+    operator.sees("THE MACHINE COULD NOT BE MADE SAFE")
+    operator.sees("PRESS E-STOP")
+
+
+def test_a_control_whose_thread_dies_in_a_cut_stops_and_the_screen_says_so(story: Story) -> None:
+    operator = story.begins(CUT, tools=TOOLS)
+    cutting(operator)
+    operator.ask("kill")
+    operator.sees("CONTROL SILENT")
+    operator.sees("THE CONTROL DOES NOT ANSWER")
+    operator.until(lambda: operator.machine["turning"] == 0, "a spindle that stands")
+    operator.rests()
+    assert operator.machine["lit"] == ["collet"]
+    operator.until(lambda: any(text.startswith("908") for text in operator.events("alarm")), "in the store")
