@@ -27,6 +27,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Load
 from core.executor.job import Proof, make_job
 from core.interpreter.setup import ToolOffset
 from core.language.source import Source
+from drivers.simulated import SimMachine
 
 SHOWN = 0.01  # s between two lines of the child
 STALLS = (0.1, 0.3, 0.5, 1.0, 5.0)
@@ -90,15 +91,19 @@ class Child:
 
     def _show(self) -> None:
         while True:
-            shot = self.desk.snapshot()
+            shot, played = self.desk.snapshot(), self.desk.station
+            rpm, on, at = shot.rpm_actual, set(shot.outputs), shot.actual[:2]
+            if isinstance(played, SimMachine):  # as the machine really is, also where nobody looks any more
+                rpm, at = played.spindle_rpm(), played.true_position()[:2]
+                on = {name for name, lit in played.outputs().items() if lit}
             told = {
                 "t": time.monotonic(),
                 "stamp": shot.t,
                 "state": shot.state.value,
                 "why": shot.waiting_for or (shot.stop.cause if shot.stop else ""),
-                "at": shot.actual[:2],
-                "rpm": shot.rpm_actual,
-                "on": sorted(shot.outputs - {"collet"}),
+                "at": at,
+                "rpm": rpm,
+                "on": sorted(on - {"collet"}),
                 "alarms": [f"{alarm.number} {alarm.text}" for alarm in shot.alarms],
                 "starts": list(shot.announced),
                 "refused": shot.start_refused,
