@@ -34,7 +34,7 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
     allowed = np.zeros(len(free))
     allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    joints[:, :2] = _eased(joints[:, :2].T.copy(), s, _clear(free), allowed).T
+    joints[:, :2] = _eased(joints[:, :2].T.copy(), s, free, allowed).T
     return moved(pieces, joints, free)
 
 
@@ -123,8 +123,12 @@ class _Window(NamedTuple):
         return mean
 
 
-def _eased(joints: FloatArray, s: FloatArray, clear: IntArray, allowed: FloatArray) -> FloatArray:
-    """Joints (2, n+1) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most."""
+def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArray) -> FloatArray:
+    """Joints (2, n+1) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most.
+
+    Every run of ``free`` (n+1,) ones is eased by itself: nothing before a corner moves for what lies behind.
+    """
+    clear, apart, fixed = _clear(free), _apart(free, _BACK), np.flatnonzero(~free)
     around, back = _Window.of(np.minimum(clear, _AROUND)), _Window.of(np.minimum(clear, _BACK))
     span = np.maximum(s[around.behind - 1] - s[around.first], 1e-12)
     off = s - around.mean(s[None])[0]
@@ -143,13 +147,29 @@ def _eased(joints: FloatArray, s: FloatArray, clear: IntArray, allowed: FloatArr
         if not over.any():
             return eased
         for sign in (1.0, -1.0):
-            most = _largest(np.maximum(sign * over, 0.0), _BACK)
+            most = _largest(np.maximum(sign * over, 0.0), _BACK, apart)
+            most[:, fixed] = 0.0
             eased = eased + sign * back.mean(most)
     return np.clip(eased, joints - allowed, joints + allowed)
 
 
-def _largest(values: FloatArray, around: int) -> FloatArray:
+def _apart(free: BoolArray, around: int) -> IntArray | None:
+    """Places (n+1,) for the joints that keep runs of free ones more than ``around`` apart; None: one run."""
+    begins = free.copy()
+    begins[1:] &= ~free[:-1]
+    if np.count_nonzero(begins) < 2:
+        return None
+    places: IntArray = np.arange(len(free)) + around * np.cumsum(begins)
+    return places
+
+
+def _largest(values: FloatArray, around: int, apart: IntArray | None) -> FloatArray:
     """Largest (k, m) of the values, none below 0, ``around`` each: of two, four, … neighbours at a time."""
+    if apart is not None:
+        spread = np.zeros((len(values), int(apart[-1]) + 1))
+        spread[:, apart] = values
+        near: FloatArray = _largest(spread, around, None)[:, apart]
+        return near
     width, reach = 2 * around + 1, 1
     largest = np.zeros((len(values), values.shape[1] + 2 * around))
     largest[:, around : around + values.shape[1]] = values

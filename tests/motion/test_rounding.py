@@ -183,3 +183,24 @@ def test_a_turn_of_c_behind_a_path_under_way_keeps_its_length() -> None:
     path = builder.path()
     assert path.pieces.length[-1] == pytest.approx(10.0)
     assert path.point(path.s[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
+
+
+_short = st.lists(
+    st.tuples(
+        st.sampled_from([0.02, 0.00127, 1e-6, 0.0, -0.0004]), st.sampled_from([0.02, 1e-6, 0.0, -0.00127])
+    ),
+    min_size=1,
+    max_size=6,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(_short, _short)
+def test_nothing_before_a_corner_moves_for_what_comes_behind_it(
+    before: list[tuple[float, float]], behind: list[tuple[float, float]]
+) -> None:
+    """The slides may have passed it by then."""
+    ends = np.cumsum([(60.0, 40.0), *before, (-5.0, -0.01), *behind], axis=0).tolist()
+    blocks = polyline([(x, z) for x, z in ends], 60.0)
+    alone = joints(build_path(blocks[: len(before) + 1], STEPPED))
+    assert joints(build_path(blocks, STEPPED))[: len(alone)] == pytest.approx(alone, abs=1e-12)
