@@ -46,6 +46,14 @@ class Segments(NamedTuple):
     a: FloatArray
 
 
+_NO_MOTION = 1e-6  # s; what rounding may leave of a last piece, on a clock of hours
+
+
+def at_rest(horizon: float, now: float) -> bool:
+    """Whether what was queued is over: one rule for whoever asks, with a tolerance for rounding."""
+    return horizon <= now + _NO_MOTION
+
+
 class AxisSample(NamedTuple):
     """What the axes do at one instant; tuples in the sink's order of axes."""
 
@@ -143,10 +151,14 @@ class Cam(NamedTuple):
 
 
 class Geared(NamedTuple):
-    """Where on its cam a driver is: turns from ``zero``, and turns by which it is behind the spindle."""
+    """Where on its cam a driver is: turns from ``zero``, and turns by which it is behind the spindle.
+
+    ``speed`` is what the spindle turns by its encoder, turns/s, positive the way the cam counts.
+    """
 
     turns: float
     lag: float
+    speed: float
 
 
 class Gear(Protocol):

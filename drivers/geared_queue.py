@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.ports import Cam, DriverError, Geared, Segments
+from core.ports import Cam, DriverError, Geared, Segments, at_rest
 from drivers.gearing import Gearing, Motion, Slides, State
 from drivers.phase import Phase
 from drivers.setpoint_queue import SetpointQueue
@@ -26,7 +26,7 @@ class GearedQueue(SetpointQueue):
     def geared(self) -> Geared | None:
         """As ``core.ports.Gear`` says."""
         gearing = self._gearing
-        return None if gearing is None else Geared(gearing.turns, gearing.lag)
+        return None if gearing is None else Geared(gearing.turns, gearing.lag, gearing.spindle)
 
     def mesh(self, cam: Cam, phase: Phase, now: float) -> None:
         """Follow the spindle, whose ``phase`` is that of ``now``; raises as ``core.ports.Gear`` says."""
@@ -34,7 +34,7 @@ class GearedQueue(SetpointQueue):
         if gearing is not None and (gearing.begun or gearing.fits(cam)):
             gearing.load(cam)
             return
-        if gearing is None and self.horizon(now) > now:
+        if gearing is None and not at_rest(self.horizon(now), now):
             raise DriverError("slides have to rest before they can follow the spindle", "broken-path")
         self._gearing = Gearing(cam, phase, self._slides, self._rest)
 
@@ -54,7 +54,8 @@ class GearedQueue(SetpointQueue):
         if self._gearing is None:
             return super().horizon(now)
         then = self._gearing.cam.then
-        return self._gearing.ends() + (0.0 if then is None else float(then.t[-1] + then.dt[-1]))
+        ends = self._gearing.ends() + (0.0 if then is None else float(then.t[-1] + then.dt[-1]))
+        return max(ends, now + self.commit)  # foretold as over, and yet not played to its end
 
     def demand_at(self, t: float) -> State:
         return super().demand_at(t) if self._gearing is None else self._gearing.at(t)

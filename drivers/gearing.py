@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from core.ports import Cam, DriverError
 from drivers.phase import Phase
+from drivers.piece import Piece
 from drivers.setpoint_queue import SetpointQueue, Tolerance
 
 State = tuple[tuple[float, ...], tuple[float, ...]]
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 _STANDS = 1e-6  # turns/s
-_RESERVE = 1.2  # of an axis' acceleration, to follow the spindle's
+_RESERVE = 1.2  # of an axis' acceleration, for its way and the spindle's changes of speed together
+_LEFT = 0.2  # of it for those changes at least, where the way alone asks for much
 
 
 class Slides(NamedTuple):
@@ -23,6 +26,14 @@ class Slides(NamedTuple):
     amax: tuple[float, ...]
     commit: float  # s
     tolerance: Tolerance  # of setpoints in time
+
+
+class Wall(NamedTuple):
+    """From ``begins`` to ``ends`` (turns) the way may be played at the root of ``square``, turns²/s²."""
+
+    begins: float
+    ends: float
+    square: float
 
 
 class Gearing:
@@ -42,18 +53,26 @@ class Gearing:
         self._speed = cam.sign * phase.speed  # at which it is played, turns/s
         if self._speed < _STANDS:
             raise DriverError("the spindle does not turn; no slide can follow it", "thread-no-encoder")
-        position, velocity = slides.tolerance.position, slides.tolerance.velocity
-        per_turn = Tolerance(position, tuple(v / self._speed for v in velocity))
-        self._queue = SetpointQueue(slides.names, standing, 0.0, per_turn)
+        self._queue = self._empty()
+        self._walls: list[Wall] = []
+        self._softest = math.inf
         self.load(cam)
 
     def load(self, cam: Cam) -> None:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
             raise DriverError("slides that follow the spindle cannot change to another index", "broken-path")
-        self._queue.commit = self._slides.commit * self._speed
-        self._queue.splice(cam.way, self.turns)
-        self._cam = cam
+        queue = self._queue if self.begun else self._empty()  # nothing of a way that is not begun stays
+        queue.commit = self._slides.commit * self._speed
+        queue.trim(self.turns)
+        queue.splice(cam.way, self.turns)
+        self._cam, self._queue = cam, queue
+        self._walls, self._softest = self._walls_of(queue.pieces)
+
+    def _empty(self) -> SetpointQueue:
+        position, velocity = self._slides.tolerance.position, self._slides.tolerance.velocity
+        per_turn = Tolerance(position, tuple(v / self._speed for v in velocity))
+        return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
     def fits(self, cam: Cam) -> bool:
         """Whether it counts from the same index."""
@@ -63,6 +82,11 @@ class Gearing:
     def cam(self) -> Cam:
         """As loaded last."""
         return self._cam
+
+    @property
+    def spindle(self) -> float:
+        """Turns a second of the spindle itself, positive the way the cam counts."""
+        return self._cam.sign * self._phase.speed
 
     @property
     def lag(self) -> float:
@@ -117,22 +141,50 @@ class Gearing:
         """On to where the spindle is at ``t``, or as far towards it as the slides can come."""
         dt, self._t = t - self._t, t
         goal, speed = self._goal(t), self._cam.sign * self._phase.speed
-        top, bend = self._limits()
+        top, bend = self._limits(2.0 * self._speed * dt)
         need = (goal - self.turns) / dt
-        if top == math.inf or (0.0 <= need <= top and abs(need - self._speed) <= bend * dt):
+        if need <= top and (bend == math.inf or (need >= 0.0 and abs(need - self._speed) <= bend * dt)):
             self.turns, self._speed = goal, max(speed, 0.0)
             return
-        behind = goal - speed * dt - self.turns
-        wanted = speed + math.copysign(math.sqrt(2.0 * bend * abs(behind)), behind)
-        wanted = min(max(wanted, self._speed - bend * dt), self._speed + bend * dt)
-        self._speed = min(max(wanted, 0.0), top)
+        if bend < math.inf:
+            behind = goal - speed * dt - self.turns
+            wanted = speed + math.copysign(math.sqrt(2.0 * bend * abs(behind)), behind)
+            least, most = self._speed - bend * dt, self._speed + bend * dt
+            top = min(max(min(max(wanted, 0.0), top), least), most)
+        self._speed = top
         self.turns += self._speed * dt
 
-    def _limits(self) -> tuple[float, float]:
-        """Speed and change of speed, turns/s and turns/s², that no slide exceeds here; endless at rest."""
-        _, per_turn = self._queue.demand_at(self.turns)
-        top = bend = math.inf
-        for v, vmax, amax in zip(per_turn, self._slides.vmax, self._slides.amax, strict=True):
+    def _limits(self, reach: float) -> tuple[float, float]:
+        """Speed and change of speed, turns/s and turns/s², that no slide exceeds here; endless at rest.
+
+        The speed is also that from which what comes on the way can still be met, looked at ``reach`` turns
+        earlier: a setpoint holds for its interval.
+        """
+        _, per_turn, accel = self._queue.motion_at(self.turns)
+        square, bend = math.inf, math.inf
+        for begins, ends, most in self._walls:
+            if ends > self.turns:
+                ahead = max(begins - self.turns - reach, 0.0)
+                square = min(square, most + 2.0 * self._softest * ahead if ahead else most)
+        for v, a, amax in zip(per_turn, accel, self._slides.amax, strict=True):
             if v:
-                top, bend = min(top, vmax / abs(v)), min(bend, _RESERVE * amax / abs(v))
-        return top, bend
+                spare = _RESERVE * amax - abs(a) * self._speed**2
+                bend = min(bend, max(spare, _LEFT * amax) / abs(v))
+        return math.sqrt(square), bend
+
+    def _walls_of(self, pieces: Sequence[Piece]) -> tuple[list[Wall], float]:
+        """How fast each piece of the way may be played, and the change of speed that all of them bear."""
+        walls, softest = [], math.inf
+        for piece in pieces:
+            most = math.inf
+            ends = zip(piece.v, piece.a, self._slides.vmax, self._slides.amax, strict=True)
+            for v, a, vmax, amax in ends:
+                fastest = max(abs(v), abs(v + a * piece.dt))
+                if fastest:
+                    most = min(most, (vmax / fastest) ** 2)
+                    softest = min(softest, _RESERVE * amax / fastest)
+                if a:
+                    most = min(most, amax / abs(a))
+            if most < math.inf:
+                walls.append(Wall(piece.t, piece.t + piece.dt, most))
+        return walls, softest

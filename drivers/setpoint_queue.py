@@ -64,6 +64,17 @@ class SetpointQueue:
             return self._pieces[0].p, self._zero
         return at(self._pieces[index], t)
 
+    def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """Position, velocity and acceleration at ``t``."""
+        p, v = self.demand_at(t)
+        index = bisect_right(self._starts, t) - 1
+        return p, v, self._pieces[index].a if index >= 0 and t < self._end else self._zero
+
+    @property
+    def pieces(self) -> Sequence[Piece]:
+        """What is queued, with what has not been forgotten of the past."""
+        return self._pieces
+
     def splice(self, segments: Segments, now: float) -> None:
         """Replace everything from ``segments.t[0]`` on.
 

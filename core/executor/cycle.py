@@ -269,12 +269,12 @@ class Cycle:
         spindle = self._bench.spindle
         if not needs_speed(block) or self._retreating or not spindle.lost:
             return
-        if block.kind is Kind.THREAD:
+        if block.kind is Kind.THREAD and not self._mover.release():
             self._bench.say("thread", "spindle lost in a thread")
             self._mover.retreat(block)
             self._retreating = True
             self._change(State.HOLDING)
-        elif (block.per_rev and not block.modal.c_locked) or spindle.fails:
+        elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
 
     def _show_later(self, block: Block | None) -> None:

@@ -7,22 +7,28 @@ the spindle's speed in that they have to stay within what the slides can do.
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.thread_way import Way
+from core.executor.alarms import TroubleError
+from core.executor.thread_way import Phases, Way
 from core.executor.turns import Turns
 from core.interpreter.blocks import Block
 from core.motion.limits import MotionLimits
-from core.ports import AxisSink, Cam, DriverError, Gear, Segments, Stop
+from core.ports import AxisSink, Cam, DriverError, Gear, Geared, Segments, Stop
+
+_log = logging.getLogger(__name__)
 
 _SHARE = 0.9  # of the acceleration; the rest is for a spindle that turns faster than foretold
-_EARLY = 0.01  # s between the plan and the first motion, doubled where that was too short
-_TRIES = 4
+_EARLY = 0.01  # s between the plan and what it changes, doubled where that was too short
+_EARLIER = tuple(_EARLY * 2**attempt for attempt in range(4))
 _CHANGED = 0.005  # of the speed: more, and what is still to come is planned again
+_SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other plan
 _ROUNDING = 1e-9  # turns
+_BEGINS = {"late", "broken-path"}  # what a driver says of setpoints behind a start that is near
 _AT_START = 1e-6  # mm
 _ALLOWED = 0.01  # turns, between setpoints and spindle
 
@@ -68,8 +74,8 @@ class GearedPass:
     def begin(self) -> None:
         """Choose the index and hand the pass over, from rest."""
         self._stopped = False
-        for attempt in range(_TRIES):
-            if self._mesh_from_rest(_EARLY * 2**attempt):
+        for early in _EARLIER:
+            if self._mesh_from_rest(early):
                 return
         raise DriverError("the thread could not be queued in time", "late")
 
@@ -79,10 +85,11 @@ class GearedPass:
         state = self._turns.at(self._axes.now())
         if self._stopped or geared is None or state is None:
             return
-        self.worst = max(self.worst, abs(geared.lag))
+        if self._ramp < geared.turns < self._leaves:
+            self.worst = max(self.worst, abs(geared.lag))
         speed = self._sign * state[1]
-        if abs(speed - self._speed) > _CHANGED * self._speed and speed > 0.5 * self._speed:
-            self._go_on_at(speed)
+        if abs(speed - self._speed) > _CHANGED * self._speed and speed > _SLOWEST:
+            self._go_on_at(speed, geared)
 
     def lost_step(self) -> bool:
         """Whether setpoints and spindle have come too far apart for a good thread; True once a pass."""
@@ -92,11 +99,17 @@ class GearedPass:
     def hold(self) -> None:
         """A pass that has not begun to move does not begin; any other is finished."""
         t = self._axes.now() + self._axes.commit + _EARLY
-        if self._stopped or self._reached(t) >= -self._ramp:
+        geared = self._gear.geared()
+        if self._stopped or geared is None or self._reached(geared, t) >= -self._ramp:
             return
         place, _ = self._axes.demand_at(t)
         still = np.zeros((1, len(place)))
-        self._axes.splice(Segments(np.array([t]), np.zeros(1), np.array([place]), still, still))
+        try:
+            self._axes.splice(Segments(np.array([t]), np.zeros(1), np.array([place]), still, still))
+        except DriverError as error:
+            if error.code not in _BEGINS:
+                raise
+            return  # it ends behind its pull-out
         self._stopped = True
 
     def go_on(self) -> None:
@@ -114,48 +127,59 @@ class GearedPass:
 
     def _mesh_from_rest(self, early: float) -> bool:
         """Plan the whole pass; False when that came too late."""
-        now = self._axes.now()
-        state = self._turns.turning_at(now)
+        state = self._turns.at(self._axes.now())
+        if state is None or state[1] == 0.0:
+            raise TroubleError("thread-no-encoder")
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._running_up(self._speed)
         first = self._sign * state[0] + self._speed * (self._axes.commit + early)
         self._zero = self._sign * math.ceil(first + self._ramp - _ROUNDING)
-        start = -self._ramp
-        return self._mesh(start, 0.0, 0.0, self._speed, now + self._axes.commit + early)
+        try:
+            self._mesh_up(self._speed, self._ramp)
+        except DriverError as error:
+            if error.code != "late":
+                raise
+            return False
+        return True
 
     def _running_up(self, speed: float) -> float:
         """Turns from rest to the index: a slide that speeds up from rest lags behind one that moves by
         v²/2a, which it must have begun v/2a earlier; half of its running up."""
         return 0.5 * self._way.lead * speed**2 / (_SHARE * self._way.a)
 
-    def _go_on_at(self, speed: float) -> None:
-        """What is still to come, for another speed: the running up, or what follows the thread."""
-        way, now = self._way, self._axes.now()
-        t = now + self._axes.commit + _EARLY
-        turns = self._reached(t)
-        ramp = self._running_up(speed)
-        if turns < -max(ramp, self._ramp):
-            self._ramp, self._speed = ramp, speed
-            self._mesh(-ramp, 0.0, 0.0, speed, t)
-        elif turns > self._ramp and way.lead * turns < self._paced(speed).full_depth(way.lead):
-            self._mesh(turns, way.lead * turns, way.lead, speed, t)
+    def _go_on_at(self, speed: float, geared: Geared) -> None:
+        """What is still to come, for another speed: the running up, or what follows the thread.
 
-    def _mesh(self, turns: float, s: float, v: float, speed: float, by: float) -> bool:
+        What was handed over before is a whole pass: where a change of it is refused that goes on, and a slide
+        that it asks too much of slips.
+        """
+        way, ramp = self._way, self._running_up(speed)
+        for early in _EARLIER:
+            turns = self._reached(geared, self._axes.now() + self._axes.commit + early)
+            try:
+                if turns < -max(ramp, self._ramp):
+                    self._mesh_up(speed, ramp)
+                elif turns > self._ramp and way.lead * turns < self._paced(speed).full_depth(way.lead):
+                    self._mesh(turns, way.lead * turns, way.lead, speed, [])
+            except DriverError as error:
+                if error.code == "late":
+                    continue
+                _log.info("a thread pass goes on as planned for another speed: %s", error)
+            return
+
+    def _mesh_up(self, speed: float, ramp: float) -> None:
+        """The whole way, from rest ``ramp`` turns before the index. Raises DriverError."""
+        self._mesh(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._way.lead / ramp)])
+        self._ramp = ramp
+
+    def _mesh(self, turns: float, s: float, v: float, speed: float, up: Phases) -> None:
         """Hand over the way from ``turns`` on, where the slide is at ``s`` with ``v`` mm per turn.
 
-        False when that came after ``by``: what was handed over before goes on.
+        Raises DriverError; what was handed over before then goes on.
         """
-        lead, paced = self._way.lead, self._paced(speed)
-        up = [(2.0 * self._ramp, 0.5 * lead / self._ramp)] if v == 0.0 else []
-        way, leaves = paced.onwards(turns, s, v, up)
-        try:
-            self._gear.mesh(Cam(self._zero, self._sign, way, self._way.drawn_back()))
-        except DriverError:
-            if self._axes.now() + self._axes.commit <= by:
-                raise
-            return False
+        way, leaves = self._paced(speed).onwards(turns, s, v, up)
+        self._gear.mesh(Cam(self._zero, self._sign, way, self._way.drawn_back()))
         self._leaves, self._speed = leaves, speed
-        return True
 
     def _paced(self, speed: float) -> Way:
         """The way with limits per turn, up to where the spindle still matters."""
@@ -163,7 +187,6 @@ class GearedPass:
         out = way.out if way.beyond else way.x + way.slope * way.length
         return way._replace(a=way.a * share, ax=way.ax * share, az=way.az * share, out=out)
 
-    def _reached(self, t: float) -> float:
-        """Turns at which the cam will be played at ``t``; endless when it is over."""
-        geared = self._gear.geared()
-        return math.inf if geared is None else geared.turns + self._speed * (t - self._axes.now())
+    def _reached(self, geared: Geared, t: float) -> float:
+        """Turns that the cam will not have been played beyond at ``t``, the spindle not speeding up."""
+        return geared.turns + max(self._speed, geared.speed) * (t - self._axes.now())

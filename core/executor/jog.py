@@ -11,7 +11,7 @@ from core.executor import ride
 from core.executor.bench import Bench
 from core.executor.ride import Piece
 from core.machine.model import Axis
-from core.ports import DriverError
+from core.ports import DriverError, at_rest
 
 _UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
 LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
@@ -143,7 +143,7 @@ class Jogger:
         """Whether it has come to rest."""
         axes = self._bench.ports.axes
         horizon = axes.horizon()
-        if horizon > axes.now() + 1e-9:
+        if not at_rest(horizon, axes.now()):
             return False
         self.ended()
         return True

@@ -118,6 +118,10 @@ class Mover:
         """Leave the tail in the queue as it is."""
         self.player.let_stop()
 
+    def release(self) -> bool:
+        """Give a thread pass back that still waits for its index; False when it moves."""
+        return self.player.release()
+
     def retreat(self, block: Block) -> None:
         """Begin to leave a thread whose spindle is lost."""
         self._retreat = Retreat(self._bench, self.player, block)
@@ -156,4 +160,7 @@ class Mover:
             self.go(soon=False)
         player.extend(now)
         if player.out_of_step:
-            self._bench.say("thread", "the spindle changed its speed faster than the slides could follow")
+            self._bench.say(
+                "thread",
+                "the spindle changed its speed faster than the slides could follow: check the thread",
+            )

@@ -85,6 +85,10 @@ class Moving(Protocol):
         """The queue was not refilled in time: the slides stop where it ends."""
         ...
 
+    def release(self) -> bool:
+        """Give a thread pass back that still waits for its index; False when it moves."""
+        ...
+
     def retreat(self, block: Block) -> None:
         """Begin to leave a thread whose spindle is lost."""
         ...

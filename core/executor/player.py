@@ -20,7 +20,7 @@ from core.motion.limits import MotionLimits
 from core.motion.path import Path
 from core.motion.plan import plan
 from core.motion.profile import Profile
-from core.ports import AxisSink, Gear
+from core.ports import AxisSink, Gear, at_rest
 
 _LEAST = 0.2  # of the acceleration: what braking has in short chords at least
 
@@ -105,6 +105,12 @@ class Player:
         else:
             self._queue.splice(lambda t: self._plan_stop(t, scales), soon=True)
 
+    def release(self) -> bool:
+        """Give a thread pass back that has not begun to move; False when it has."""
+        if self._pass is not None:
+            self._pass.hold()
+        return self._pass is not None and not self._pass.complete
+
     def brake(self) -> None:
         """Come to rest at once on the path, thread or not."""
         if self._pass is not None:
@@ -134,7 +140,7 @@ class Player:
     def at_rest(self) -> bool:
         """Nothing that was queued moves any more. The clock goes on between two questions: ask it last."""
         horizon = self._axes.horizon()
-        return horizon <= self._axes.now() + 1e-9
+        return at_rest(horizon, self._axes.now())
 
     def complete(self) -> bool:
         """Whether what is queued ends where the stretch does."""

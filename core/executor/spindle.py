@@ -89,17 +89,14 @@ class SpindleControl:
 
     @property
     def lost(self) -> bool:
-        """Less than half of what is commanded: feeding by the revolution must stop."""
-        return self.command == 0.0 or abs(self.measured) < 0.5 * abs(self.command)
+        """Less than half of what an obedient drive turns by now, or the other way: feeding must stop."""
+        along = math.copysign(1.0, self.command) * self.measured
+        return self.command == 0.0 or along < 0.5 * min(abs(self.command), self._owed(self._now))
 
     @property
     def fails(self) -> bool:
         """It is asked to turn, and is slower by half than a drive that obeys: nothing may be cut."""
-        if self._ask is None:
-            return False
-        since, speed = self._rose
-        ramp = speed + self._model.accel * max(self._now - since - _GRACE, 0.0)
-        return self.command == 0.0 or abs(self.measured) < 0.5 * min(abs(self.command), ramp)
+        return self._ask is not None and self.lost
 
     @property
     def why_slow(self) -> str:
@@ -262,8 +259,8 @@ class SpindleControl:
         fastest = max(abs(self.measured), abs(self.command))
         if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
             self._fell = (now, fastest)
-        elif abs(rpm) > abs(self.command):
-            self._rose = (now, abs(self.measured))
+        elif abs(rpm) > abs(self.command) <= self._owed(now):  # else it is still on its way up
+            self._rose = (now, min(abs(self.measured), abs(self.command)))
 
     def _watch_standing(self, now: float) -> None:
         """A spindle that stands although it is asked to turn must not start when its cause goes away."""
@@ -287,6 +284,11 @@ class SpindleControl:
             self._in_band_since = None
         elif self._in_band_since is None:
             self._in_band_since = now
+
+    def _owed(self, now: float) -> float:
+        """Speed that an obeying drive has at least after the command rose, rpm."""
+        since, speed = self._rose
+        return speed + self._model.accel * max(now - since - _GRACE, 0.0)
 
     def _allowed(self, now: float) -> float:
         """Highest speed that an obeying drive can still have after the command fell."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.ports import AxisSample, DriverError, Segments, Stop, code_of
+from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
 from drivers.canopen.bus import Bus
 from drivers.canopen.config import CanopenConfig
 from drivers.canopen.drives import DriveSet
@@ -148,7 +148,7 @@ class CanopenAxes:
 
     def follower_rests(self, now: float) -> bool:
         """Nothing is queued, and nothing is left in the drives."""
-        return self.queue.horizon(now) <= now and not self.follower.playing
+        return at_rest(self.queue.horizon(now), now) and not self.follower.playing
 
     def rest_here(self) -> None:
         """The path goes on from where the drives stand."""

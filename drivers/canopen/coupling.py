@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
-from core.ports import DriverError, Fault, Stop
+from core.ports import DriverError, Fault, Stop, at_rest
 from drivers.canopen import objects as od
 from drivers.canopen.axes import CanopenAxes
 from drivers.canopen.drives import DrivenAxis
@@ -171,7 +171,7 @@ class SpindleC:
         if not self._wanted:
             self._axes.stop(Stop.RAMP_HOLD)
             self._enter(Step.LEAVE, now)
-        elif self._axes.queue.horizon(now) <= now and not self._axes.drives.moving:
+        elif at_rest(self._axes.queue.horizon(now), now) and not self._axes.drives.moving:
             self._goal = None
             self._enter(Step.HELD, now)
 

@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Sequence
 from enum import Enum
 
-from core.ports import Fault, Segments
+from core.ports import Fault, Segments, at_rest
 from drivers.canopen.follow import Fed
 from drivers.canopen.pvt import packed, span
 from drivers.canopen.states import BIT_12, IP, NEW
@@ -79,7 +79,7 @@ class PvtFollower:
 
     def feed(self, now: float) -> None:
         """Begin, go on or end."""
-        if self._phase is _Phase.REST and self._queue.horizon(now) > now:
+        if self._phase is _Phase.REST and not at_rest(self._queue.horizon(now), now):
             self._begin(now)
         elif self._phase is _Phase.PLAYING:
             self._watch(now)
@@ -116,8 +116,8 @@ class PvtFollower:
             self.trouble = self.trouble or Fault(why, "queue-dry")
 
     def _top_up(self, now: float) -> None:
-        at_rest = self._queue.horizon(now) <= min(self.front, now)
-        if at_rest and now - self._queue.horizon(-1e9) > _LINGER:
+        rests = at_rest(self._queue.horizon(now), min(self.front, now))
+        if rests and now - self._queue.horizon(-1e9) > _LINGER:
             self._push(0)
             self._phase = _Phase.ENDING
             return

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.ports import DriverError, MachinePorts, Stop, TrippedError
+from core.ports import DriverError, MachinePorts, Stop, TrippedError, at_rest
 from drivers.feeder.orders import act, use_hand
 from drivers.feeder.trip import TripGuard
 from drivers.feeder.wire import NOTHING, VERSION, Message, cam_of, number, segments, text, with_code
@@ -108,7 +108,7 @@ class Feeder:
 
     def _resting(self) -> bool:
         axes = self._ports.axes
-        return not axes.sample().moving and axes.horizon() <= axes.now()
+        return not axes.sample().moving and at_rest(axes.horizon(), axes.now())
 
     def _trip(self, away: float) -> None:
         """Spindle stopped, outputs safe; what was on is what the control has to be told."""

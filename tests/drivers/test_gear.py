@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import Cam, DriverError, Gear, Segments, Stop
+from core.ports import Cam, DriverError, Gear, Segments, Stop, at_rest
 from drivers.phase import Phase
 from drivers.simulated import Simulation, StepClock
 from tests.drivers.machines import play, ramp, simulation
@@ -141,6 +141,61 @@ def test_the_drives_own_stop_brakes_from_where_they_are() -> None:
     speed = LEAD * 10.0
     assert z_of(sim, clock) - began == pytest.approx(speed**2 / 2.0 / 3048.0, abs=1e-3)
     assert sim.ports.axes.sample().enabled
+
+
+def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
+    """The way was planned for 600 rpm; at 1600 its braking would take seven times as much."""
+    sim, clock, gear = turning(600.0)
+    lead = 4.0
+    gear.mesh(cam(sim, lead=lead, turns=20.0))
+    sim.ports.spindle.run(1600.0)
+    speeds, p = [], []
+    while gear.geared() is not None:
+        clock.advance(0.001)
+        (_, z, _), (_, v, _) = sim.ports.axes.demand_at(clock.now())
+        speeds.append(v)
+        p.append(z)
+    assert np.abs(np.diff(speeds)).max() <= 1.25 * 3048.0 * 0.001
+    assert max(speeds) > lead * 1500.0 / 60.0
+    assert p[-1] == pytest.approx(20.5 * lead)
+    assert sim.ports.axes.sample().fault == ""
+
+
+def test_it_is_never_foretold_as_over_while_it_is_played() -> None:
+    sim, clock, gear = turning()
+    gear.mesh(cam(sim))
+    sim.ports.spindle.run(150.0)
+    while gear.geared() is not None:
+        assert not at_rest(sim.ports.axes.horizon(), clock.now())
+        clock.advance(0.00037)
+    assert at_rest(sim.ports.axes.horizon(), clock.now())
+
+
+def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
+    """Executor and driver ask by one rule, else a start on a clock of 2.5 ms is refused."""
+    sim, clock, gear = turning()
+    sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.1))
+    end = sim.ports.axes.horizon()
+    clock.advance(end - clock.now() - 1e-9)
+    assert sim.ports.axes.horizon() > clock.now()
+    assert at_rest(sim.ports.axes.horizon(), clock.now())
+    made = cam(sim)
+    x = np.array([sim.ports.axes.demand_at(end)[0][0], 0.0, 0.0])
+    gear.mesh(made._replace(way=made.way._replace(p=made.way.p + x)))
+    assert gear.geared() is not None
+
+
+def test_a_way_that_is_not_begun_is_replaced_whole() -> None:
+    """A shorter running up leaves nothing of the longer one before it."""
+    sim, clock, gear = turning()
+    made = cam(sim, start=3.0)
+    early = Segments(*(part.copy() for part in made.way))
+    early.t[0], early.dt[0] = -1.0, 1.5
+    early.p[0, 1], early.a[0, 1] = -0.5 * LEAD, LEAD / 1.5
+    gear.mesh(made._replace(way=early._replace(p=early.p + np.array([0.0, 0.5 * LEAD, 0.0]))))
+    gear.mesh(made)
+    play(sim, clock, 4.0)
+    assert z_of(sim, clock) == pytest.approx(10.5 * LEAD)
 
 
 # --- refusals -----------------------------------------------------------------------------------------------

@@ -45,6 +45,7 @@ class Rig:
     clock_kind: type[StepClock] = StepClock
     made: Iterable[Block] | None = None  # run these instead of interpreting
     gear: bool = True  # whether the driver follows the spindle by itself
+    every: float = TICK  # s between two ticks
     left: Interrupted | None = None  # what the last power cut left interrupted
     notes: list[Interrupted | None] = field(
         default_factory=list
@@ -77,8 +78,8 @@ class Rig:
             self.executor.post(command)
         self.tick()
 
-    def tick(self, dt: float = TICK) -> None:
-        self.clock.advance(dt)
+    def tick(self, dt: float | None = None) -> None:
+        self.clock.advance(self.every if dt is None else dt)
         self.executor.tick()
         for look in self.watch:
             look(self.executor.snapshot)

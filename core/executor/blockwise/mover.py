@@ -144,6 +144,10 @@ class BlockMover:
     def let_stop(self) -> None:
         """The controller stops by itself."""
 
+    def release(self) -> bool:
+        """The controller alone knows whether it still waits."""
+        return False
+
     def retreat(self, block: Block) -> None:
         """Stop, to draw X back then."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
