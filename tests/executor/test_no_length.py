@@ -109,3 +109,28 @@ def test_it_stands_where_the_first_move_goes_and_single_block_is_switched_off() 
     rig.until(State.IDLE, State.FAULT)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[:2] == pytest.approx((0.7 * INCH, -0.5 * INCH), abs=1e-6)
+
+
+@pytest.mark.parametrize("at", range(8))
+def test_single_block_switched_at_every_block(at: int) -> None:
+    """On for the blocks before ``at``, off from there, and the other way round."""
+    text = "G90G94F300\nX0Z0\nX0Z0\nM08\nX.5\nX.5\nM03S500\nG01F60X.5Z-.1\nX.5Z-.1\nM30\n"
+    for first in (True, False):
+        rig = Rig()
+        rig.ready()
+        rig.run(0.4)
+        rig.load(text)
+        rig.post(SetSwitch("single_block", first))
+        seen: list[int] = []
+
+        def switch(_: object, rig: Rig = rig, seen: list[int] = seen, first: bool = first) -> None:
+            if rig.shot.block not in seen[-1:]:
+                seen.append(rig.shot.block)
+                if len(seen) == at + 1:
+                    rig.executor.post(SetSwitch("single_block", not first))
+
+        rig.watch.append(switch)
+        prove_out(rig, None)
+        assert rig.shot.alarms == ()
+        assert rig.shot.parts == 1
+        assert rig.shot.demand[:2] == pytest.approx((0.5 * INCH, -0.1 * INCH), abs=1e-6)
