@@ -33,8 +33,8 @@ class Disturbance:
         trips = self._bench.ports.trips
         trip = trips.tripped() if trips is not None else None
         if trips is not None and trip is not None:
+            trips.acknowledge(trip)  # first: the hold is setpoints too
             self._tripped(trip)
-            trips.acknowledge(trip)
         if self._rounds.standing.state not in CYCLE:
             self._told = frozenset()
             for each in self._bench.outputs.accept():

@@ -103,19 +103,24 @@ class Feeder:
         if seconds > max(self._latest, LATE):
             self._latest = seconds
             self._note(f"the feeder woke up {1000 * seconds:.0f} ms late; has it real-time priority?")
-        if seconds > AWAY and self._resting():
-            self._trip(seconds)
+        if seconds > AWAY:
+            self._trip(seconds, spindle=self._resting())
 
     def _resting(self) -> bool:
         axes = self._ports.axes
         return not axes.sample().moving and at_rest(axes.horizon(), axes.now())
 
-    def _trip(self, away: float) -> None:
-        """Spindle stopped, outputs safe; what was on is what the control has to be told."""
+    def _trip(self, away: float, *, spindle: bool = True) -> None:
+        """Outputs safe, as modules have made them already that missed our heartbeat, and the spindle stopped
+        unless a tool is still in the cut. What was on is what the control has to be told.
+        """
         before = dict(self._ports.io.outputs())
-        self._carefully(lambda: self._ports.spindle.run(0.0), self._ports.io.safe)
+        self._carefully(self._ports.io.safe)
+        if spindle:
+            self._carefully(lambda: self._ports.spindle.run(0.0))
         after = self._ports.io.outputs()
-        self._guard.trip(away, [name for name, on in before.items() if on and not after.get(name)])
+        off = [name for name, on in before.items() if on and not after.get(name)]
+        self._guard.trip(away, off, spindle=spindle)
 
     def _hear(self) -> None:
         now = self._ports.clock.now()

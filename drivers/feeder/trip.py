@@ -30,9 +30,10 @@ class TripGuard:
         if what in {"run", "coast"}:
             self._turns = turns
 
-    def trip(self, away: float, outputs: Sequence[str]) -> None:
-        """Spindle and outputs were switched off; that nothing was on is no trip."""
-        turned, self._turns = self._turns, False
+    def trip(self, away: float, outputs: Sequence[str], *, spindle: bool) -> None:
+        """Outputs were switched off, and the spindle; that nothing was on is no trip."""
+        turned = self._turns and spindle
+        self._turns = self._turns and not spindle
         if turned or outputs:
             self._tripped(away, turned, outputs)
 

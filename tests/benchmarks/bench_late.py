@@ -27,6 +27,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Load
 from core.executor.job import Proof, make_job
 from core.interpreter.setup import ToolOffset
 from core.language.source import Source
+from core.store.database import FILE_NAME
 from drivers.simulated import SimMachine
 
 SHOWN = 0.01  # s between two lines of the child
@@ -318,7 +319,7 @@ def starved(pid: int, seconds: float) -> None:
 
 def disk_blocked(home: Path, seconds: float) -> None:
     """Somebody else holds the store."""
-    other = sqlite3.connect(next(home.glob("*.db*")), isolation_level=None)
+    other = sqlite3.connect(home / FILE_NAME, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     time.sleep(seconds)
     other.execute("ROLLBACK")

@@ -168,6 +168,13 @@ class FedCanopen(Canopen):
         below = super().acts()
         return {fault: own.get(fault, below[fault]) for fault in self.faults}
 
+    def feeder_stands(self, seconds: float) -> None:
+        """Its process is stopped for so long; drives and modules go on."""
+        for _ in range(round(seconds / 0.002)):
+            self.clock.advance(0.002)
+            self.peers.pump()
+        self.feeder.late(seconds)
+
     def round(self) -> None:
         """By the feeder; one that has ended does none."""
         if self.link.why != FEEDER_WORDS["dead reader"]:

@@ -155,6 +155,11 @@ class Fed(Simulated):
         self.clock.advance(dt)
         self.feeder.tick()
 
+    def feeder_stands(self, seconds: float) -> None:
+        """Its process is stopped for so long, and the control waits for its answer."""
+        self.clock.advance(seconds)
+        self.feeder.late(seconds)
+
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What the socket can do."""
         return {

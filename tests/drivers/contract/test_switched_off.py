@@ -8,9 +8,11 @@ import pytest
 
 from core.executor.commands import CycleStart
 from core.executor.snapshot import State
+from tests.drivers.contract.can import FedCanopen
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, TICK
+from tests.drivers.contract.simulated import Fed
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
 DWELL = "G90G94F300\nM03S600\nM08\nX.1\nG04F3\nG01F60X.5\nM30\n"
@@ -125,6 +127,34 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) 
     assert control.shot.alarms == ()
     assert control.shot.parts == 0
     assert "disturbed" in control.said("uncounted")[0]
+
+
+@pytest.mark.parametrize("text", [DWELL, CUT], ids=["dwell", "cut"])
+@pytest.mark.parametrize("kind", [Fed, FedCanopen])
+@pytest.mark.parametrize("seconds", [0.3, 1.0])
+def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
+    kind: type[Fed | FedCanopen], text: str, seconds: float
+) -> None:
+    rig = kind()
+    control = Control(rig)
+    control.start(text)
+    control.until_true(lambda shot: shot.waiting_for == "DWELL" or control.world.place()[1] < -8.0)
+    control.until_true(lambda _: control.world.rpm() > 590.0)
+    rig.feeder_stands(seconds)
+    for _ in range(200):
+        control.tick()
+        assert on(control) == {"collet"}  # not even for a moment
+    assert control.state in {State.HOLD, State.FAULT}
+    assert control.state is (State.FAULT if kind is FedCanopen else State.HOLD)  # drives on a bus run dry
+    stood = control.world.place()
+    control.run(0.5)
+    assert control.world.place() == pytest.approx(stood, abs=STILL)
+    if control.state is State.HOLD:
+        assert "COOLANT COMES ON" in control.shot.announced
+        control.press()
+        control.run(1.5)
+        assert "coolant" in on(control)
+    rig.close()
 
 
 def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(control: Control) -> None:
