@@ -114,6 +114,12 @@ def refusal(loaded: Loaded) -> str:
     return f"WILL NOT RUN: {where}{first_error.message}{more}"
 
 
+def remedy(loaded: Loaded, prompt: str) -> str:
+    """What to do about a program that will not run, where the prompt line says why."""
+    errors = loaded.errors
+    return errors[0].hint if errors and prompt == refusal(loaded) else ""
+
+
 def _progress(loaded: Loaded) -> str:
     count = f" {loaded.reached} BLOCKS" if loaded.reached else ""
     return f"{loaded.phase.value} {loaded.name}{count}"

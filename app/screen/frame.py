@@ -160,5 +160,5 @@ class Frame(FrameParts):
         self.title.show_page(self.page.NAME)
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
-        reason = prompts.reason(view)
+        reason = prompts.reason(view) or prompts.remedy(loaded, text)
         self.prompt.show_text(text, answer=bool(desk.notice), asked=desk.asked, reason=reason)

@@ -1,0 +1,64 @@
+"""What the proof refuses before anything moves, as the operator sees it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.stories.conftest import Story
+from tests.stories.operator import Operator
+
+TOOLS = {1: (0.0, 0.0)}
+HEAD = "G90G94F300\nT1\nM03S600\nX.5Z.5\n"
+BAR = f"{HEAD}M97I10C1P1\nM30\n}}1\nM05\nZ9\nM99\n"
+
+
+def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
+    """The prompt line says line, reason and remedy, and both palms start nothing."""
+    operator.drives_on()
+
+    def told() -> bool:
+        prompt = operator.prompt
+        return prompt.startswith(f"WILL NOT RUN: LINE {line}: ") and why in prompt
+
+    operator.until(told, f"the refusal of line {line} with {why!r}")
+    operator.sees(remedy)
+    stands = operator.slides
+    operator.cycle_start()
+    operator.keeps(lambda: operator.state == "READY", 1.0, "READY")
+    assert operator.is_at(stands)
+    assert operator.status["execution"] in {"READY", "PROGRAM_STOPPED", "INTERRUPTED", "STOPPED"}
+    assert operator.events("part") == []
+
+
+def test_the_end_of_the_bar_would_run_against_the_limit_and_the_bar_is_not_even_begun(story: Story) -> None:
+    operator = story.begins(BAR, tools=TOOLS)
+    is_refused(operator, 9, "With input 10 on at line 5: Z would go to 9.0000 in", "check the Z word")
+
+
+def test_what_block_delete_leaves_out_would_run_against_the_limit(story: Story) -> None:
+    operator = story.begins(f"{HEAD}/Z-1\nG91Z6\nG90\nZ0\nM30\n", tools=TOOLS)
+    is_refused(operator, 6, "With block delete on: Z would go to 6.5000 in", "check the Z word")
+
+
+@pytest.mark.parametrize(("lines", "line", "why", "remedy"), [
+    ("M13\nG95F.004Z-.2\nM12\n", 6, "the collet open", "Close the collet with M12"),
+    ("T0\nX.5Z.4\nF5Z.3\n", 7, "after the T0 on line 5", "Write T with the tool's number"),
+    ("M05\nX-.5Z.1\nF20\nM19S60\nG04F3\n(~PLXC)\n(X.25Y0)\n(END)\n", 11, "no live tool is on", "M15 or M27"),
+    ("M97I99C1P1\nM30\n}1\nG04F1\nM99\n", 5, "no input 99", "Correct the number"),
+    ("X.4 RETRACT\n", 5, "text outside parentheses", "Write (RETRACT)."),
+])  # fmt: skip
+def test_a_mistake_that_breaks_metal_is_told_with_its_line_and_remedy(
+    story: Story, lines: str, line: int, why: str, remedy: str
+) -> None:
+    end = "" if "M30" in lines else "M30\n"
+    is_refused(story.begins(f"{HEAD}{lines}{end}", tools=TOOLS), line, why, remedy)
+
+
+def test_a_bar_program_whose_branches_are_good_runs_either_way(story: Story) -> None:
+    good = BAR.replace("Z9", "Z.8").replace("F300", "F100")
+    operator = story.begins(good, tools=TOOLS)
+    operator.drives_on()
+    operator.starts()
+    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.reaches("READY")
+    assert operator.is_at((0.5 * 25.4, 0.5 * 25.4))
