@@ -100,6 +100,7 @@ class MainWindow(QWidget):
             self.refresh()
         elif frame is not None and key.startswith("F") and key[1:].isdecimal():
             frame.desk.say(tr("{key} HAS NO FUNCTION ON THIS PAGE").format(key=key))
+            self.refresh()
 
     def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
         return {
