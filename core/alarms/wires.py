@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from core.alarms.entry import OFF, STOP, Entries, Entry
+from core.alarms.entry import OFF, STOP, Code, Entries, Entry
 
+# Behind these nothing can be told to the machine any more: that it cannot be made safe follows from them.
+CUT_OFF: frozenset[Code] = frozenset(("bus", "feeder-gone", "feeder-silent", "controller-lost"))
 WIRES: Entries = {
     "bus": Entry(
         501,
@@ -14,7 +16,7 @@ WIRES: Entries = {
             "the CAN interface was unplugged",
             "another master is on the bus",
         ),
-        "check cable, terminators and interface; then start the control again",
+        "PRESS E-STOP; check cable, terminators and interface, then start the control again",
         tells=True,
     ),
     "io-silent": Entry(
@@ -41,21 +43,21 @@ WIRES: Entries = {
             "the feeder process was ended or has failed: slides, spindle and outputs are off",
             "the computer ran out of memory",
         ),
-        "look where the tool stands; end TurnDesk and start it again, then home where asked",
+        "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked",
     ),
     "feeder-silent": Entry(
         512,
         OFF,
         "the feeder does not answer",
         ("the computer is overloaded: the slides stop at the end of what they have", "the feeder has failed"),
-        "wait until everything stands; end TurnDesk and start it again",
+        "PRESS E-STOP; look where the tool stands, end TurnDesk and start it again",
     ),
     "controller-lost": Entry(
         521,
         OFF,
         "the connection to the controller is lost",
         ("the cable to the controller was pulled or damaged", "the controller's power is off"),
-        "it moves what it has and then rests; check cable and power, start the control again",
+        "PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again",
     ),
     "controller-silent": Entry(
         522,

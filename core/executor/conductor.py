@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from core.alarms import Reaction
+from core.alarms.wires import CUT_OFF
 from core.executor import gate
 from core.executor.alarms import TroubleError, alarm_of, log_alarm, words
 from core.executor.announced import SPINDLE, Announcement, Starting
@@ -263,7 +264,7 @@ class Conductor:
         """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
         if self.state in _STOPPED:
             self.safe.again()
-            if self.safe.undone:
+            if self.safe.undone and not any(each.code in CUT_OFF for each in self.standing.alarms):
                 self.alarm(TroubleError("not-safe", f"a driver does not obey: {self.safe.undone}"))
 
     def shut(self) -> None:

@@ -213,7 +213,8 @@ class SpindleControl:
             raise TroubleError(code_of(fault, "spindle"), fault)
         self._coasting = self._coasting and not self.stopped and self.command == 0.0
         if not self._coasting and abs(self.measured) > self._allowed(now):
-            raise TroubleError("ignores-stop", f"{self.measured:.0f} rpm, {self.command:.0f} asked")
+            turns = f"it turns at {self.measured:.0f} rpm, {self.command:.0f} are commanded"
+            raise TroubleError("ignores-stop", turns)
 
     def at_speed(self, now: float) -> bool:
         """Within its band for long enough, and turning at all when it ought to."""

@@ -78,9 +78,12 @@ _ERRORS = {
 
 _OF_AXES: dict[int, FaultCode] = {
     1: "limit-switch",
+    2: "drive-limits",
     3: "position-lost",
     10: "controller-estop",
     12: "limit-switch",
+    17: "axis",
+    19: "inverter-silent",
 }
 _HOMING = frozenset((6, 7, 8, 9, 15, 18))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from core.ports import Cam, Clock, DriverError, Segments, Stop, code_of
+from core.ports import Cam, Clock, DriverError, Fault, Segments, Stop, code_of
 from drivers.geared_queue import GearedQueue
 from drivers.gearing import Slides, State
 from drivers.phase import Phase
@@ -52,7 +52,7 @@ class Plant:
         )
         self.queue = GearedQueue(slides, self._readings())
         self.enabled = False
-        self.fault = ""
+        self.fault: str = ""
         self._off_at = _NEVER
         self._homing: tuple[Servo, float] | None = None
         self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
@@ -229,7 +229,7 @@ class Plant:
         p, v = self._setpoint(t)
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
-                self.fault = f"{servo.axis.name}: following error"
+                self.fault = Fault(f"{servo.axis.name}: following error", "following")
         if self.fault and self._off_at == _NEVER:
             self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
 

@@ -139,7 +139,7 @@ def test_a_jammed_slide_stops_all() -> None:
     rig.run(0.4)
     rig.sim.machine.jam("X")
     # window .08 in at 3 in/s in X, 20 ms, one tick
-    assert alarm(rig, "axis") < 0.0267 + 0.02 + 0.03
+    assert alarm(rig, "following") < 0.0267 + 0.02 + 0.03
     assert "X: following error" in rig.shot.alarms[0].cause
     assert not rig.sim.ports.axes.sample().enabled
     rig.sim.machine.jam("X", False)
@@ -153,15 +153,15 @@ def test_a_jammed_slide_stops_all() -> None:
 
 
 def test_a_stuck_encoder_and_a_drive_fault_stop_all() -> None:
-    for break_it in (
-        lambda rig: rig.sim.machine.encoder_stuck("Z"),
-        lambda rig: rig.sim.machine.drive_fault("Z", "overcurrent"),
+    for break_it, code in (
+        (lambda rig: rig.sim.machine.encoder_stuck("Z"), "following"),
+        (lambda rig: rig.sim.machine.drive_fault("Z", "overcurrent"), "axis"),
     ):
         rig = Rig()
         rig.start(LONG)
         rig.run(0.4)
         break_it(rig)
-        alarm(rig, "axis")
+        alarm(rig, code)
         assert rig.shot.alarms[0].cause.startswith("Z: ")
 
 
@@ -170,7 +170,7 @@ def test_reset_does_not_clear_a_fault_that_stays() -> None:
     rig.start(LONG)
     rig.run(0.4)
     rig.sim.machine.jam("X")
-    alarm(rig, "axis")
+    alarm(rig, "following")
     rig.post(Reset())
     rig.post(EnableDrives())
     rig.load("G90G94F300\nX-3\nM30\n")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
-from core.executor.commands import Command, EnableDrives, LoadJob
+from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Event, Snapshot, State
@@ -113,6 +113,8 @@ class Control:
         if self.state is State.DISABLED:
             self.ready()
         self.load(text)
+        if self.shot.interrupted is not None:  # read, and meant all the same
+            self.post(ConfirmStart(self.shot.interrupted.at))
         self.press()
 
     def said(self, kind: str) -> list[str]:

@@ -95,7 +95,8 @@ class BrokenLink(LoopLink):
 
     def ask(self, message: Message) -> Message:
         if self.why:
-            raise DriverError(self.why)
+            gone = self.why == FEEDER_WORDS["dead reader"]
+            raise DriverError(self.why, "feeder-gone" if gone else "feeder-silent")
         answer = super().ask(message)
         if self.late is not None:
             self.late()

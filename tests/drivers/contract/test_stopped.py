@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from core.alarms.wires import CUT_OFF
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
 from tests.drivers.contract.conftest import Broken
@@ -37,6 +38,9 @@ def all_off(control: Control, outcome: Fault) -> None:
     codes = [alarm.code for alarm in control.shot.alarms]
     assert len(codes) == len(set(codes))  # each told once
     assert "internal" not in codes
+    if codes[0] in CUT_OFF:  # one cause, one alarm, which asks for the E-stop
+        assert len(codes) == 1
+        assert control.shot.alarms[0].remedy.startswith("PRESS E-STOP")
 
 
 def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None:

@@ -9,7 +9,7 @@ import resources
 from app.compose.grblhal import grblhal_config
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
-from core.executor.commands import Command, EnableDrives, LoadJob
+from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event, Snapshot, State
@@ -145,6 +145,8 @@ class GrblBench:
             self.ready()
         self.run(0.4)
         self.load(text)
+        if self.shot.interrupted is not None:  # read, and meant all the same
+            self.post(ConfirmStart(self.shot.interrupted.at))
         self.press()
 
     def said(self, kind: str) -> list[str]:
