@@ -46,9 +46,9 @@ class SafetyRan:
 
 def pytest_configure(config: pytest.Config) -> None:
     """For whole runs alone, and where the reports of all workers come together."""
-    options = config.option
-    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not (
-        options.keyword or options.markexpr or options.lf or options.collectonly or options.maxfail
+    parts = ("keyword", "markexpr", "deselect", "lf", "collectonly", "maxfail")
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not any(
+        config.getoption(part, default=None) for part in parts
     )
     if whole and not hasattr(config, "workerinput"):
         config.pluginmanager.register(SafetyRan(), "safety-ran")
