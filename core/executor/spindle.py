@@ -202,7 +202,10 @@ class SpindleControl:
         when the drive has tripped or does not obey.
         """
         self._now = now
-        self.measured = self._port.speed()
+        measured = self._port.speed()
+        if not math.isfinite(measured):  # the last speed stays: what is not known does not stand
+            raise TroubleError("spindle-encoder", "the spindle's drive tells a speed that is no number")
+        self.measured = measured
         self._radius = radius
         self._watch_standing(now)
         self._send(self._wanted(), now)

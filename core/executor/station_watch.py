@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import NamedTuple
 
@@ -81,7 +82,7 @@ class StationWatch:
 
     def hear(self, state: StationState, now: float) -> Heard:
         """One look at the station."""
-        silent = state.age > _SILENT
+        silent = not (state.age <= _SILENT and math.isfinite(state.feed_pot + state.spindle_pot))
         if not silent:
             self._feed.read(state.feed_pot, now)
             self._spindle.read(state.spindle_pot, now)

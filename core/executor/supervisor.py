@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from core.executor.alarms import TroubleError
 from core.executor.axis_watch import AxisWatch
 from core.executor.bench import Bench
 from core.executor.snapshot import State
-from core.ports import code_of
+from core.ports import AxisSample, code_of
 
 
 class Supervisor:
@@ -26,6 +28,7 @@ class Supervisor:
         sample, bench = self._bench.sample, self._bench
         if sample.fault:
             raise TroubleError(code_of(sample.fault, "axis"), sample.fault)
+        self._numbers(sample)
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
         self._axes.look(sample, unpowered=state is State.DISABLED)
         turning = not bench.spindle.stopped and bench.spindle.asked
@@ -34,6 +37,15 @@ class Supervisor:
             self._collet_lost()
         else:
             self._open_since = None
+
+    def _numbers(self, sample: AxisSample) -> None:
+        """No comparison ever trips on what is no number."""
+        each = zip(
+            self._bench.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
+        )
+        for axis, *told in each:
+            if not all(map(math.isfinite, told)):
+                raise TroubleError("axis", f"{axis.name}: its drive tells a position that is no number")
 
     def _collet_lost(self) -> None:
         """The switch may bounce while the collet closes; it must be off for its closing time."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import FeedHold
+from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from core.interpreter.setup import ToolOffset
 from drivers.feeder.client import Line
@@ -67,3 +67,28 @@ def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None
     assert not rig.sim.ports.axes.sample().enabled
     assert rig.sim.ports.station.snapshot().age == float("inf")
     assert rig.sim.ports.spindle.fault() == "the feeder process has ended"
+
+
+def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start() -> None:
+    """Its terminal wants a word each .3 s; the control was away for .5 s, and the slides went on."""
+    rig = FedRig()
+    rig.feeder._refresh = {"coolant": 0.3}
+    rig.start("G90G94F300\nT1\nM03S600\nM08\nX.5Z0\nG01F20Z-2\nM30\n", TOOLS)
+    rig.until_true(lambda shot: shot.actual[1] < -3.0)
+    for _ in range(50):
+        rig.clock.advance(0.01)
+        rig.feeder.tick()
+    assert not rig.sim.machine.outputs()["coolant"]
+    assert rig.sim.ports.axes.sample().moving
+    rig.tick()
+    rig.until(State.HOLD, limit=0.3)
+    assert rig.shot.waiting_for == "CONTROL WAS SILENT FOR 0.5 S, SWITCHED OFF: COOLANT"
+    assert rig.sim.machine.spindle_rpm() == pytest.approx(600.0)  # the tool was in the cut
+    rig.run(1.0)
+    assert rig.shot.announced == ("COOLANT COMES ON",)
+    rig.post(CycleStart())
+    rig.run(0.05)
+    assert rig.sim.machine.outputs()["coolant"]
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+    assert rig.shot.parts == 0

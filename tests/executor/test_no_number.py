@@ -1,0 +1,78 @@
+"""Drivers that tell what is no number: no comparison trips on it, so it is looked for."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import pytest
+
+from core.executor.snapshot import State
+from core.ports import AxisSample, StationState
+from tests.executor.rig import Rig
+
+CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F20Z-2\nM30\n"
+ODD = pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
+
+
+def cutting() -> Rig:
+    rig = Rig()
+    rig.start(CUT)
+    rig.until_true(lambda shot: shot.actual[1] < -3.0)
+    return rig
+
+
+@ODD
+@pytest.mark.parametrize("field", ["demand", "actual", "following_error"])
+def test_a_position_that_is_no_number_stops_the_machine(
+    odd: float, field: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = cutting()
+    sample = rig.sim.ports.axes.sample
+
+    def told() -> AxisSample:
+        real = sample()
+        x, _, *others = getattr(real, field)
+        return real._replace(**{field: (x, odd, *others)})
+
+    monkeypatch.setattr(rig.sim.ports.axes, "sample", told)
+    rig.tick()
+    assert rig.state is State.FAULT
+    assert "Z: its drive tells a position that is no number" in rig.shot.alarms[0].cause
+    monkeypatch.setattr(rig.sim.ports.axes, "sample", sample)
+    rig.run(0.5)
+    assert not rig.sim.ports.axes.sample().enabled
+
+
+@ODD
+def test_a_speed_that_is_no_number_is_no_spindle_that_stands(
+    odd: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = cutting()
+    monkeypatch.setattr(rig.sim.ports.spindle, "speed", lambda: odd)
+    rig.tick()
+    assert rig.state is State.FAULT
+    assert rig.shot.alarms[0].code == "spindle-encoder"
+    assert rig.shot.rpm_actual == pytest.approx(600.0, rel=0.05)  # the last one: nobody opens a collet now
+    rig.run(3.0)
+    assert rig.sim.machine.spindle_rpm() == 0.0
+
+
+@ODD
+@pytest.mark.parametrize("field", ["feed_pot", "spindle_pot", "age"])
+def test_a_pot_that_is_no_number_is_a_silent_station(
+    odd: float, field: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if field == "age" and odd < 0.0:
+        pytest.skip("younger than now is young enough")
+    rig = cutting()
+    snapshot = rig.sim.ports.station.snapshot
+
+    def told() -> StationState:
+        return dataclasses.replace(snapshot(), **{field: odd})  # type: ignore[arg-type]
+
+    monkeypatch.setattr(rig.sim.ports.station, "snapshot", told)
+    rig.until(State.HOLD, limit=0.5)
+    assert rig.shot.waiting_for == "OPERATOR STATION SILENT"
+    assert rig.shot.feed_override == 1.0
+    assert rig.shot.alarms == ()
