@@ -21,7 +21,7 @@ from core.store.store import Store
 from core.store.unwritten import Held
 
 HELD = 10_000  # events that are kept back while there is no store
-UNDER_WAY = "job under way"  # setting: what a power cut would leave interrupted
+UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
 AGAIN = 5.0  # s between two tries to open a store
 
 

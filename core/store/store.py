@@ -159,7 +159,7 @@ class Store(StoreReader):
 
     def keep_program(self, name: str, text: bytes, why: str) -> Future[None]:
         """A version that nobody waits for."""
-        return self._keep_latest(f"text {name}", lambda c: programs.save(c, name, text, why))
+        return self._keep_latest("text", name, lambda c: programs.save(c, name, text, why))
 
     def log_event(self, kind: str, text: str, line: int = 0) -> Future[None]:
         """One line of the log, at this moment."""
@@ -190,11 +190,11 @@ class Store(StoreReader):
     def run_started(self, program: str) -> Future[None]:
         """A run of this program begins now."""
         at = utc_now()
-        return self._keep_latest(f"start {program}", lambda c: runs.started(c, program, at))
+        return self._keep_latest("start", program, lambda c: runs.started(c, program, at))
 
     def run_ended(self, program: str, outcome: str) -> Future[None]:
         """How it ended."""
-        return self._keep_latest(f"end {program}", lambda c: runs.ended(c, program, outcome))
+        return self._keep_latest("end", program, lambda c: runs.ended(c, program, outcome))
 
     def runs_cut_off(self, outcome: str, words: str) -> Future[None]:
         """How those ended whose end was never told; a warning for each, its name before ``words``."""
@@ -203,7 +203,7 @@ class Store(StoreReader):
             cut_off = runs.cut_off(connection, outcome)
             records.log(connection, (EventRow(utc_now(), "warning", f"{name}{words}") for name in cut_off))
 
-        return self._keep_latest("cut off", operation)
+        return self._keep_latest("start", "", operation)
 
     def cycle_finished(self, program: str, seconds: float) -> Future[None]:
         """One whole cycle of this program and its time."""
@@ -212,15 +212,15 @@ class Store(StoreReader):
     def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
         """What proving found, and the cycle time it reckons with."""
         at = utc_now()
-        return self._keep_latest(f"proof {program}", lambda c: runs.proved(c, program, result, planned, at))
+        return self._keep_latest("proof", program, lambda c: runs.proved(c, program, result, planned, at))
 
     def set_setting(self, key: str, value: object) -> Future[None]:
         """Keeps anything JSON can hold; None forgets it. Raises StoreError for what it cannot hold."""
         records.setting_text(key, value)
-        return self._keep_latest(f"setting {key}", lambda c: records.set_setting(c, key, value))
+        return self._keep_latest("setting", key, lambda c: records.set_setting(c, key, value))
 
-    def _keep_latest(self, name: str, operation: Operation[object]) -> Future[None]:
-        return self.keep(lambda unwritten: unwritten.latest(name, operation))
+    def _keep_latest(self, what: str, of: str, operation: Operation[object]) -> Future[None]:
+        return self.keep(lambda unwritten: unwritten.latest((what, of), operation))
 
     # --- all at once ----------------------------------------------------------------------------------------
 

@@ -64,7 +64,7 @@ class Unwritten:
         self._dropped = 0
         self._parts: dict[str, _Parts] = {}
         self._cycles: dict[str, _Cycles] = {}
-        self._latest: dict[str, Operation] = {}
+        self._latest: dict[tuple[str, str], Operation] = {}
 
     def __bool__(self) -> bool:
         return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
@@ -90,7 +90,7 @@ class Unwritten:
         before = self._cycles.get(program, _Cycles(0, seconds, seconds))
         self._cycles[program] = _Cycles(before.made + 1, min(before.best, seconds), seconds)
 
-    def latest(self, name: str, operation: Operation) -> None:
+    def latest(self, name: tuple[str, str], operation: Operation) -> None:
         """Of several under one name only the last counts."""
         self._latest.pop(name, None)  # what comes last is written last
         self._latest[name] = operation

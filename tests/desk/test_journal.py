@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.journal import Journal
+from app.compose.journal import UNDER_WAY, Journal
 from core.executor.snapshot import Event
 from core.store.errors import StoreError
+from tests.interrupted import broken_off
 
 
 @pytest.fixture
@@ -45,6 +46,34 @@ def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal
     assert book.poll() == ""
     assert book.store is not before
     assert book.changes == 1
+
+
+def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal, tmp_path: Path) -> None:
+    """Whose tool stands in a part is of this machine and of now."""
+    journal.note(broken_off(line=3))
+    journal.keep_text("pin.nc", b"M30", "so that all is written")
+    target = tmp_path / "copy.db"
+    journal.backup(target)
+    journal.note(broken_off(line=8))
+    journal.restore(target)
+    journal.close()
+    again = Journal(tmp_path / "home")
+    assert again.left == broken_off(line=8)
+    again.note(None)
+    again.keep_text("pin.nc", b"M02", "so that all is written")
+    again.restore(target)
+    again.close()
+    last = Journal(tmp_path / "home")
+    assert last.left is None
+    last.close()
+
+
+def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> None:
+    journal.keep_setting(UNDER_WAY, {"line": "eight"})
+    journal.close()
+    again = Journal(tmp_path / "home")
+    assert (again.left, again.trouble) == (None, "")
+    again.close()
 
 
 def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> None:

@@ -7,9 +7,18 @@ from dataclasses import replace
 
 import pytest
 
-from core.executor.commands import ConfirmStart, CycleStart, FeedHold, JogStep, PartsMade, Reset, SetSwitch
+from core.executor.commands import (
+    ConfirmStart,
+    CycleStart,
+    FeedHold,
+    JogStep,
+    PartsMade,
+    Prepare,
+    Reset,
+    SetSwitch,
+)
 from core.executor.interrupted import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, of_plain, plain
-from core.executor.snapshot import State
+from core.executor.snapshot import Starts, State
 from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig
 from tests.executor.test_restart import PART, broken_off, restart
@@ -45,6 +54,20 @@ def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> N
     assert found.where == pytest.approx(rig.shot.actual, abs=1e-3)  # not where the braking began
     assert found.job == rig.shot.job
     assert rig.said("interrupted") == ["PART line 8, T1, part 12: E-STOP"]
+
+
+def test_where_the_tool_stands_is_where_it_came_to_rest_and_not_where_the_stop_was_seen() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nT1\nX1Z.2\nM30\n", TOOLS)
+    rig.until_true(lambda shot: shot.velocity > 100.0)
+    seen = rig.shot.actual
+    rig.sim.machine.press_estop()
+    rig.run(1.0)
+    found = rig.shot.interrupted
+    assert found is not None
+    assert max(abs(a - b) for a, b in zip(found.where, seen, strict=True)) > 1.0  # it braked over that
+    assert found.where == pytest.approx(rig.shot.actual, abs=0.01)
+    assert rig.notes[-1] == found
 
 
 def test_reset_twice_is_an_interrupted_job_too() -> None:
@@ -165,6 +188,17 @@ def test_an_answer_is_taken_back_by_a_jog() -> None:
     rig.until(State.IDLE)
     assert not rig.shot.confirmed
     assert not begins(rig)
+
+
+def test_an_answer_is_taken_back_by_searchto_and_mdi() -> None:
+    for starts in (Starts.RESTART, Starts.LINE):
+        rig = Rig()
+        broken_off(rig)
+        rig.confirm()
+        rig.post(Prepare(starts))
+        rig.post(Prepare(Starts.PROGRAM))
+        assert not rig.shot.confirmed
+        assert not begins(rig)
 
 
 def test_an_answer_while_the_drives_are_off_does_not_count() -> None:

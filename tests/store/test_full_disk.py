@@ -214,7 +214,7 @@ def test_counts_and_settings_do_not_grow_with_the_days() -> None:
     held = Unwritten()
     for number in range(100_000):
         held.count_parts("pin.nc", 1)
-        held.latest("setting theme", lambda _c: number)  # noqa: B023
+        held.latest(("setting", "theme"), lambda _c: number)  # noqa: B023
     assert (held.held("").parts, held.held("").others) == (100_000, 1)
 
 

@@ -65,7 +65,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     told = operator.status["interrupted"]
     assert (told["line"], told["tool"], told["part"]) == (7, 3, 1)
     with operator.store() as store:
-        kept = store.setting("job under way")
+        kept = store.setting("under_way")
     assert isinstance(kept, dict)
     assert kept["where"][:2] == pytest.approx(stood[:2], abs=0.05)
     assert kept["why"] == "E-STOP"
@@ -107,7 +107,7 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     again.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
     again.sees("THE CONTROL LOST ITS POWER OR WAS KILLED")
     with again.store() as store:
-        kept = store.setting("job under way")
+        kept = store.setting("under_way")
     assert isinstance(kept, dict)
     assert kept["where"][1] == pytest.approx(killed[1], abs=900 / 60 * 0.005 * 25.4 * 3)  # 3 s of this feed
     again.drives_on()
