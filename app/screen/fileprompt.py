@@ -38,6 +38,7 @@ class FilePrompt(Panel):
         self.edit = QLineEdit(self)
         self.edit.setMaxLength(250)
         self.edit.textEdited.connect(self._typed)
+        self.edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.edit.installEventFilter(self)
         self.hide()
 

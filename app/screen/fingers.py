@@ -74,16 +74,19 @@ class FingerPanel(Panel):
             self._up(point.id())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """The mouse is one finger."""
-        self._down(MOUSE, event.position())
+        """The mouse is one finger, and its left button; what stops takes any."""
+        if event.button() is Qt.MouseButton.LeftButton or self.stops_at(event.position()):
+            self._up(MOUSE)
+            self._down(MOUSE, event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Along the control that it went down on."""
         self._along(MOUSE, event.position())
 
-    def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Up again, wherever it is now."""
-        self._up(MOUSE)
+        if not event.buttons() & Qt.MouseButton.LeftButton:
+            self._up(MOUSE)
 
     def _down(self, finger: int, at: QPointF) -> None:
         for control in self.controls:

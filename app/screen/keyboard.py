@@ -13,7 +13,7 @@ from typing import Protocol
 
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt
-from PySide6.QtGui import QEventPoint, QInputEvent, QKeyEvent, QTouchEvent, QWindow
+from PySide6.QtGui import QEventPoint, QGuiApplication, QInputEvent, QKeyEvent, QTouchEvent, QWindow
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.screen.eventtime import EventTimes
@@ -38,7 +38,10 @@ _WRITE = frozenset(
     {Key.Key_Backspace, Key.Key_Delete, Key.Key_Left, Key.Key_Right, Key.Key_Up, Key.Key_Down}
     | {Key.Key_Home, Key.Key_End, Key.Key_PageUp, Key.Key_PageDown}
 )
-_PRESSES = frozenset({QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick, QEvent.Type.TouchBegin})
+_PRESSES = frozenset(
+    {QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick, QEvent.Type.TouchBegin, QEvent.Type.Wheel}
+)
+_SHIFTS = frozenset({50, 62})  # codes of both
 _KEYS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
 
@@ -120,6 +123,9 @@ class Keyboard(QObject):
     def look(self) -> None:
         """Once a frame: what the server knows to be up has come up, even where its release was lost."""
         self._stamp = 0
+        windows = QGuiApplication.topLevelWindows()
+        for window in windows if len(windows) > 1 else ():
+            window.installEventFilter(self)  # a menu or a dialog has the keyboard for itself
         if self._server is None or not self._down:
             return
         for code in self._down.keys() - self._server.keys():
@@ -181,7 +187,16 @@ class Keyboard(QObject):
         if self._late(event) and not self._writes(event):
             self._dead.add(code)
             return repeat or self._forget()
-        return repeat and not event.isAutoRepeat() and self._send_repeat(event)
+        if repeat and not event.isAutoRepeat():
+            return self._send_repeat(event)
+        return self._latched(event) and self._send(_like(event, repeat=repeat, shift=False))
+
+    def _latched(self, event: QKeyEvent) -> bool:
+        """Whether Shift is locked or sticks: for a key that writes nothing only a held Shift is one."""
+        shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+        if self._server is None or not shift or event.text():
+            return False
+        return not self._server.keys() & _SHIFTS
 
     def _released(self, event: QKeyEvent, code: int) -> bool:
         if event.isAutoRepeat():
@@ -245,21 +260,9 @@ class Keyboard(QObject):
         field = _field()
         if field is not None and not (event.key() in _WRITE or self._writes(event) or _breaks(field, event)):
             return True
-        again = QKeyEvent(
-            event.type(),
-            event.key(),
-            event.modifiers(),
-            event.nativeScanCode(),
-            event.nativeVirtualKey(),
-            event.nativeModifiers(),
-            event.text(),
-            True,
-            event.count(),
-        )
-        self._send(again)
-        return True
+        return self._send(_like(event, repeat=True, shift=not self._latched(event)))
 
-    def _send(self, event: QKeyEvent) -> None:
+    def _send(self, event: QKeyEvent) -> bool:
         window = QApplication.focusWindow()
         self._sending = True
         try:
@@ -267,6 +270,16 @@ class Keyboard(QObject):
                 QCoreApplication.sendEvent(window, event)
         finally:
             self._sending = False
+        return True
+
+
+def _like(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
+    """The same key, as what it is."""
+    modifiers = event.modifiers()
+    if not shift:
+        modifiers &= ~Qt.KeyboardModifier.ShiftModifier
+    codes = (event.nativeScanCode(), event.nativeVirtualKey(), event.nativeModifiers())
+    return QKeyEvent(event.type(), event.key(), modifiers, *codes, event.text(), repeat, event.count())
 
 
 def code_of(event: QKeyEvent) -> int:

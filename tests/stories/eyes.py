@@ -18,7 +18,7 @@ from typing import Any
 from PySide6.QtCore import QObject, QPoint, QRectF, Qt, Signal, Slot
 from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
 
 from app.cli.main import console
 from app.desk.desk import Desk
@@ -112,6 +112,7 @@ class Eyes(QObject):
             "screen": lambda _asked: self._screen(),
             "freeze": lambda told: time.sleep(told["seconds"]),
             "touch": self._finger,
+            "menu": lambda _asked: self._menu(),
             "break": _break,
             "spoil": _spoil,
             "kill": _kill,
@@ -145,6 +146,14 @@ class Eyes(QObject):
             texts.append((_field(widget), QRectF(widget.rect()).center()))
         return [(text, corner.x() + at.x(), corner.y() + at.y(), kind) for text, at in texts]
 
+    def _menu(self) -> None:
+        """A menu pops up over the window, as no field of ours has one."""
+        window = _window()
+        assert window is not None
+        menu = QMenu(window)
+        menu.addAction("COPY")
+        menu.popup(window.mapToGlobal(window.rect().center()))
+
     def _finger(self, told: Told) -> None:
         """XTEST has no touch: the fingers are put into Qt where its platform would put them."""
         window = _window()
@@ -152,7 +161,10 @@ class Eyes(QObject):
         event = QTest.touchEvent(window, self._touch, False)
         for finger, do, x, y in told["fingers"]:
             at = window.mapFromGlobal(QPoint(round(x), round(y)))
-            getattr(event, do)(finger, at, window)
+            if do == "stationary":
+                event.stationary(finger)
+            else:
+                getattr(event, do)(finger, at, window)
         event.commit()
 
 

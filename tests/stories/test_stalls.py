@@ -40,6 +40,7 @@ def stopped(operator: Operator) -> Iterator[None]:
     operator.stops_the_process()
     operator.once = True
     yield
+    operator.during(1.0)
     operator.once = False
     operator.lets_it_go_on()
 

@@ -70,6 +70,9 @@ class JogPage(Page):
             model.hold.repeated(key.name)
         elif event.modifiers() & CHORDS:
             model.hold.other_key()
+        elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
+            model.hold.other_key()
+            self.desk.say(tr("NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING"))
         else:
             axis, sign = self._arrows[key]
             rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)

@@ -1,0 +1,129 @@
+"""From the first start of an empty control to the third part: by keyboard, by mouse, by touch."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.stories.conftest import INCH, Story
+from tests.stories.operator import Operator
+
+PART = "(THREE OF THESE)\nG90G94T1\nM03S600\nM08\nG01X.2Z-.2F30\nX0Z0\nM09\nM05\nM30\n"
+
+
+def on_the_shelf(story: Story) -> None:
+    """A program that somebody has put into the folder, and nothing else: no offset was ever set."""
+    programs = story.home / "programs"
+    programs.mkdir(parents=True)
+    (programs / "again.nc").write_text(PART)
+
+
+def made(operator: Operator, parts: int) -> None:
+    """So many parts, and everybody says so."""
+    operator.until(lambda: operator.machine["parts"] == parts, f"part {parts}")
+    operator.reaches("READY")
+    operator.until(lambda: operator.is_at((0.0, -INCH)), "the tip of T1 at X0 Z0")
+    operator.until(lambda: operator.status["parts"] == parts, "status.json")
+    operator.until(lambda: len(operator.events("part")) == parts, "the store's log")
+
+
+def at_the_end(operator: Operator) -> None:
+    """Screen, status file, store and slides tell the same."""
+    made(operator, 3)
+    assert operator.status["execution"] == "PROGRAM_COMPLETED"
+    assert operator.status["program"] == "again.nc"
+    assert operator.machine["outputs"] == ["collet"]
+    operator.until(lambda: operator.machine["rpm"] == 0, "the spindle at rest")
+    with operator.store() as store:
+        assert store.parts("again.nc") == 3
+        assert store.tools()[1].offset == (pytest.approx(0.0), pytest.approx(-1.0 * INCH))
+    operator.sees("TO START")
+
+
+def test_by_keyboard(story: Story) -> None:
+    on_the_shelf(story)
+    operator = story.begins()
+    operator.drives_on()
+    operator.key("F8")
+    operator.opens("TOOL OFFSETS")
+    for value in ("0", "-1"):
+        operator.writes(value)
+        operator.key("Return")
+        operator.during(0.2)
+    operator.until(lambda: tool_set(operator), "T1 kept")
+    operator.key("Escape")
+    operator.opens("AUTOMATIC")
+    operator.key("F2")
+    operator.sees("FILE TO BE PROCESSED")
+    operator.writes("again")
+    operator.key("Return")
+    for part in (1, 2, 3):
+        operator.starts()
+        made(operator, part)
+    at_the_end(operator)
+
+
+def tool_set(operator: Operator) -> bool:
+    """Whether T1 is in the store."""
+    with operator.store() as store:
+        return 1 in store.tools() and store.tools()[1].offset[1] != 0.0
+
+
+def test_by_mouse(story: Story) -> None:
+    on_the_shelf(story)
+    operator = story.begins()
+    operator.reaches("DRIVES OFF")
+    operator.clicks("D", on="Strip")
+    operator.reaches("READY")
+    operator.clicks("TOOLS", on="FunctionKeys")
+    operator.opens("TOOL OFFSETS")
+    for keys in (("0",), ("−", "1")):
+        for key in keys:
+            operator.clicks(key, on="KeyPad")
+        operator.clicks("RETURN", on="KeyPad")
+        operator.during(0.2)
+    operator.until(lambda: tool_set(operator), "T1 kept")
+    operator.clicks("MENU", on="FunctionKeys")
+    operator.opens("MAIN MENU")
+    operator.clicks("AUTO", on="FunctionKeys")
+    operator.opens("AUTOMATIC")
+    operator.clicks("FILE", on="FunctionKeys")
+    operator.clicks("again.nc", on="FilePrompt")
+    for part in (1, 2, 3):
+        operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+        # One mouse has no two palms: the other hand is on the keyboard.
+        operator.points("F11", on="StationDock")
+        operator.server.button("left", down=True)
+        operator.down("F12")
+        operator.reaches("RUNNING", "WAITING")
+        operator.up("F12")
+        operator.server.button("left", down=False)
+        made(operator, part)
+    at_the_end(operator)
+
+
+def test_by_touch(story: Story) -> None:
+    on_the_shelf(story)
+    operator = story.begins()
+    operator.reaches("DRIVES OFF")
+    operator.touches("D", on="Strip")
+    operator.reaches("READY")
+    operator.touches("TOOLS", on="FunctionKeys")
+    operator.opens("TOOL OFFSETS")
+    for keys in (("0",), ("−", "1")):
+        for key in keys:
+            operator.touches(key, on="KeyPad")
+        operator.touches("RETURN", on="KeyPad")
+        operator.during(0.2)
+    operator.until(lambda: tool_set(operator), "T1 kept")
+    operator.touches("MENU", on="FunctionKeys")
+    operator.opens("MAIN MENU")
+    operator.touches("AUTO", on="FunctionKeys")
+    operator.opens("AUTOMATIC")
+    operator.touches("FILE", on="FunctionKeys")
+    operator.touches("again.nc", on="FilePrompt")
+    for part in (1, 2, 3):
+        operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+        operator.touches("F11", "F12", on="StationDock")
+        operator.reaches("RUNNING", "WAITING")
+        made(operator, part)
+    at_the_end(operator)
