@@ -21,6 +21,12 @@ def report_crash(kind: type[BaseException], error: BaseException, trace: Traceba
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
+def report_thread(found: threading.ExceptHookArgs) -> None:
+    """The same for a thread that ends by a mistake; the others go on."""
+    if found.exc_value is not None and not isinstance(found.exc_value, SystemExit):
+        report_crash(found.exc_type, found.exc_value, found.exc_traceback)
+
+
 def keep_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
     """A crash file of its own in the log folder, else in the system's folder for such; where it lies."""
     text = "".join(traceback.format_exception(kind, error, trace))

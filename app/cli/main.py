@@ -7,10 +7,11 @@ import gc
 import importlib
 import os
 import sys
+import threading
 from collections.abc import Sequence
 
 from app.cli.arguments import Parser, add_screen_options, settled
-from app.cli.crash import report_crash
+from app.cli.crash import report_crash, report_thread
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.home import HomeError, check_home
 
@@ -101,6 +102,7 @@ def _screen(args: argparse.Namespace) -> int:
 def console() -> int:
     """The installed ``turndesk``: the command line, and no traceback in front of an operator."""
     sys.excepthook = report_crash
+    threading.excepthook = report_thread
     # numpy starts a pool of threads for algebra that nobody here does: a fifth of a short command.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     return main()

@@ -114,9 +114,9 @@ def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
     if snapshot.state is State.WAIT and snapshot.waiting_for:
         return f"WAITING: {snapshot.waiting_for}"
     if snapshot.state is State.FAULT and snapshot.alarms:
-        return f"{snapshot.state.value} {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
+        return f"ALARM {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
     if snapshot.state is State.HOLD and stop is not None:
-        return f"{snapshot.state.value} {stop.number}: {stop.text}"
+        return f"FEED HOLD {stop.number}: {stop.text}"
     return snapshot.state.value
 
 

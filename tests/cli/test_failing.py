@@ -6,11 +6,12 @@ import logging
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
 
-from app.cli.crash import report_crash
+from app.cli.crash import report_crash, report_thread
 from app.compose.logs import Log
 from core.executor.alarms import TroubleError, alarm_of, log_alarm
 
@@ -55,6 +56,23 @@ def test_a_crash_that_can_be_kept_nowhere_is_one_line_all_the_same(
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "file"))
     crash("nowhere")
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_thread_that_fails_leaves_a_crash_file_and_one_line(
+    home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail() -> None:
+        raise RuntimeError("in a thread")
+
+    monkeypatch.setattr(threading, "excepthook", report_thread)
+    thread = threading.Thread(target=fail, name="preview")
+    thread.start()
+    thread.join()
+    (file,) = (home / "logs").glob("crash-*.txt")
+    assert "RuntimeError: in a thread" in file.read_text()
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "Traceback" not in told
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="displays of Linux")

@@ -35,8 +35,8 @@ def test_a_hold_says_who_pressed_it() -> None:
     rig = cutting()
     rig.post(FeedHold("Esc at the screen"))
     rig.until(State.HOLD)
-    assert stop_of(rig) == ("feed-hold", "by Esc at the screen")
-    assert rig.said("stop") == ["702 FEED HOLD: by Esc at the screen"]
+    assert stop_of(rig) == ("feed-hold", "asked for by Esc at the screen")
+    assert rig.said("stop") == ["702 FEED HOLD: asked for by Esc at the screen"]
     rig.post(CycleStart())
     rig.until(State.RUN, State.WAIT)
     assert rig.shot.stop is None
@@ -47,7 +47,7 @@ def test_a_hold_by_the_station_says_so() -> None:
     rig.sim.machine.press_hold()
     rig.until(State.HOLD)
     rig.sim.machine.release_hold()
-    assert stop_of(rig) == ("feed-hold", "by the button at the station")
+    assert stop_of(rig) == ("feed-hold", "asked for by the button at the station")
 
 
 def test_an_estop_has_its_entry() -> None:
