@@ -95,6 +95,7 @@ class Cycle:
             self._mover.hold()
             self._change(State.HOLDING)
         else:
+            self._mover.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
             self._change(State.HOLD)
 
     def starve(self, code: Code = "low-queue", detail: str = "") -> None:

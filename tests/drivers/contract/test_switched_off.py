@@ -10,7 +10,7 @@ from core.executor.commands import CycleStart
 from core.executor.snapshot import State
 from tests.drivers.contract.can import FedCanopen
 from tests.drivers.contract.conftest import need
-from tests.drivers.contract.control import Control
+from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.rig import STILL, TICK
 from tests.drivers.contract.simulated import Fed
 
@@ -127,6 +127,23 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) 
     assert control.shot.alarms == ()
     assert control.shot.parts == 0
     assert "disturbed" in control.said("uncounted")[0]
+
+
+def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: Control) -> None:
+    in_the_cut(control)
+    away(control, 5.0)
+    control.run(1.0)
+    assert control.state is State.HOLD
+    assert ("coolant" in on(control)) is not control.rig.watched
+    control.run(1.5)
+    control.press()
+    control.until(State.RUN, limit=6.0)
+    assert control.world.rpm() == pytest.approx(600.0, rel=0.1)
+    assert "coolant" in on(control)
+    control.until(State.IDLE)
+    assert control.shot.alarms == ()
+    assert control.world.place()[1] == pytest.approx(-2.0 * INCH, abs=0.01)
+    assert control.shot.parts == (0 if control.rig.watched else 1)
 
 
 @pytest.mark.parametrize("text", [DWELL, CUT], ids=["dwell", "cut"])
