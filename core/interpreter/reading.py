@@ -106,9 +106,13 @@ def _check_words(made: Statement, line: Line) -> None:
         return
     for letter, word in made.words.items():
         if letter not in allowed:
+            habit = habits.here(letter)
+            if habit is not None:
+                message = f"{word.text} has no meaning here. {habit[0]}"
+                fault = Diagnostic(line.number, word.column, Severity.ERROR, "word-unused", message, habit[1])
+                raise ProgramError(fault)
             what = f"holds {word.text}, which nothing on it takes"
-            habit, hint = habits.here(letter) or ("", "Take it out or add its code.")
-            raise _refused(line, word, "word-unused", f"{what}. {habit}".removesuffix(". "), hint)
+            raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
 
 
 def _check_flow(made: Statement, line: Line) -> None:
@@ -167,5 +171,5 @@ def _group(made: Statement, word: Word) -> str:
 
 
 def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
-    message = f"The line {what}".removesuffix(".") + "."
+    message = f"The line {what}."
     return ProgramError(Diagnostic(line.number, word.column, Severity.ERROR, code, message, hint))

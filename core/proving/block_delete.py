@@ -29,9 +29,9 @@ def deletes_blocks(source: Source) -> bool:
 def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
     """The report of the switch as it stands, with what was found with it the other way."""
     known = {(found.line, found.code, found.severity) for found in report.diagnostics}
-    with_switch = f"With block delete {'on' if deleted else 'off'}"
+    switch = "on" if deleted else "off"
     found = [
-        replace(each, message=f"{with_switch}: {each.message}")
+        replace(each, message=f"With block delete {switch}: {each.message}")
         for each in other.diagnostics
         if each.severity is not Severity.NOTE and (each.line, each.code, each.severity) not in known
     ]

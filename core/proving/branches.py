@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import count
 
@@ -69,6 +69,13 @@ class _Going:
     checks: CuttingChecks | None = None
     asked: list[_Going | None] = field(default_factory=list)  # in the order of its questions
     answered: int = 0
+
+
+def _with(choices: Sequence[Choice], message: str) -> str:
+    """A finding and its way: the last two of its inputs, which are what an operator looks at."""
+    if len(choices) == 1:
+        return f"With {choices[0].words}: {message}"
+    return f"With {choices[-2].words} and {choices[-1].words}: {message}"
 
 
 class Branches:
@@ -206,14 +213,12 @@ class Branches:
 
     def _tell(self, going: _Going, report: Report) -> None:
         unlikely = going.source is not None and going.source.unlikely
-        shown = going.choices if len(going.choices) <= 2 else going.choices[-2:]
-        place = " and ".join(choice.words for choice in shown)
         for each in report.diagnostics:
             if each.severity is Severity.NOTE or (each.line, each.code) in self._told:
                 continue
             self._told.add((each.line, each.code))
             weight = Severity.WARNING if unlikely else each.severity
-            self._found.append(replace(each, severity=weight, message=f"With {place}: {each.message}"))
+            self._found.append(replace(each, severity=weight, message=_with(going.choices, each.message)))
 
     def _unreached(self) -> Iterator[Diagnostic]:
         """What was not gone through, by name."""

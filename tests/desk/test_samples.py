@@ -13,7 +13,7 @@ from core.proving.prove import prove
 from tests.screen.desks import SAMPLES
 
 
-@pytest.mark.parametrize("name", ["barfeed.nc", "bushing.nc", "grooves.nc", "knob.nc", "pin.nc"])
+@pytest.mark.parametrize("name", ["pinbar.nc", "bushing.nc", "grooves.nc", "knob.nc", "pin.nc"])
 def test_sample_proves(name: str) -> None:
     machine = load_machine(None)
     tools, secondary = read_offsets(SAMPLES / "offsets.toml")

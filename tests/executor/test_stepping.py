@@ -61,7 +61,7 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
     check(source, setup)
 
 
-@pytest.mark.parametrize("name", ["barfeed", "bushing", "grooves", "knob", "pin"])
+@pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
 def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
     tools, secondary = read_offsets(SAMPLES / "offsets.toml")
     check(load_source(SAMPLES / f"{name}.nc"), setup_for(LATHE, tools=tools, secondary=secondary))
