@@ -82,6 +82,7 @@ class DeskParts:
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
+    stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
     starts_here: bool = True  # whether the page in front is one on which cycles are started
     hands: StationHands = field(init=False)
     log: StopLog = field(init=False)
@@ -174,8 +175,8 @@ class DeskParts:
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
-        if not self.starts_here:
-            return prompts.NOT_HERE
+        if self.stop_held() or not self.starts_here:
+            return prompts.STOP_HELD if self.stop_held() else prompts.NOT_HERE
         for page in (self.mdi, self.searchto):
             if page is not None and page.open:
                 return page.barred()

@@ -86,6 +86,7 @@ class Keyboard(QObject):
         self._server: XServer | None = None
         self._down: dict[int, int] = {}  # codes of what is down, and the key that it was
         self._dead: set[int] = set()  # of these: pressed for something else, or nobody knows when
+        self._stops: set[int] = set()  # of these: what stops the machine as long as it is held
         self._up: dict[int, int] = {}  # the stamp of the last release
         self._sending = False
         self._stamp = 0  # of the event that is handled now
@@ -107,6 +108,11 @@ class Keyboard(QObject):
     def alone(self, event: QKeyEvent) -> bool:
         """Whether no other key is down than the one of this event, and modifiers."""
         return not {key for code, key in self._down.items() if code != code_of(event)} - _MODIFIERS
+
+    def stop_held(self) -> bool:
+        """Whether a key that stops the machine is still down: nothing starts meanwhile."""
+        self._stops &= self._down.keys()
+        return bool(self._stops)
 
     def away(self) -> None:
         """The keyboard is elsewhere, or the page is another: what is down is dead until it was let go."""
@@ -176,6 +182,7 @@ class Keyboard(QObject):
         if stop is not None:
             self._down.setdefault(code, event.key())
             self._dead.add(code)
+            self._stops.add(code)
             stop()
             return True
         return event.key() not in _MODIFIERS and self._pressed(event, code)

@@ -61,6 +61,7 @@ class MainWindow(QWidget):
         """Put the desk on the screen and begin to poll it."""
         self.frame = Frame(self.look, desk, self.press, self)
         self._keys = self._table(desk)
+        desk.stop_held = self.keyboard.stop_held
         desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
         self.frame.setGeometry(self.rect())
         self.refresh()

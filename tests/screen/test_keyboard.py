@@ -75,6 +75,17 @@ def test_the_stop_key_acts_though_it_counts_as_down(watched: Hands) -> None:
     assert watched.machine.posted.count(FeedHold()) == 3
 
 
+def test_nothing_starts_while_a_stop_key_is_held(watched: Hands) -> None:
+    watched.load("pin")
+    send(watched, Key.Key_Pause)
+    watched.both_palms()
+    assert watched.machine.now.state is State.IDLE
+    assert "IS HELD DOWN" in watched.desk.notice
+    send(watched, Key.Key_Pause, up=True)
+    watched.both_palms()
+    watched.sees_state(State.RUN)
+
+
 def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s", at=10_000)
     for at in range(10_400, 11_000, 40):  # a server that was not asked to tell repeats

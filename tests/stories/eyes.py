@@ -16,12 +16,13 @@ from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import QObject, QPoint, QRectF, Qt, Signal, Slot
-from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
 
 from app.cli.main import console
 from app.desk.desk import Desk
+from app.screen.keyboard import Keyboard
 from app.screen.panel import Panel
 from app.screen.window import MainWindow
 from drivers.simulated.machine import SimMachine
@@ -129,6 +130,7 @@ class Eyes(QObject):
             "state": frame.title.state,
             "prompt": frame.prompt.text,
             "forgotten": _FORGOTTEN[0],
+            "keys": _RELEASED[0],
             "theme": window.look.palette.name,
             "active": window.isActiveWindow(),
             "minimised": window.isMinimized(),
@@ -217,6 +219,7 @@ def _desk() -> Desk | None:
 
 
 _WINDOW: list[MainWindow] = []
+_RELEASED = [0]  # keys that have come up
 _FORGOTTEN = [0]  # presses that the screen has said to have forgotten
 
 
@@ -258,7 +261,13 @@ def main() -> int:
         made(window, *what)
         _WINDOW.append(window)
 
-    forgotten = MainWindow.forgotten
+    forgotten, releasing = MainWindow.forgotten, Keyboard._released
+
+    def released(keyboard: Keyboard, event: QKeyEvent, code: int) -> bool:
+        _RELEASED[0] += 1
+        return releasing(keyboard, event, code)
+
+    setattr(Keyboard, "_released", released)  # noqa: B010
 
     def forgetting(window: MainWindow, seconds: float) -> None:
         _FORGOTTEN[0] += 1

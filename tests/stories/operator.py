@@ -212,11 +212,19 @@ class Operator:
         held = [MODIFIERS[each] for each in modifiers]
         before = self._forgotten()
         while True:
+            seen = self.screen.get("keys", 0) if not self.once else 0
             self.server.down(*held, key)
             self.server.up(key, *reversed(held))
+            self._arrives(seen)
             if self.once or self._forgotten() == before:
                 return
             before = self._forgotten()
+
+    def _arrives(self, seen: int) -> None:
+        """What was pressed has come to the process, unless the window manager has kept it."""
+        if not self.once:
+            tries = iter(range(50))
+            self.until(lambda: self.screen.get("keys", 0) > seen or next(tries, None) is None)
 
     def _forgotten(self) -> int:
         return 0 if self.once else int(self.screen.get("forgotten", 0))

@@ -110,6 +110,19 @@ def test_a_page_opened_with_the_arrow_held_does_not_jog(story: Story) -> None:
     operator.keeps(lambda: operator.is_at(stands), 1.0, "rest")
 
 
+def test_a_menu_in_front_ends_the_jog_and_it_stays_ended(story: Story) -> None:
+    operator = at_jog(story)
+    operator.down("Right")
+    operator.reaches("JOG")
+    operator.ask("menu")
+    operator.reaches("READY")
+    operator.server.point(5, 795)
+    operator.server.button("left", down=True)  # beside it: it closes
+    operator.server.button("left", down=False)
+    stands = operator.rests()
+    operator.keeps(lambda: operator.is_at(stands), 1.5, "rest with the arrow still held")
+
+
 def test_a_mouse_that_leaves_the_window_ends_the_jog(story: Story) -> None:
     operator = at_jog(story)
     operator.points("Z+", on="JogPad")

@@ -113,6 +113,25 @@ def test_the_stop_keys_act_on_every_page_and_in_every_field(story: Story) -> Non
         released(operator)
 
 
+def test_a_stop_key_that_is_held_and_repeats(story: Story) -> None:
+    story.server.repeats(200, 15)
+    operator = story.begins(LONG, tools=TOOLS)
+    operator.drives_on()
+    operator.starts()
+    operator.down("Pause")
+    operator.reaches("FEED HOLD")
+    operator.during(1.0)
+    operator.cycle_start()  # a hold key that is held lets nothing go on
+    operator.keeps(lambda: operator.state == "FEED HOLD", 0.6, "the hold")
+    operator.sees("IS HELD DOWN")
+    operator.up("Pause")
+    operator.during(0.4)
+    operator.cycle_start()
+    operator.reaches("RUNNING", "WAITING")
+    operator.holds("Scroll_Lock", 1.0)
+    operator.keeps(lambda: operator.state == "E-STOP", 0.5, "the stop")
+
+
 @pytest.mark.parametrize("held", ["Right", "F11", "s"])
 def test_the_stop_keys_act_while_another_key_is_held(story: Story, held: str) -> None:
     operator = story.begins(LONG, tools=TOOLS)

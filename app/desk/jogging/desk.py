@@ -16,6 +16,7 @@ from app.desk.jogging.speeds import Speeds
 from app.desk.jogging.tool import ToolSetting
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES
 from app.desk.jogging.wheel import WheelHold
+from app.desk.prompts import STOP_HELD
 from app.desk.words import tr
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
@@ -71,6 +72,8 @@ class JogDesk(Choices):
     def barred(self) -> str:
         """Why nothing is moved by hand now; empty when it may be."""
         state = self.desk.snapshot().state
+        if self.desk.stop_held():
+            return tr(STOP_HELD)
         if self.tool.asked:
             return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
         if self.home.give_up():
