@@ -10,6 +10,15 @@ SEEDS = tuple(entry.program for _, entries in CHAPTERS for entry in entries)
 _LETTERS = "GMXZCIKRPSFTDLUAOQN()/}.-+,~0123456789 "
 
 
+# What forks a program, what a cut may lack, and what other controls and people write.
+_LINES = (
+    *("M95", "M97I1C1P1", "M97I2C0P6", "/M97I3C1P5", "/X.5", "M98P1", "M91", "M94", "M97I99C1P1"),
+    *("T0", "M05", "M13", "M12", "M27", "M28", "M19S60", "F20X.4", "G95F.004Z-.3", "G92X0Z0", "(PLXC)"),
+    *("%", "O1234", "N10X1", "G54", "G20", "T0101", "M06", "X1U.1", "F0", "X\u2212.5", "RETRACT THE TOOL"),
+    *("M30 END", "X1;TURN", "M50", "LS3", "LF", "}1", "M99", "M30"),
+)
+
+
 def mutated(chance: random.Random) -> str:
     """One of the book's programs with a few changes to characters, numbers and lines."""
     lines = chance.choice(SEEDS).splitlines()
@@ -54,7 +63,13 @@ def _mix_programs(lines: list[str], chance: random.Random) -> None:
     lines[chance.randrange(len(lines)) :] = other[chance.randrange(len(other)) :]
 
 
+def _insert_line(lines: list[str], chance: random.Random) -> None:
+    lines.insert(chance.randrange(len(lines) + 1), chance.choice(_LINES))
+
+
 _CHANGES = (
+    _insert_line,
+    _insert_line,
     _change_character,
     _change_character,
     _change_number,

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from app.compose.machine import setup_for
 from core.interpreter.blocks import Block
 from core.interpreter.setup import ToolOffset
+from core.language.omniturn import lex_line
 from core.language.source import Source
 from core.machine.load import load_machine
 from core.proving.prove import prove
@@ -112,6 +113,26 @@ def test_spoilt_programs_are_proved_or_refused(seed: int) -> None:
     text = mutated(random.Random(seed))
     report = prove(Source("spoilt", text), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
     assert report.elementary > 0 or report.errors
+    low, high = report.ways.cycle
+    assert report.ways.gone >= 1
+    assert report.errors or low - 1e-6 <= report.times.cycle <= high + 1e-6
     for found in report.diagnostics:
         assert 0 <= found.line <= text.count("\n")
         assert found.message
+        assert found.count >= 1
+        assert not found.check or (found.code == found.check and found.hint)
+
+
+WRITTEN = st.text(alphabet="XZGMTFO0123456789.- ABCDERUN(),;%\u2212\u201c/", max_size=60)
+
+
+@settings(max_examples=400, deadline=None)
+@given(WRITTEN)
+def test_a_line_of_code_and_prose_has_each_fault_once_and_in_its_place(text: str) -> None:
+    line = lex_line(1, text)
+    places = [(error.column, error.code) for error in line.errors]
+    assert len(places) == len(set(places))
+    for error in line.errors:
+        assert 0 <= error.column <= max(len(text), 1)
+        if error.code == "text-outside" and not error.message.startswith("'" + "…"):
+            assert text[error.column - 1 : error.column + 2] == error.message[1:4]
