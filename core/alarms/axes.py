@@ -170,7 +170,7 @@ AXES: Entries = {
     "encoder-still": Entry(
         117,
         OFF,
-        "an axis is sent and its encoder does not count",
+        "axis sent, its encoder does not count",
         (
             "the encoder, its cable or its coupling: the slide may have moved all the same",
             "the slide is jammed, or the tool has run into something",
@@ -182,7 +182,7 @@ AXES: Entries = {
     "moved-unasked": Entry(
         118,
         OFF,
-        "an axis has moved and nobody asked for it",
+        "an axis has moved unasked",
         (
             "it was moved by hand while the drives are off",
             "it sinks: no brake, or the brake slips",

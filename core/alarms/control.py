@@ -33,7 +33,7 @@ CONTROL: Entries = {
     "control-silent": Entry(
         908,
         OFF,
-        "the control's own thread is dead or stuck",
+        "the control's thread is stuck or dead",
         (
             "a driver does not come back: its wire, its adapter, the computer's disk or network",
             "a mistake in TurnDesk; the log has it",
@@ -44,7 +44,7 @@ CONTROL: Entries = {
     "feeder-tripped": Entry(
         906,
         HOLD,
-        "the feeder heard nothing and switched off",
+        "the feeder has switched off",
         (
             "another program, a backup or an update keeps this computer busy",
             "the computer is too slow or too hot, or its disk hangs",
@@ -56,7 +56,7 @@ CONTROL: Entries = {
     "switched-off": Entry(
         907,
         HOLD,
-        "an output is not as the program commanded",
+        "an output is not as commanded",
         (
             "a fuse, a relay or a terminal has switched it",
             "somebody else switches it: a pendant, the drive's own software",

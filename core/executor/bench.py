@@ -48,6 +48,7 @@ class Bench:
     soft_override: float = 1.0
     line: int = 0  # of the block being executed, for the log
     stop: Alarm | None = None  # why the machine stands, where no alarm says it
+    _noted: Code | None = None  # the last that went into the log
 
     @property
     def feed_override(self) -> float:
@@ -60,12 +61,19 @@ class Bench:
         self.tell(Event(self.now, kind, text, self.line))
 
     def stopped(self, code: Code, detail: str = "") -> None:
-        """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log."""
-        self.stop = self.noted(code, detail)
+        """A hold, a stop or the E-stop: it is shown until something goes on, and it goes into the log.
+
+        Of blocks that are stepped through one by one the first alone: they would push all else out of it.
+        """
+        if code == "single-block" == self._noted:
+            self.stop = told(code, detail, self.line, self.now)
+        else:
+            self.stop = self.noted(code, detail)
 
     def noted(self, code: Code, detail: str = "") -> Alarm:
         """A stop that is over at once: it only goes into the log."""
         stop = told(code, detail, self.line, self.now)
+        self._noted = code
         kind = "estop" if code == "estop" else "stop"
         self.tell(Event(self.now, kind, words(stop), self.line, stop))
         return stop

@@ -58,7 +58,7 @@ class Disturbance:
         bench = self._bench
         off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in trip.outputs)]
         if trip.spindle:
-            bench.spindle.dropped("THE FEEDER HEARD NOTHING AND SWITCHED OFF")
+            bench.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
         bench.outputs.fell(trip.outputs)
         self._told |= set(trip.outputs)
         self._disturbed(

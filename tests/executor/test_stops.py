@@ -79,6 +79,23 @@ def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
     assert stop_of(rig)[0] == "optional-stop"
 
 
+def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> None:
+    rig = Rig()
+    rig.post(SetSwitch("single_block", True))
+    rig.start("G90G94F300\nX0Z0\nG01F20X.1\nX.2\nX.3\nX.4\nM30\n")
+    lines = []
+    for _ in range(4):
+        rig.until(State.BLOCK_END)
+        assert rig.shot.stop is not None
+        lines.append((rig.shot.stop.code, rig.shot.stop.line))
+        rig.run(0.5)
+        rig.post(CycleStart())
+        rig.tick()
+    assert [code for code, _ in lines] == ["single-block"] * 4
+    assert len({line for _, line in lines}) == 4
+    assert len(rig.said("stop")) == 1
+
+
 def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
     rig = cutting()
     rig.post(FeedHold())

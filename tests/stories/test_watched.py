@@ -93,7 +93,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> Non
     operator.reaches("DRIVES OFF")
     operator.during(1.0)
     operator.breaks("push", "X", 0.5)
-    operator.sees("AN AXIS HAS MOVED AND NOBODY ASKED FOR IT")
+    operator.sees("AN AXIS HAS MOVED UNASKED")
 
 
 @pytest.mark.parametrize(("port", "call"), [("io", "safe"), ("axes", "stop"), ("spindle", "coast")])
