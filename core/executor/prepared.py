@@ -40,8 +40,7 @@ def _moved(bench: Bench, job: Job | None) -> str:
     away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
     if away <= _SAME:
         return ""
-    again = "press Enter again" if job.setup.begin.single else "search for the line again"
-    return f"the slides have moved since this was proved: {again}"
+    return f"the slides have moved since this was proved: {_again(job.setup.begin)}"
 
 
 def _changed(bench: Bench, standing: Standing, job: Job | None) -> str:
@@ -56,7 +55,14 @@ def _changed(bench: Bench, standing: Standing, job: Job | None) -> str:
     if not begin.single:
         return _restart(standing, job, begin, now)
     same = now == begin.checkpoint.modal
-    return "" if same else "the state has changed since the line was proved: press Enter again"
+    return "" if same else f"the state has changed since the line was proved: {_again(begin)}"
+
+
+def _again(begin: Begin) -> str:
+    """How the operator has it proved anew."""
+    if begin.single:
+        return "ask for the way out again" if begin.way else "press Enter again"
+    return "search for the line again"
 
 
 def _restart(standing: Standing, job: Job, begin: Begin, now: Modal) -> str:

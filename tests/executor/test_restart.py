@@ -30,11 +30,11 @@ def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int
     """The job that goes on from a line of the loaded program at the machine as it stands."""
     whole = rig.executor._conductor.standing.job
     assert whole is not None
-    broken = now_of(rig.shot).broken
+    broken = now_of(rig.shot, whole).broken
     found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line, number, broken)
     assert isinstance(found, Found)
     at = rig.shot.demand
-    begin = begin_at(found, now_of(rig.shot), choices or Choices())
+    begin = begin_at(found, now_of(rig.shot, whole), choices or Choices())
     return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole)
 
 
@@ -290,7 +290,7 @@ def way_out_alone(rig: Rig) -> None:
     whole = rig.executor._conductor.standing.job
     assert whole is not None
     cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = leaving_of(cut, rig.shot, Choices())
+    out = leaving_of(cut, rig.shot, whole, Choices())
     assert not out.trouble, out.trouble
     setup = replace(whole.setup, start=rig.shot.demand, begin=out.begin)
     job = make_job(Source("WAY OUT", WAY_OUT), setup)
@@ -364,3 +364,73 @@ def test_a_turned_pass_that_is_fed_off_is_left_along_itself() -> None:
     way_out_alone(rig)
     rig.until(State.IDLE)
     assert all(shot.actual[0] == pytest.approx(x, abs=0.01) for shot in seen if shot.actual[1] < -50.8)
+
+
+def test_a_restart_that_breaks_off_on_its_way_out_still_knows_the_way_out() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    restart(rig, 7)
+    rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.41)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+    rig.run(0.5)
+    z = rig.shot.actual[1]
+    assert (rig.shot.actual[0] + 12.7) / INCH < 0.449
+    assert rig.shot.interrupted_line == 7
+    seen: list[Snapshot] = []
+    rig.watch.append(seen.append)
+    way_out_alone(rig)
+    rig.until(State.IDLE)
+    low = [shot for shot in seen if (shot.actual[0] + 12.7) / INCH < 0.448]
+    assert low
+    assert all(shot.actual[1] == pytest.approx(z, abs=0.02) for shot in low)
+
+
+def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
+    rig = Rig()
+    broken_off(rig)
+    restart(rig, 8)
+    rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.45)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.ready()
+    rig.run(0.5)
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    out = leaving_of(cut, rig.shot, whole, Choices())
+    assert not out.trouble
+    assert [leg.label for leg in out.legs] == ["", "1 X", "2 Z", "3 Z"]
+
+
+def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stands() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    rig.load(GROOVE.replace("LS3", "LS2"), TOOLS)
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    assert rig.shot.interrupted_line == 7
+    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    out = leaving_of(cut, rig.shot, whole, Choices())
+    assert out.trouble.startswith("HOW T1 CAME TO STAND HERE IS NOT KNOWN")
+    assert not out.begin.way
+
+
+def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
+    rig = Rig()
+    stopped_in_a_groove(rig)
+    rig.run(0.4)
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    out = leaving_of(cut, rig.shot, whole, Choices())
+    job = make_job(Source("WAY OUT", WAY_OUT), replace(whole.setup, start=rig.shot.demand, begin=out.begin))
+    report = prove(job.reading, job.setup, rig.machine)
+    mdi(rig, "G91", "X.01F5")
+    rig.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+    assert refused(rig) == "the slides have moved since this was proved: ask for the way out again"

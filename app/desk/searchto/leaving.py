@@ -8,6 +8,7 @@ from app.desk import formats
 from app.desk.drawing.approach import Leg as Drawn
 from app.desk.words import tr
 from core.executor.interrupted import CONTROL_LOST
+from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.interpreter.begin import Begin, Checkpoint, Leg, Step
 from core.interpreter.restart.approach import Choices, Now, standing, way_out
@@ -26,9 +27,9 @@ class Leaving:
     trouble: str = ""
 
 
-def leaving_of(cut: Cut, snapshot: Snapshot, choices: Choices) -> Leaving:
+def leaving_of(cut: Cut, snapshot: Snapshot, job: Job, choices: Choices) -> Leaving:
     """The way out from where the tool stands now."""
-    now = now_of(snapshot)
+    now = now_of(snapshot, job)
     found, tool = standing(cut, now)
     steps = way_out(cut, now, choices) if found.known else ()
     begin = Begin(Checkpoint(snapshot.modal), single=True, way=steps)
@@ -40,11 +41,15 @@ def leaving_of(cut: Cut, snapshot: Snapshot, choices: Choices) -> Leaving:
     return Leaving(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
 
 
-def now_of(snapshot: Snapshot) -> Now:
-    """The machine of this instant, and what of the loaded program was interrupted."""
+def now_of(snapshot: Snapshot, job: Job) -> Now:
+    """The machine of this instant, and what of the loaded program was interrupted.
+
+    In a text that was changed since, the number of a block tells nothing any more.
+    """
     found = snapshot.interrupted
     broken = None
-    if found is not None and found.program == snapshot.program and found.block:
+    same = found is not None and found.program == job.source.name and found.text == job.text_digest
+    if found is not None and same and found.block:
         stale = found.why == CONTROL_LOST
         broken = BrokenOff(found.block, found.tool, found.where, found.begun, stale)
     return Now(snapshot.demand, snapshot.modal, broken)
@@ -72,22 +77,15 @@ def jog_words(found: Retract, tool: int) -> str:
     elif found.lies is Lies.TURNED:
         words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
     else:
-        words = _towards(found.away)
-    return words.format(tool=tool)
+        words = _towards(*found.away)
+    return words.format(tool=tool, x="X+" if found.away[0] > 0 else "X-")
 
 
-def _towards(away: tuple[int, int]) -> str:
-    x, z = away
+def _towards(x: int, z: int) -> str:
     if x and z:
-        return tr("T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER").replace(
-            "{x}", _sign(x)
-        )
+        return tr("T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER")
     if x:
-        return tr("T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z").replace("{x}", _sign(x))
+        return tr("T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z")
     if z:
         return tr("T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X")
     return tr("HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME")
-
-
-def _sign(x: int) -> str:
-    return "X+" if x > 0 else "X-"

@@ -9,6 +9,7 @@ from app.desk.drawing.approach import Leg as Drawn
 from app.desk.inforce import NONE, InForce, rows_of
 from app.desk.searchto.leaving import drawn, jog_words, now_of
 from app.desk.words import tr
+from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
 from core.interpreter.begin import Begin, Checkpoint, Step
@@ -43,9 +44,9 @@ class Plan:
     warning: str = ""  # what is left out
 
 
-def plan_of(found: Found, snapshot: Snapshot, choices: Choices) -> Plan:
+def plan_of(found: Found, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
     """The plan from where the machine stands now."""
-    now = now_of(snapshot)
+    now = now_of(snapshot, job)
     begin = begin_at(found, now, choices)
     modal = begin.checkpoint.modal
     out = jog_words(*standing(found.cut, now)) if found.cut is not None else ""

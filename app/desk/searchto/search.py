@@ -91,7 +91,7 @@ class SearchDesk(SearchOpening):
         if job is None:
             return
         self.stage, self._of = Stage.SEARCHING, job
-        self.finder.find(job, line, self.number, now_of(self.snapshot()).broken)
+        self.finder.find(job, line, self.number, now_of(self.snapshot(), job).broken)
 
     def nearest(self, way: int) -> None:
         """To the good line before or after one that was refused."""
@@ -126,7 +126,7 @@ class SearchDesk(SearchOpening):
         if snapshot.state is not State.IDLE:
             self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
             return
-        plan = self.plan = plan_of(plan.found, snapshot, self.choices)
+        plan = self.plan = plan_of(plan.found, snapshot, whole, self.choices)
         if plan.trouble:
             self.say(plan.trouble)
             return
@@ -138,7 +138,7 @@ class SearchDesk(SearchOpening):
         if snapshot.state is not State.IDLE:
             self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
             return
-        out = self.leaving = leaving_of(cut, snapshot, self.choices)
+        out = self.leaving = leaving_of(cut, snapshot, whole, self.choices)
         if out.trouble:
             self.say(out.trouble)
             return
@@ -222,16 +222,21 @@ class SearchDesk(SearchOpening):
             self.number, self.count = answer.visit.number, answer.visit.of
             self._show(answer)
         elif isinstance(answer, Cut):
-            self.stage, self._cut = Stage.SHOWN, answer
-            self.leaving = leaving_of(answer, self.snapshot(), self.choices)
+            self._show_out(answer)
         elif isinstance(answer, NotGood):
             self.stage, self.answer = Stage.REFUSED, answer
         else:
             self._made_ready(*answer)
 
     def _show(self, found: Found) -> None:
-        self.stage = Stage.SHOWN
-        self.plan = plan_of(found, self.snapshot(), self.choices)
+        if self._of is not None:
+            self.stage = Stage.SHOWN
+            self.plan = plan_of(found, self.snapshot(), self._of, self.choices)
+
+    def _show_out(self, cut: Cut) -> None:
+        if self._of is not None:
+            self.stage, self._cut = Stage.SHOWN, cut
+            self.leaving = leaving_of(cut, self.snapshot(), self._of, self.choices)
 
     def _made_ready(self, job: Job, proved: Proved) -> None:
         self.proved = proved

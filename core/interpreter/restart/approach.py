@@ -15,7 +15,17 @@ from core.interpreter.begin import Begin, Do, Leg, Step, Turn
 from core.interpreter.modal import Modal
 from core.interpreter.restart.cut import Cut
 from core.interpreter.restart.found import BrokenOff, Found
-from core.interpreter.restart.retract import NEAR, Hop, Lies, Place, Retract, off_line, off_row, retract
+from core.interpreter.restart.retract import (
+    NEAR,
+    Hop,
+    Lies,
+    Place,
+    Retract,
+    nearest,
+    off_line,
+    off_row,
+    retract,
+)
 
 _SAME = 1e-6  # mm
 _TURN = 360.0
@@ -53,7 +63,8 @@ def standing(cut: Cut, now: Now) -> tuple[Retract, int]:
     if place is not None:
         return _held(retract(cut, place, max(broken.done, place.block)), now), tool
     if hypot(now.at[0] - broken.at[0], now.at[1] - broken.at[1]) <= NEAR:
-        return _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now), tool
+        found = _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now)
+        return (found if found.lies is not Lies.UNKNOWN else _off_the_row(cut, broken, x, z)), tool
     if cut.outside(x, z, tool):
         return Retract(Lies.CLEAR), tool
     was = retract(cut, Place(broken.block, tool, *_tip(cut, broken.at, tool)), broken.done)
@@ -82,6 +93,16 @@ def _stale(cut: Cut, broken: BrokenOff, x: float, z: float) -> Place | None:
         if off_row(cut, each, x, z) <= NEAR:
             return Place(int(cut.n[each]), broken.tool, x, z)
     return None
+
+
+def _off_the_row(cut: Cut, broken: BrokenOff, x: float, z: float) -> Retract:
+    """Stopped on the way of a restart: somewhere on the way out of the block that had been interrupted."""
+    row = cut.row_behind(broken.block)
+    place = None if row < 0 else nearest(cut, row, x, z)
+    if place is None or int(cut.tool[row]) != broken.tool:
+        return Retract(Lies.UNKNOWN)
+    was = retract(cut, Place(broken.block, broken.tool, *place), broken.done)
+    return _on_the_way(was, place, x, z)
 
 
 def _held(way: Retract, now: Now) -> Retract:

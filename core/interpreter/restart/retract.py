@@ -120,6 +120,17 @@ def off_row(cut: Cut, row: int, x: float, z: float) -> float:
     return off_line(x0, z0, x1, z1, x, z)
 
 
+def nearest(cut: Cut, row: int, x: float, z: float) -> tuple[float, float] | None:
+    """The point of a row that is nearest to (x, z), mm; None where it is not known whence the row comes."""
+    x0, z0, x1, z1 = (float(each[row]) for each in (cut.x0, cut.z0, cut.x, cut.z))
+    dx, dz = x1 - x0, z1 - z0
+    size = dx * dx + dz * dz
+    if isnan(size) or not size:
+        return None
+    share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size))
+    return x0 + share * dx, z0 + share * dz
+
+
 def off_line(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
     """How far a point lies off the straight piece from (x0, z0) to (x1, z1), mm."""
     dx, dz = x1 - x0, z1 - z0

@@ -1,0 +1,196 @@
+"""A tool that was stopped in the part: the way out of it, and on in the pass that broke off."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Callable
+
+import pytest
+
+from tests.stories.conftest import Story
+from tests.stories.operator import INCH, Operator
+
+TOOLS = {1: (-0.5, -2.0), 2: (-0.5, -2.0)}
+GROOVES = (
+    "G90G94F300G72\nT1\nX3.9Z.2\nM03S900\nLS3\nG91Z-.3\nG90G95F.03X.7\nG04F.3\nG94F300X3.9\nLF\nZ.5\n"
+    "T2\nX.5Z.1\nG95F.003Z-.8\nX.48\nG94F300Z.1\nM05\nX2Z1\nM30\n"
+)
+THREE = (
+    "G90G94F300G72\nT1\nX.8Z.2\nM03S900\nLS3\nX.7\nG95F.004Z-.4\nG94F300X.8\nZ.2\n"
+    "G10X0Z-.1\nT1\nX.8Z.2\nLF\nM30\n"
+)
+
+
+def tip(operator: Operator) -> tuple[float, float]:
+    """X (a diameter) and Z of the tip in the part's frame, inches."""
+    x, z = operator.slides[:2]
+    return 2 * (x / INCH + 0.5), z / INCH + 2.0
+
+
+def presses(operator: Operator, key: str, then: Callable[[], bool]) -> None:
+    """Once more where the desk stood still: what was pressed meanwhile was forgotten, and that is told."""
+
+    def done() -> bool:
+        if then():
+            return True
+        operator.key(key)
+        operator.during(1.5)
+        return then()
+
+    operator.until(done, key)
+
+
+def wakes(operator: Operator) -> None:
+    operator.reaches("DRIVES OFF")
+    presses(operator, "d", lambda: operator.state == "READY")
+
+
+def to_searchto(operator: Operator) -> None:
+    presses(operator, "F6", lambda: operator.page == "SEARCHTO")
+
+
+def in_the_second_groove(operator: Operator) -> None:
+    """Z-.4, two thirds of the way down."""
+    wakes(operator)
+    operator.starts()
+    operator.until(
+        lambda: (
+            operator.machine["line"] == 7 and abs(tip(operator)[1] + 0.4) < 0.002 and tip(operator)[0] < 1.1
+        ),
+        "the second groove",
+    )
+
+
+def stopped_there(operator: Operator) -> None:
+    in_the_second_groove(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    presses(operator, "u", lambda: operator.shows("PRESS Y TO TWIST THE E-STOP OUT"))
+    operator.during(0.6)
+    presses(operator, "y", lambda: operator.state != "E-STOP")
+    wakes(operator)
+    assert 0.7 < tip(operator)[0] < 1.1
+
+
+def confirms(operator: Operator) -> None:
+    presses(operator, "F10", lambda: operator.shows("CONFIRMED"))
+    operator.during(0.4)  # what starts was read before it starts
+    operator.cycle_start()
+    operator.until(lambda: operator.state != "READY", "the start")
+
+
+def never_in_the_wall(operator: Operator, since: int) -> None:
+    """Of all places since then: below X3.9 the tip kept to the groove."""
+    places = [each["slides"] for each in operator.seen[since:]]
+    for x, z, *_c in places:
+        low = 2 * (x / INCH + 0.5) < 3.895
+        assert not low or abs(z / INCH + 2.0 + 0.4) < 0.003, (x, z)
+
+
+def test_a_boring_line_is_chosen_with_the_tool_in_a_groove_and_x_goes_out_first(story: Story) -> None:
+    operator = story.begins(GROOVES, tools=TOOLS)
+    stopped_there(operator)
+    since = len(operator.seen)
+    to_searchto(operator)
+    operator.sees("LINE 7 WAS RUNNING")
+    operator.enters("15")  # inside the bore, which is not bored yet
+    operator.sees("begins in metal")
+    operator.enters("13")
+    operator.sees("STATE AT LINE 13")
+    operator.sees("1 X")
+    confirms(operator)
+    operator.until(lambda: tip(operator)[1] > 0.9, "Z clear")
+    never_in_the_wall(operator, since)
+
+
+def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) -> None:
+    operator = story.begins(GROOVES, tools=TOOLS)
+    stopped_there(operator)
+    since, stood = len(operator.seen), operator.rests()
+    to_searchto(operator)
+    presses(operator, "F4", lambda: operator.shows("LOOK AT THE WAY OUT"))
+    operator.sees("LOOK AT THE WAY OUT OF THE PART")
+    operator.sees("THE TOOL LEAVES THE PART AT 20.00 in/min")
+    operator.cycle_start()  # not before it was confirmed
+    operator.keeps(lambda: operator.is_at(stood), 0.5, "nothing moves")
+    confirms(operator)
+    operator.until(lambda: operator.slides[0] > stood[0] + 0.2, "on the way")
+    operator.key("h")
+    operator.reaches("FEED HOLD")
+    held = operator.rests()
+    assert abs(held[1] - stood[1]) < 0.02
+    assert 2 * (held[0] / INCH + 0.5) < 3.8  # within the groove yet
+    operator.cycle_start()
+    operator.until(lambda: operator.state == "READY" and tip(operator)[1] > 0.9, "out, and Z clear")
+    never_in_the_wall(operator, since)
+    assert operator.machine["outputs"] == ["collet"]  # no coolant
+    assert operator.status["interrupted"]["line"] == 7  # the job is still to be finished
+    with operator.store() as store:
+        kept = store.setting("job under way")
+    assert isinstance(kept, dict)
+    assert kept["line"] == 7
+    operator.key("F4")
+    operator.sees("T1 STANDS CLEAR OF THE PART ALREADY")
+
+
+def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: Story) -> None:
+    operator = story.begins(GROOVES, tools=TOOLS)
+    stopped_there(operator)
+    since = len(operator.seen)
+    to_searchto(operator)
+    operator.key("Return")
+    operator.sees("STATE AT LINE 7, PASS 2 OF 3")
+    confirms(operator)
+    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    cut = {
+        round(each["slides"][1] / INCH + 2.0, 1)
+        for each in operator.seen[since:]
+        if 2 * (each["slides"][0] / INCH + 0.5) < 0.75 and each["line"] in {7, 8}
+    }
+    assert cut == {-0.4, -0.7}  # the first groove is not cut again
+    operator.until(lambda: operator.status["interrupted"] is None, "status.json")
+
+
+def test_bar_work_is_entered_at_part_three_by_keys_and_by_the_mouse(story: Story) -> None:
+    operator = story.begins(THREE, tools=TOOLS)
+    wakes(operator)
+    operator.until(lambda: "TO START" in operator.prompt, "the proof")
+    to_searchto(operator)
+    operator.enters("7")
+    operator.sees("STATE AT LINE 7, PASS 1 OF 3")
+    operator.key("Right")
+    operator.sees("STATE AT LINE 7, PASS 2 OF 3")
+    operator.clicks("▶")
+    operator.sees("STATE AT LINE 7, PASS 3 OF 3")
+    operator.sees("R0.00000 Z\u22120.20000")  # G10 of two parts
+    operator.clicks("◀")
+    operator.sees("PASS 2 OF 3")
+    operator.key("Escape")
+    operator.enters("7p3")
+    operator.sees("STATE AT LINE 7, PASS 3 OF 3")
+    since = len(operator.seen)
+    confirms(operator)
+    operator.until(lambda: operator.state == "READY" and operator.machine["line"] == 0, "the end")
+    deepest = min(each["slides"][1] for each in operator.seen[since:]) / INCH + 2.0
+    assert deepest == pytest.approx(-0.6, abs=0.003)  # Z-.4, shifted twice by .1
+    assert operator.machine["parts"] == 0  # two parts were left out
+    assert not operator.events("part")
+
+
+def test_a_control_that_was_killed_in_a_groove_still_knows_the_way_out_of_it(story: Story) -> None:
+    operator = story.begins(GROOVES, tools=TOOLS)
+    in_the_second_groove(operator)
+    os.kill(operator.popen.pid, signal.SIGKILL)
+    operator.popen.wait()
+    with operator.store() as store:
+        kept = store.setting("job under way")
+    assert isinstance(kept, dict), json.dumps(kept)
+    again = story.begins(GROOVES)
+    wakes(again)
+    again.until(lambda: "INTERRUPTED" in again.prompt or again.shows("INTERRUPTED"), "the job")
+    to_searchto(again)
+    again.key("F4")
+    # The simulated slides stand at home again: clear of the part. A real one would stand in its groove.
+    again.sees("STANDS CLEAR OF THE PART ALREADY")
