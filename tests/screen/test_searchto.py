@@ -335,6 +335,11 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     operator.palms()
     assert operator.shot.state is State.RUN
     assert operator.frame.title.page == pages.SEARCHTO
+    operator.key(Key.Key_H)
+    operator.reaches(State.HOLD)
+    operator.pause(0.4)
+    assert operator.prompt().startswith("TO GO ON PRESS BOTH PALM BUTTONS")
+    operator.palms()
     operator.until(lambda: operator.shot.state is State.IDLE, 60.0)
     operator.pause(0.1)
     assert operator.shot.rpm_command == 0.0

@@ -57,6 +57,11 @@ class SearchOpening:
     def __post_init__(self) -> None:
         self.finder = Finder(self.rebuild, self.session.workshop.prove)
 
+    @property
+    def has_keyboard(self) -> bool:
+        """Whether a line can be chosen: not while the way out is under way."""
+        return self.snapshot().state not in CYCLE
+
     def opens(self) -> bool:
         """Whether it may be opened now; says why not."""
         why = self._why_closed(self.snapshot(), self.session.now)
@@ -101,7 +106,7 @@ class SearchOpening:
     def _forget(self) -> None:
         """Nothing is shown and nothing is ready."""
         self._withdraw()
-        if self.open:
+        if self.open and self.has_keyboard:
             self.post(Prepare(Starts.RESTART))
 
     def _withdraw(self) -> None:

@@ -74,11 +74,13 @@ class SearchPage(Page):
         }
 
     def takes(self, key: str) -> bool:
-        """Characters are the question's."""
-        return len(key) == 1
+        """Characters are the question's, but while the tool is on its way out."""
+        return len(key) == 1 and self.model.has_keyboard
 
     def typed(self, key: str) -> bool:
         """Arrows choose a line, everything else is typed."""
+        if not self.model.has_keyboard:
+            return False
         steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
         if key in steps:
             self.model.move(steps[key])
@@ -92,8 +94,8 @@ class SearchPage(Page):
         return self.model.typed(key)
 
     def has_field(self) -> bool:
-        """The question has it always."""
-        return True
+        """The question has it, but while the tool is on its way out."""
+        return self.model.has_keyboard
 
     def prompt(self) -> str:
         """What can be done now."""
