@@ -17,6 +17,9 @@ from drivers.canopen.states import DriveState
 from drivers.setpoint_queue import SetpointQueue, Tolerance
 
 _PAST = 0.5  # s of setpoints that may still be asked for
+_BRAKES = (
+    0.15  # s beyond the ramp from full speed in which a quick stop must have ended in a drive without power
+)
 
 
 class CanopenAxes:
@@ -39,6 +42,8 @@ class CanopenAxes:
         self.beside = ""  # what is wrong elsewhere on the bus
         self.clearing: list[Callable[[], None]] = []  # who else has faults to clear
         self._on = False
+        self._braking = False  # by quick stop, after which a drive takes its power itself
+        self._powerless_at = 0.0  # when it is taken in any case
         self._given_up: Homing | None = None  # a homing that was stopped and still brakes
 
     def connect(self) -> None:
@@ -54,6 +59,7 @@ class CanopenAxes:
                 self._go_on(now)
         except DriverError as error:
             self._trip(error.fault)
+        self._end_braking(now)
         self.drives.note_motion(now)
         self.queue.trim(now - _PAST)
 
@@ -171,11 +177,22 @@ class CanopenAxes:
         self._off(DriveState.QUICK_STOP)
 
     def _off(self, goal: DriveState) -> None:
+        if goal is DriveState.QUICK_STOP and not self._braking:
+            driven = [axis.config for axis in self.drives.axes]
+            ramp = max((axis.vmax / axis.amax for axis in driven), default=0.0)
+            self._powerless_at = self.now() + ramp + _BRAKES
+        self._braking = goal is DriveState.QUICK_STOP
         self._on, self.homing, self._given_up = False, None, None
         self.drives.aim(goal)
         self.follower.abort()
         self.follower.urgent = True
         self.queue.rest_at(self._actual())
+
+    def _end_braking(self, now: float) -> None:
+        """A drive whose encoder no longer counts, or that runs away, brakes for ever and pushes meanwhile."""
+        if self._braking and now > self._powerless_at:
+            self._braking = False
+            self.drives.aim(DriveState.OFF)
 
     def _hold(self) -> None:
         """Brake on the path; a homing has none, there the drive brakes by itself."""

@@ -241,7 +241,9 @@ def bring(desk: Desk, place: str) -> bool:
     desk.do("load", PROGRAMS[place])
     time.sleep(0.4)
     desk.do("start")
-    begun = desk.now["at"][1]
+    first = (12.7, 0.0)  # where every program begins: what is seen before is the end of the last one
+    if not desk.until(lambda: max(abs(a - b) for a, b in zip(desk.now["at"], first, strict=True)) < 0.3):
+        return False
     there: dict[str, Callable[[], bool]] = {
         "dwell": lambda: desk.now["why"] == "DWELL" and desk.now["rpm"] > 590.0,
         "M00": lambda: desk.now["state"] == "PROGRAM STOP" and desk.now["rpm"] > 590.0,
@@ -254,7 +256,7 @@ def bring(desk: Desk, place: str) -> bool:
     if place == "hold":
         desk.do("hold")
         return desk.until(lambda: desk.now["state"] == "FEED HOLD") and not time.sleep(0.3)
-    return begun is not None
+    return True
 
 
 class Row(NamedTuple):
@@ -284,7 +286,7 @@ def measured(desk: Desk, what: str, place: str, act: Callable[[], None], settle:
     after = desk.now
     still = desk.shots[-30] if len(desk.shots) > 30 else after
     moving = way(still, after) > 0.01
-    said = [after["state"], after["why"], *after["alarms"][-1:]]
+    said = [after["state"], after["why"], *after["alarms"][:1]]
     on = [f"{after['rpm']:.0f} rpm", *after["on"]] if after["rpm"] or after["on"] else ["all off"]
     silent = time.monotonic() - after["t"] > 1.0 or after["stamp"] == woken["stamp"]
     told = f"{': '.join(filter(None, said))}{' (CONTROL SILENT)' if silent else ''}; {', '.join(on)}"

@@ -14,6 +14,7 @@ from drivers.canopen.machine import CanopenMachine
 from drivers.feeder.client import Line
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
+from drivers.simulated import SimMachine
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink
@@ -69,6 +70,11 @@ class Canopen(Rig):
             self._count += 1
             if self._count % self._answered == 0:
                 self.peers.pump()
+
+    @property
+    def slides(self) -> SimMachine:
+        """Behind their drives."""
+        return self.peers.machine
 
     def round(self) -> None:
         """One of the loop that owns the bus."""

@@ -139,6 +139,7 @@ class Grblhal(Rig):
         "dead reader": "there is no reading thread: the executor's look reads the wire",
         "home in E-stop": "the controller's own word counts: it knows whether it has lost steps",
         "station": "its buttons are on the screen of this program: there is no wire",
+        "slides": "nobody looks at its steps: a controller without encoders reports what it counts",
         "setpoints": "the controller plans by itself and takes blocks",
     }
     hold = 0.25

@@ -11,7 +11,7 @@ from typing import ClassVar
 from core.block_port import BlockSink
 from core.machine.model import Machine
 from core.ports import MachinePorts
-from drivers.simulated import StepClock
+from drivers.simulated import SimMachine, StepClock
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 
@@ -82,6 +82,11 @@ class Rig(ABC):
     @abstractmethod
     def close(self) -> None:
         """Let everything go."""
+
+    @property
+    def slides(self) -> SimMachine:
+        """What jams, pushes and drives away: ``missing["slides"]`` where the controller counts by itself."""
+        raise NotImplementedError
 
     def switch_output(self, name: str, on: bool) -> None:
         """Somebody else does: ``missing["outputs told"]`` where no wire tells of it."""

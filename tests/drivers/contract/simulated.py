@@ -16,7 +16,7 @@ from drivers.feeder.links import LoopLink
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder
 from drivers.feeder.wire import Message
-from drivers.simulated import StepClock
+from drivers.simulated import SimMachine, StepClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
@@ -78,6 +78,11 @@ class Simulated(Rig):
     def mend(self) -> None:
         """The slide is free."""
         self.hands.jam("X", False)
+
+    @property
+    def slides(self) -> SimMachine:
+        """The simulated ones."""
+        return self.hands
 
     def switch_output(self, name: str, on: bool) -> None:
         """At the terminal."""
