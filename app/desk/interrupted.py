@@ -12,6 +12,7 @@ from app.desk.settings import Units
 from app.desk.words import tr
 from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Snapshot, Starts, State
+from core.language.dialect import Dialect
 
 _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
 
@@ -62,10 +63,19 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if snapshot.confirmed:
         words = tr("BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK")
         return words.format(text=_first(loaded), tool=snapshot.modal.tool, start=start)
+    if not may_go_on(loaded):
+        return tr("LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1").format(
+            line=line
+        )
     words = tr(
         "LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1"
     )
     return words.format(line=line)
+
+
+def may_go_on(loaded: Loaded) -> bool:
+    """Whether SEARCHTO reads the language of this program."""
+    return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
 
 
 def instead(found: Interrupted, name: str) -> str:

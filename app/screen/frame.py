@@ -17,7 +17,9 @@ from app.screen.look import Look
 from app.screen.maker import MAKERS
 from app.screen.page import AutomaticPage
 from app.screen.pages import Host, Page
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import Snapshot, State
+
+_SETTLED = 3.0  # s after a move by hand before the room of a page may change
 
 
 class Frame(FrameParts):
@@ -30,6 +32,7 @@ class Frame(FrameParts):
         super().__init__(look, desk, press, parent)
         host = Host(look, desk, press, self.go, self._close_log)
         self._host = host
+        self._moved_at: float | None = None  # when slides were last moved by hand
         self.automatic = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {pages.AUTOMATIC: self.automatic}
         self.page: Page = self.automatic
@@ -116,13 +119,21 @@ class Frame(FrameParts):
     def _lay_out(self) -> None:
         stand(self.page, self.lay_parts(large=self.page is self.automatic))
 
+    def _by_hand(self, snapshot: Snapshot) -> bool:
+        """Whether slides were moved by hand a moment ago: no target may slip away under a finger then."""
+        now = self.desk.hands.clock()
+        if snapshot.state in {State.JOG, State.HOME}:
+            self._moved_at = now
+        return self._moved_at is not None and now - self._moved_at < _SETTLED
+
     # --- what is shown -------------------------------------------------------------------------------
 
     def refresh(self) -> None:
         """Take one snapshot and show it everywhere."""
         snapshot, view, loaded = self.desk.look()
-        more = self.standing.show_rows(self.rows_of(snapshot, loaded, here=self.page is self.automatic))
-        if self.moved_dock or more:
+        self.standing.show_rows(self.rows_of(snapshot, loaded, here=self.page is self.automatic))
+        by_hand = self._by_hand(snapshot)
+        if self.moved_dock or (self.standing.other_room and not by_hand):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self.lamps_of(snapshot, view)

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.interrupted import standing
+from app.desk.interrupted import may_go_on, standing
 from app.desk.lamps import Lamp
 from app.desk.session import Loaded
 from app.desk.view import View
@@ -61,7 +61,7 @@ class FrameParts(QWidget):
         at, low = places(width, height, with_dock), low_places(width, height, with_dock)
         self._docked = with_dock
         work = work_of(at) if large else low.work
-        rows = Rect(work.x, work.y, work.w, min(self.standing.high, work.h // 3))
+        rows = Rect(work.x, work.y, work.w, min(self.standing.take_room(), work.h // 3))
         work, over = _below(work, rows), _below(at.path if large else low.work, rows)
         stand(self.standing, rows)
         self.standing.setVisible(bool(rows.h))
@@ -128,7 +128,7 @@ class FrameParts(QWidget):
         found = standing(snapshot, loaded, desk.settings.units)
         if found is not None:
             offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
-            rows.append(Row(found.text, found.figures, _KEYS if offered else ()))
+            rows.append(Row(found.text, found.figures, _KEYS[not may_go_on(loaded) :] if offered else ()))
         if desk.unkept():
             held = desk.waiting()
             waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""

@@ -33,18 +33,28 @@ class StandingRows(Panel):
         super().__init__(look, parent)
         self._press = press
         self.rows: tuple[Row, ...] = ()
+        self._stand_for = 0
 
     @property
     def high(self) -> int:
         """Pixels that the rows need."""
         return len(self.rows) * max(FINGER, round(ROW * self.look.u))
 
-    def show_rows(self, rows: Sequence[Row]) -> bool:
-        """Other rows; True when there are more or fewer of them than before."""
+    @property
+    def other_room(self) -> bool:
+        """Whether there are more or fewer rows than have been given room."""
+        return len(self.rows) != self._stand_for
+
+    def take_room(self) -> int:
+        """They have what they need from now on: how many pixels."""
+        self._stand_for = len(self.rows)
+        return self.high
+
+    def show_rows(self, rows: Sequence[Row]) -> None:
+        """Other rows."""
         before, self.rows = self.rows, tuple(rows)
         if before != self.rows:
             self.update()
-        return len(before) != len(self.rows)
 
     def draw(self, painter: QPainter) -> None:
         high = self.height() / max(1, len(self.rows))

@@ -16,6 +16,7 @@ from core.executor.standing import Standing
 from core.executor.states import STOPPED
 from core.interpreter.begin import Begin
 from core.interpreter.blocks import Block
+from core.language.dialect import Dialect
 
 Note = Callable[[Interrupted | None], None]
 """Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""
@@ -157,9 +158,12 @@ class Interruption:
         found = self._standing.interrupted
         if found is None or self._standing.starts is not Starts.PROGRAM or self.answered:
             return ""
+        job = self._standing.job
+        there = job is None or job.source.dialect is Dialect.OMNITURN
+        how = "go on there by SEARCHTO (F6), or press Y" if there else "jog it clear, press Y"
         return (
             f"line {found.line} of {found.program} was interrupted and T{found.tool} may stand in the part:"
-            " go on there by SEARCHTO (F6), or press Y and then start at the first line"
+            f" {how} and then start at the first line"
         )
 
     def _over(self, words: str) -> None:

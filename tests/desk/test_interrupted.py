@@ -15,6 +15,8 @@ from app.desk.session import Loaded
 from app.desk.settings import Units
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import Snapshot, Starts, State
+from core.language.dialect import Dialect
+from core.language.source import Source
 from tests.interrupted import broken_off
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -78,6 +80,13 @@ def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: S
         "BEGINS AT LINE 1"
     )
     assert interrupted.prompt(other, Loaded(), "PRESS") == ""
+
+
+def test_where_searchto_does_not_read_the_language_it_is_not_offered() -> None:
+    loaded = Loaded(source=Source("PIN.NC", "G0 X10\n", Dialect.SINUMERIK))
+    assert interrupted.prompt(STOOD, loaded, "PRESS") == (
+        "LINE 8 WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1"
+    )
 
 
 # --- the desk -----------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal import Modal
 from core.machine.load import load_machine
 from core.machine.model import InputModel, Machine
+from tests.interrupted import broken_off
 
 KEYS = frozenset(
     ["Xtravel", "Ztravel", "Xservo", "Zservo", "Sdrive", "comms", "logic", "system", "motion"]  # of the lathe
@@ -191,6 +192,11 @@ def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
 def test_two_faults_of_a_slide_stand_side_by_side() -> None:
     both = alarm("axis", "X: over current"), alarm("following", "X is 2.345 off its setpoint")
     assert [code for _, code, _ in active(replace(AT, alarms=both))["Xservo"]] == ["101", "102"]
+
+
+def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() -> None:
+    left = replace(Snapshot(state=State.IDLE), interrupted=broken_off())
+    assert active(left) == {"system": (("WARNING", "interrupted", "PIN.NC line 8, T3, part 5: E-STOP"),)}
 
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:

@@ -118,6 +118,31 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     assert again.status["interrupted"]["line"] == 7
 
 
+def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    in_the_cut(operator)
+    operator.key("e")
+    operator.reaches("E-STOP")
+    operator.key("u")
+    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    operator.drives_on()
+    operator.key("F6")
+    operator.opens("SEARCHTO")
+    operator.sees("LINE 7 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    operator.key("Return")
+    operator.sees("F10 CONFIRMS")
+    operator.key("F10")
+    operator.sees("TO START THE RESTART")
+    operator.cycle_start()
+    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    operator.reaches("READY")
+    operator.until(lambda: not operator.shows("INTERRUPTED:"), "nothing is interrupted")
+    operator.until(lambda: operator.status["interrupted"] is None, "status.json")
+    with operator.store() as store:
+        assert store.setting("under_way") is None
+        assert store.parts("part.nc") == 1
+
+
 def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     (story.home / "programs").mkdir(exist_ok=True)

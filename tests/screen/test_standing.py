@@ -1,0 +1,85 @@
+"""What stands on every page until somebody does something: rows that move no target under a finger."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.desk import pages
+from core.executor.snapshot import State
+from tests.interrupted import broken_off
+from tests.screen.hands import Hands, Key
+
+
+@pytest.mark.parametrize(
+    "page", [pages.AUTOMATIC, pages.MENU, pages.JOG, pages.PROGRAMS, pages.TOOLS, pages.SPECIAL, pages.ZERO]
+)
+def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
+    hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
+    hands.desk.unkept = lambda: "the disk is full"
+    hands.desk.waiting = lambda: "20 parts"
+    hands.frame.go(page)
+    hands.window.refresh()
+    rows = hands.frame.standing
+    assert rows.isVisible()
+    assert [row.text.split(" LINE")[0] for row in rows.rows] == [
+        "INTERRUPTED: PIN.NC",
+        "NOT KEPT: the disk is full",
+    ]
+    assert rows.rows[1].figures.endswith("20 parts")
+    assert not rows.geometry().intersects(hands.frame.page.geometry())
+    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip._lamps]
+    hands.machine.now = replace(hands.machine.now, interrupted=None)
+    hands.desk.unkept = str
+    hands.window.refresh()
+    assert not rows.isVisible()
+
+
+def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
+    time = [100.0]
+    hands.desk.hands.clock = lambda: time[0]
+    hands.frame.go(pages.JOG)
+    now = hands.desk.snapshot()
+    hands.desk.snapshot = lambda: replace(now, state=State.JOG)
+    hands.window.refresh()
+    stands = hands.frame.page.geometry()
+    hands.desk.unkept = lambda: "the disk is full"
+    hands.desk.snapshot = lambda: replace(now, state=State.IDLE)  # between two steps
+    time[0] += 1.0
+    hands.window.refresh()
+    assert hands.frame.page.geometry() == stands
+    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip._lamps]  # the lamp says it at once
+    time[0] += 3.0
+    hands.window.refresh()
+    assert hands.frame.page.geometry() != stands
+    assert hands.frame.standing.isVisible()
+
+
+def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> None:
+    hands.load("pin")
+    job = hands.desk.session.now.job
+    assert job is not None
+    found = broken_off(program="pin.nc", text=job.text_digest, tool=1, block=9, line=8)
+    hands.machine.now = replace(hands.machine.now, interrupted=found)
+    hands.window.refresh()
+    tip = hands.page.path._tip
+    assert tip is not None
+    tool = job.setup.tools[1]
+    assert (tip.block, tip.stood) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
+    hands.machine.now = replace(hands.machine.now, interrupted=replace(found, text="changed"))
+    hands.window.refresh()
+    assert hands.page.path._tip is not None
+    assert hands.page.path._tip.block == 0
+
+
+def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
+    hands.load("pin")
+    hands.machine.now = replace(hands.machine.now, interrupted=broken_off(program="pin.nc"), state=State.IDLE)
+    hands.window.refresh()
+    rows = hands.frame.standing
+    assert [key for key, _label in rows.rows[0].keys] == ["F6", "Y"]
+    hands.frame.go(pages.JOG)
+    hands.window.refresh()
+    assert rows.rows[0].keys == ()  # there these keys mean other things
+    hands.key(Key.Key_F1)
