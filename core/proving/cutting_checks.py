@@ -39,6 +39,7 @@ class CuttingChecks:
     machine: Machine
     dialect: Dialect
     single: bool = False  # a line of MDI: whoever types it sees which tool is in force
+    placed: bool = False  # where the slides stand is known: no start of a program, or a move has said it
     _found: list[Diagnostic] = field(default_factory=list)
     _without_tool: list[Diagnostic] = field(default_factory=list)  # how much they weigh is known at the end
     _names_tool: bool = False
@@ -71,9 +72,19 @@ class CuttingChecks:
                 self._like = None
                 self._act(block)
             elif (block.modal, block.kind) != self._like:
+                if not self.placed:
+                    self._place(block)
                 self._like = (block.modal, block.kind) if block.modal.collet_closed else None
                 if cuts(block):
                     self._cut(block)
+
+    def _place(self, block: Block) -> None:
+        """An incremental first move leads from wherever the slides stand, and was proved from home."""
+        self.placed = True
+        if block.modal.absolute is False:
+            text = "The first move is incremental: it begins where the slides stand, and is proved from home."
+            hint = "Begin with X and Z under G90."
+            self._add(_finding(block, Severity.WARNING, "start-place", text, hint))
 
     def _act(self, block: Block) -> None:
         match block.action:

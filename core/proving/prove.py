@@ -54,7 +54,8 @@ def _proved(
     branches = Branches(reading, setup, machine, ideal=ideal)
     timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
     single = setup.begin is not None and setup.begin.single
-    one = Pass(machine, CuttingChecks(machine, reading.source.dialect, single))
+    checks = CuttingChecks(machine, reading.source.dialect, single, placed=setup.begin is not None)
+    one = Pass(machine, checks)
     for stretch in branches.gone(one, timeline):
         one.add(stretch)
         if progress is not None and one.last is not None:

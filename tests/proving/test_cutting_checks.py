@@ -72,6 +72,10 @@ CASES: list[tuple[tuple[str, ...], list[tuple[str, str, int]]]] = [
      [("spindle-off", "warning", 6), ("spindle-off", "warning", 10)]),
     (("G90G94F300", "T1", "X.5Z.1", "F20Z-.2", "M30"), []),
     ((*HEAD, "T1", "X.5Z.1", "M05", "M15", "F20Z-.2", "M30"), []),
+    # where it begins
+    (("G91G94F300", "X.1", "G90", "T1", "X.5Z.1", "M30"), [("start-place", "warning", 2)]),
+    (("G90G94F300", "T1", "G91", "X.1Z.1", "G90", "M30"), [("start-place", "warning", 4)]),
+    (("G90G94F300", "T1", "X.5Z.1", "G91X.1", "G90", "M30"), []),
     # inputs
     ((*HEAD, "M97I17C1P1", "M30", "}1", "G04F1", "M99"), [("no-input", "error", 3)]),
     ((*HEAD, "M97I16C1P1", "M30", "}1", "G04F1", "M99"), []),
