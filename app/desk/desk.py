@@ -219,7 +219,9 @@ class Desk(DeskParts):
         return True
 
     def answer(self) -> None:
-        """Yes to what is asked."""
+        """Yes to what is asked, as long as the machine is in the state in which it was asked."""
+        if self.answers.outlived(self.snapshot()):
+            self.clear()
         self.answers.yes(self.hands.at())
 
     @property

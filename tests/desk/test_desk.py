@@ -88,6 +88,15 @@ def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, 
     assert "FEED HOLD FIRST" in desk.notice
 
 
+def test_an_answer_to_a_question_of_another_state_is_none(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.HOLD)
+    desk.reset()
+    desk.answers._since = float("-inf")
+    at(machine, State.RUN)  # the palms at the machine were quicker
+    desk.answer()
+    assert machine.posted == []
+
+
 def test_giving_a_program_up_is_asked_once(desk: Desk, machine: FakeMachine) -> None:
     at(machine, State.HOLD)
     desk.reset()
