@@ -13,7 +13,7 @@ from core.executor.moving import Moving, Progress
 from core.executor.snapshot import State
 from core.executor.standstill import Next, Standstill
 from core.executor.waits import Wait, at_speed
-from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.modal import Modal
 
@@ -21,7 +21,7 @@ _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a l
 _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _GOING = frozenset({State.RUN, State.WAIT})
-_SPINDLE_WORDS = (SpindleRun, SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
 
 
 class Cycle:

@@ -120,8 +120,11 @@ class Executor:
             raise TroubleError("control-silent", why)
 
     def failed(self, error: BaseException) -> None:
-        """A mistake of the control itself: nothing may go on."""
-        self._conductor.failed(error)
+        """A driver that does not answer, or a mistake of the control itself: nothing may go on."""
+        if isinstance(error, DriverError):
+            self._conductor.alarm(TroubleError(error.code, str(error)))
+        else:
+            self._conductor.failed(error)
 
     def shut(self) -> None:
         """The end of the executor: nothing is left moving or switched on. Raises nothing."""

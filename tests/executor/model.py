@@ -1,0 +1,600 @@
+"""A model of the executor: what an operator does, what breaks and how late the host is, in any order.
+
+The invariants are looked at after every tick, on the step clock; what the machine really does comes from the
+simulated plant and not from what the executor says. In the end all faults are mended, and the machine must
+make a part: no state may be one that cannot be left.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Any
+
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
+
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    FeedOverride,
+    ForceOutput,
+    Home,
+    Jog,
+    JogStep,
+    JogStop,
+    Reset,
+    SetSwitch,
+    SpindleLimit,
+    SpindleStop,
+    Wheel,
+    WheelOff,
+)
+from core.executor.executor import Executor
+from core.executor.feed import Pass
+from core.executor.job import Job
+from core.executor.snapshot import Snapshot, State
+from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED
+from core.interpreter.blocks import Block, Kind
+from core.interpreter.setup import Setup, ToolOffset
+from core.ports import DriverError
+from tests.executor.rig import TICK, Rig
+
+TOOLS = {1: ToolOffset(), 2: ToolOffset(x=1.0, z=-2.0)}
+PROGRAMS = (
+    "G90G94F300\nX.3Z.3\nX.3\nG01X.4F20\nX.4\nZ.2\nM30\n",
+    "G90G94F300\nM03S1000\nM08\nX.5Z.1\nG01X.4Z-.2F20\nX.6\nM09\nM30\n",
+    "G90G94F300\nM03S1500\nX.5Z.1\nG95G01Z-.3F.01\nX.7\nG94M05\nM30\n",
+    "G90G94F300\nM03S600\nX.5Z.1\nG33X.48Z-.3I.02K.05\nG00X1\nM30\n",
+    "G90G94F300\nX.2\nG04F.3\nM00\nX.3\nM01\nX0Z0\nM30\n",
+    "G90G94F300\nG01X.2F30\nG02X.2Z-.2I.2K-.1\nX.3Z-.3\nM30\n",
+    "G90G94F300\nT1\nX.3Z.2\nT2\nX.3Z.2\nG01Z.1F20\nM30\n",
+    "G90G94F300\nM05\nM19\nC90\nG01C180F600\nC180\nM05\nM30\n",
+    "G90G94F300\nM03S800\nG04F.2\nM04S800\nG01X.2F10\nM05\nM13\nM12\nM02\n",
+    "G90G94F300\nG96S200M03\nX1Z.1\nG94G01X.2F20\nG97\nM30\n",
+)
+SAFE = "G90G94F300\nX.05\nX0\nM30\n"
+MOVES = ACTIVE | {State.JOG, State.HOME}
+SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
+STILL = 0.02  # mm in a tick; servo noise and the last of a lag are less
+ON_PATH = 0.005  # mm
+FINE = 0.002  # s between two looks at the setpoints
+_PORTS = ("axes", "spindle", "io")
+_CALLS = {
+    "axes": ("sample", "splice", "demand_at", "horizon", "stop", "enable", "clear_fault", "now"),
+    "spindle": ("run", "coast", "speed", "angle", "fault"),
+    "io": ("inputs", "outputs", "write", "safe"),
+}
+
+
+class Breaking:
+    """A port whose next call of one method raises."""
+
+    def __init__(self, port: object) -> None:
+        self._port = port
+        self.breaks: dict[str, tuple[Exception, int]] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        whole = getattr(self._port, name)
+        if name not in self.breaks:
+            return whole
+
+        def raising(*given: Any, **words: Any) -> Any:
+            error, left = self.breaks[name]
+            if left > 1:
+                self.breaks[name] = (error, left - 1)
+            else:
+                del self.breaks[name]
+            raise error
+
+        return raising
+
+
+class Seen:
+    """What a run of the model has met; for the table of the benchmark."""
+
+    def __init__(self) -> None:
+        self.steps = self.ticks = self.runs = self.parts = 0
+        self.seconds = 0.0
+        self.states: Counter[State] = Counter()
+        self.changes: Counter[tuple[State, State]] = Counter()
+        self.alarms: Counter[str] = Counter()
+        self.rules: Counter[str] = Counter()
+
+
+SEEN = Seen()
+
+
+class Machine(Rig):
+    """A rig whose ports break and that checks every tick."""
+
+    def _passes(self, job: Job, setup: Setup) -> Pass:
+        self.blocks: list[Block] = []
+        whole = super()._passes(job, setup)
+        return whole._replace(blocks=self._kept(whole.blocks))
+
+    def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        for block in blocks:
+            self.blocks.append(block)
+            yield block
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        ports = self.sim.ports
+        self.broken = {name: Breaking(getattr(ports, name)) for name in _PORTS}
+        self.sim = self.sim._replace(ports=dataclasses.replace(ports, **self.broken))
+        self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
+        self.true_ports = ports
+        self.pressed = self.jogged = self.homed = self.switched = False  # since the tick before
+        self.unexpected = False  # a driver has raised what no driver may
+        self.blind = False  # an encoder may tell what is not so
+        self.left = -1e9  # when the last state in which slides move was left
+        self.fed_badly = 0.0
+        self.before = self.shot
+        self.executor.tick()
+
+    # --- time ---------------------------------------------------------------------------------------------
+
+    def tick(self, dt: float = TICK) -> None:
+        """One tick, and all that must hold after it."""
+        before, place = self.shot, self.sim.machine.true_position()
+        self._setpoints(dt)
+        self.clock.advance(dt)
+        queue = self._demand()
+        self.executor.tick()
+        self._spliced(queue)
+        SEEN.ticks += 1
+        SEEN.seconds += dt
+        after = self.shot
+        SEEN.states[after.state] += 1
+        if before.state is not after.state:
+            SEEN.changes[before.state, after.state] += 1
+        for alarm in after.alarms:
+            if alarm not in before.alarms:
+                SEEN.alarms[alarm.code] += 1
+        self._check(before, after, place, dt)
+        self.pressed = self.jogged = self.homed = self.switched = False
+
+    def _demand(self) -> tuple[tuple[float, ...], tuple[float, ...], bool]:
+        axes = self.true_ports.axes
+        return *axes.demand_at(self.clock.now()), axes.sample().enabled
+
+    def _spliced(self, before: tuple[tuple[float, ...], tuple[float, ...], bool]) -> None:
+        """A tick changes neither where the setpoints are nor how fast; only power that goes may."""
+        p, v, on = self._demand()
+        if not (on and before[2]) or self._geared():
+            return
+        for axis, p0, p1, v0, v1 in zip(self.machine.axes, before[0], p, before[1], v, strict=True):
+            assert abs(p1 - p0) < 1e-6, f"{axis.name} leaps by {p1 - p0}"
+            assert abs(v1 - v0) < 1e-3 * axis.vmax + 1e-6, (
+                f"{axis.name} changes its speed at once: {v0} to {v1}"
+            )
+
+    def _setpoints(self, dt: float) -> None:
+        """What is queued for the time until the next tick: within the limits, without a leap."""
+        axes, now = self.true_ports.axes, self.clock.now()
+        if not axes.sample().enabled or self._geared():
+            return
+        steps = min(max(round(dt / FINE), 1), 60)
+        looks = [axes.demand_at(now + k * dt / steps) for k in range(steps + 1)]
+        corner = self.machine.timing.setpoint  # s in which a corner may turn
+        for (p0, v0), (p1, v1) in pairwise(looks):
+            h = dt / steps
+            for axis, a, b, va, vb in zip(self.machine.axes, p0, p1, v0, v1, strict=True):
+                assert abs(vb) <= axis.vmax * 1.001 + 1e-6, f"{axis.name} at {vb}"
+                assert abs(b - a) <= max(abs(va), abs(vb)) * h + axis.amax * h * h + 1e-6, (
+                    f"{axis.name} leaps"
+                )
+                assert abs(vb - va) <= axis.amax * 1.02 * (h + corner) + 1e-3 * axis.vmax, (
+                    f"{axis.name} at {va} then {vb}"
+                )
+
+    def _geared(self) -> bool:
+        gear = self.true_ports.gear
+        return gear is not None and gear.geared() is not None
+
+    # --- invariants ---------------------------------------------------------------------------------------
+
+    def _check(self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float) -> None:
+        if old.state in MOVES and new.state not in MOVES:
+            self.left = new.t
+        self._nothing_moves_unasked(old, new, place, dt)
+        self._the_spindle_waits(old, new)
+        self._feeds_as_commanded(new)
+        self._known(new)
+        self._on_the_path(new)
+        if not self.unexpected:
+            assert all(alarm.code != "internal" for alarm in new.alarms), new.alarms
+
+    def _nothing_moves_unasked(
+        self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float
+    ) -> None:
+        if new.state in ACTIVE and old.state not in ACTIVE:
+            assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
+        if new.state is State.JOG and old.state is not State.JOG:
+            assert self.jogged, f"{old.state} became a jog and nobody asked for one"
+        if new.state is State.HOME and old.state is not State.HOME:
+            assert self.homed
+        way = math.dist(self.sim.machine.true_position()[:2], place[:2])
+        if new.state not in MOVES and new.t - self.left > SETTLES + dt:
+            assert way < STILL, f"{way} mm in {new.state}"
+
+    def _the_spindle_waits(self, old: Snapshot, new: Snapshot) -> None:
+        """From no command to one: a word of the program under way, a start that was announced, the switch."""
+        if old.rpm_command != 0.0 or new.rpm_command == 0.0:
+            return
+        fresh = old.spindle_asked == 0.0 and (new.state in ACTIVE or old.state in ACTIVE or self.pressed)
+        word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE
+        announced = self.pressed and any("SPINDLE STARTS" in text for text in old.announced)
+        switched = self.switched and new.state in BY_HAND and bool(old.announced)
+        assert fresh or word or announced or switched, (
+            f"the spindle starts by itself in {new.state}: {old.announced}"
+        )
+
+    def _feeds_as_commanded(self, new: Snapshot) -> None:
+        """A cut with the spindle or the coolant not as the program has it ends within half a second."""
+        cutting = new.state is State.RUN and not new.rapid and new.velocity > 0.05 and not new.modal.c_locked
+        bad = cutting and (
+            (
+                new.modal.spindle != 0
+                and abs(self.sim.machine.spindle_rpm()) < 0.3 * abs(new.rpm_command) - 30.0
+            )
+            or (new.modal.spindle != 0 and new.rpm_command == 0.0)
+            or (new.modal.coolant and "coolant" not in new.outputs)
+        )
+        self.fed_badly = self.fed_badly + (new.t - self.before.t) if bad else 0.0
+        self.before = new
+        assert self.fed_badly < 1.2, f"it cuts in line {new.line} at {self.sim.machine.spindle_rpm()} rpm"
+
+    def _known(self, new: Snapshot) -> None:
+        """At rest the place on the screen is the place of the slides, or the screen says that it is not."""
+        if self.blind or new.state in MOVES or new.alarms or new.state in {State.ESTOP, State.DISABLED}:
+            return
+        if new.t - self.left > SETTLES and all(new.homed):
+            true = self.sim.machine.true_position()
+            assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
+
+    def _on_the_path(self, new: Snapshot) -> None:
+        """Wherever a cycle was stopped: on a line or circle of its program."""
+        if new.state not in STOPPED or new.t - self.left < SETTLES or new.waiting_for == "THREAD":
+            return
+        x, z = new.demand[:2]
+        off = min((_off(block, x, z) for block in self.blocks if block.moves), default=0.0)
+        assert off < ON_PATH, f"{off} mm off the path in {new.state}, line {new.line}"
+
+
+def _off(block: Block, x: float, z: float) -> float:
+    """Distance of a place from the way of a block, mm, machine coordinates."""
+    ax, az, bx, bz = block.x0 + block.offset_x, block.z0 + block.offset_z, block.mx, block.mz
+    if block.kind is Kind.ARC:
+        cx, cz = block.cx + block.offset_x, block.cz + block.offset_z
+        return abs(math.hypot(x - cx, z - cz) - math.hypot(ax - cx, az - cz))
+    long = (bx - ax) ** 2 + (bz - az) ** 2
+    part = min(max(((x - ax) * (bx - ax) + (z - az) * (bz - az)) / long, 0.0), 1.0) if long else 0.0
+    return math.hypot(x - ax - part * (bx - ax), z - az - part * (bz - az))
+
+
+class ExecutorModel(RuleBasedStateMachine):
+    """Rules are steps: a command, a hand at the station, a fault, or time that passes."""
+
+    machine: Machine
+
+    @initialize(program=st.integers(0, len(PROGRAMS) - 1), gear=st.booleans())
+    def begin(self, program: int, gear: bool) -> None:
+        self.machine = Machine(gear=gear)
+        self.hands = self.machine.sim.machine
+        SEEN.runs += 1
+        self.machine.ready()
+        self.machine.load(PROGRAMS[program], TOOLS)
+        self.machine.run(0.3)
+        self._post(CycleStart())
+
+    # --- time ---------------------------------------------------------------------------------------------
+
+    @rule(ticks=st.integers(1, 30))
+    def time_passes(self, ticks: int) -> None:
+        self._count("time")
+        for _ in range(ticks):
+            self.machine.tick()
+
+    @rule(late=st.floats(0.05, 5.0))
+    def host_is_late(self, late: float) -> None:
+        self._count("late")
+        self.machine.tick(round(late, 3))
+
+    # --- the operator -------------------------------------------------------------------------------------
+
+    @rule()
+    def presses_start(self) -> None:
+        self._start(lambda: self.machine.executor.post(CycleStart()))
+
+    @rule()
+    def presses_start_after_reading(self) -> None:
+        self.machine.run(0.4)
+        self._start(lambda: self.machine.executor.post(CycleStart()))
+
+    @rule()
+    def presses_palms(self) -> None:
+        self._start(self.hands.press_start)
+
+    @rule()
+    def holds(self) -> None:
+        was = self.machine.state
+        self._post(FeedHold())
+        assert self.machine.state not in MOVES or was not in MOVES or self._stopping()
+
+    def _stopping(self) -> bool:
+        return self.machine.state in {State.HOLDING, State.JOG}
+
+    @rule(button=st.booleans())
+    def hold_button(self, button: bool) -> None:
+        self._count("hold button")
+        (self.hands.press_hold if button else self.hands.release_hold)()
+        self.machine.tick()
+
+    @rule(down=st.booleans())
+    def estop(self, down: bool) -> None:
+        self._count("estop")
+        (self.hands.press_estop if down else self.hands.release_estop)()
+        self.machine.tick()
+        if down:
+            assert self.machine.state is State.ESTOP
+
+    @rule(
+        command=st.sampled_from(
+            [
+                Reset(),
+                Reset(),
+                EnableDrives(),
+                EnableDrives(),
+                JogStop(),
+                WheelOff(),
+                SpindleStop(),
+                SpindleLimit(500.0),
+                SpindleLimit(None),
+                ForceOutput("coolant", True),
+                ForceOutput("coolant", False),
+                ForceOutput("collet", False),
+                ForceOutput("collet", True),
+                Home(),
+                Home("X"),
+            ]
+        )
+    )
+    def asks(self, command: Command) -> None:
+        self.machine.homed = isinstance(command, Home)
+        self._post(command)
+
+    @rule(
+        name=st.sampled_from(["single_block", "optional_stop", "cycle_repeat", "no_count"]), on=st.booleans()
+    )
+    def switches(self, name: str, on: bool) -> None:
+        self._post(SetSwitch(name, on))
+
+    @rule(fraction=st.sampled_from([0.0, 0.1, 0.5, 1.0, 1.0, 1.5]))
+    def overrides(self, fraction: float) -> None:
+        self._post(FeedOverride(fraction))
+
+    @rule(
+        command=st.sampled_from(
+            [
+                Jog("X", 20.0, 0.3),
+                Jog("Z", -40.0, 0.3),
+                Jog("C", 90.0, 0.2),
+                Jog("X", 1e6, 0.3),
+                JogStep("X", 0.5, 10.0),
+                JogStep("Z", -200.0, 10.0),
+                Wheel("X", 0.01, 0.3),
+            ]
+        )
+    )
+    def jogs(self, command: Command) -> None:
+        self.machine.jogged = True
+        self._post(command, moves=True)
+
+    @rule(counts=st.integers(-60, 60))
+    def turns_the_handwheel(self, counts: int) -> None:
+        self._count("handwheel")
+        self.machine.jogged = True
+        self.hands.turn_handwheel(counts)
+        self.machine.tick()
+
+    @rule(auto=st.booleans())
+    def spindle_switch(self, auto: bool) -> None:
+        self._count("spindle switch")
+        self.machine.switched = True
+        self.hands.set_spindle_auto(auto)
+        self.machine.tick()
+
+    @rule(
+        which=st.sampled_from(["feed", "spindle"]), fraction=st.sampled_from([0.0, 0.01, 0.3, 0.7, 1.0, 1.0])
+    )
+    def turns_a_pot(self, which: str, fraction: float) -> None:
+        self._count("pot")
+        (self.hands.set_feed_pot if which == "feed" else self.hands.set_spindle_pot)(fraction)
+        self.machine.tick()
+
+    @rule(program=st.integers(0, len(PROGRAMS) - 1))
+    def loads(self, program: int) -> None:
+        self._count("load")
+        self.machine.load(PROGRAMS[program], TOOLS)
+
+    # --- what breaks --------------------------------------------------------------------------------------
+
+    @rule(on=st.booleans())
+    def station_is_silent(self, on: bool) -> None:
+        self._count("silent")
+        self.hands.station_silent(on)
+        self.machine.tick()
+
+    @rule(width=st.sampled_from([0.0, 0.0, 0.05, 0.6]))
+    def pots_are_noisy(self, width: float) -> None:
+        self._count("noise")
+        self.hands.pot_noise(width)
+        self.machine.tick()
+
+    @rule(fraction=st.sampled_from([0.0, 0.2, 0.6, 1.0, 1.0]))
+    def spindle_bogs(self, fraction: float) -> None:
+        self._count("bog")
+        self.hands.spindle_bog(fraction)
+        self.machine.tick()
+
+    @rule(text=st.sampled_from(["overvoltage", "", ""]))
+    def spindle_trips(self, text: str) -> None:
+        self._count("spindle trip")
+        self.hands.spindle_fault(text)
+        self.machine.tick()
+
+    @rule(axis=st.sampled_from(["X", "Z"]))
+    def drive_trips(self, axis: str) -> None:
+        self._count("drive trip")
+        self.hands.drive_fault(axis)
+        self.machine.tick()
+
+    @rule(axis=st.sampled_from(["X", "Z"]), on=st.booleans())
+    def slide_jams(self, axis: str, on: bool) -> None:
+        self._count("jam")
+        self.hands.jam(axis, on)
+        self.machine.tick()
+
+    @rule(axis=st.sampled_from(["X", "Z"]), on=st.booleans())
+    def encoder_sticks(self, axis: str, on: bool) -> None:
+        self._count("encoder")
+        self.machine.blind = True
+        self.hands.encoder_stuck(axis, on)
+        self.machine.tick()
+
+    @rule(name=st.sampled_from(["collet_closed"]), on=st.booleans())
+    def input_flaps(self, name: str, on: bool) -> None:
+        self._count("input")
+        self.hands.set_input(name, on)
+        self.machine.tick()
+
+    @rule(on=st.booleans())
+    def output_is_switched_by_another(self, on: bool) -> None:
+        self._count("output")
+        self.hands.switch_output("coolant", on)
+        self.machine.tick()
+
+    @rule(
+        port=st.sampled_from(_PORTS),
+        which=st.integers(0, 7),
+        times=st.integers(1, 3),
+        expected=st.sampled_from([True, True, True, False]),
+    )
+    def driver_raises(self, port: str, which: int, times: int, expected: bool) -> None:
+        self._count("driver raises")
+        calls = _CALLS[port]
+        call = calls[which % len(calls)]
+        error = DriverError("the wire is out; look at it") if expected else RuntimeError("unforeseen")
+        self.machine.unexpected = self.machine.unexpected or not expected
+        self.machine.broken[port].breaks[call] = (error, times)
+        self.machine.tick()
+        self.machine.broken[port].breaks.clear()
+
+    # --- no state that cannot be left ---------------------------------------------------------------------
+
+    def teardown(self) -> None:
+        if hasattr(self, "machine"):
+            self._mend()
+            self._make_a_part()
+
+    def _mend(self) -> None:
+        hands = self.hands
+        for port in self.machine.broken.values():
+            port.breaks.clear()
+        hands.station_silent(False)
+        hands.pot_noise(0.0)
+        hands.spindle_bog(1.0)
+        hands.spindle_fault("")
+        for axis in ("X", "Z"):
+            hands.jam(axis, False)
+            hands.encoder_stuck(axis, False)
+        hands.release_hold()
+        hands.release_estop()
+        hands.set_feed_pot(1.0)
+        hands.set_spindle_pot(1.0)
+        hands.set_spindle_auto(True)
+        hands.set_input("collet_closed", True)
+        self.machine.switched = True
+        for _ in range(150):
+            self.machine.tick()
+        self.machine.post(FeedOverride(1.0))
+        for name in ("single_block", "optional_stop", "cycle_repeat", "no_count"):
+            self.machine.post(SetSwitch(name, False))
+
+    def _make_a_part(self) -> None:
+        machine = self.machine
+        for _ in range(8):
+            if machine.state is State.IDLE:
+                break
+            off = machine.state is State.DISABLED and not machine.shot.alarms
+            machine.post(EnableDrives() if off else Reset())
+            machine.run(2.0)
+        assert machine.state is State.IDLE, f"{machine.state} cannot be left: {machine.shot.alarms}"
+        if not all(machine.shot.homed):
+            machine.homed = True
+            machine.post(Home())
+            machine.until(State.IDLE, limit=120.0)
+        machine.post(SpindleStop(), ForceOutput("collet", True))
+        machine.run(3.0)
+        machine.load(SAFE)
+        if machine.shot.interrupted is not None:
+            machine.confirm()
+        machine.run(0.5)
+        parts = machine.shot.parts
+        machine.pressed = True
+        machine.post(CycleStart())
+        assert not machine.shot.start_refused, machine.shot.start_refused
+        for _ in range(3000):
+            if machine.state is State.IDLE:
+                break
+            machine.tick()
+        assert machine.shot.parts == parts + 1, machine.shot
+        SEEN.parts += 1
+
+    # --- helpers ------------------------------------------------------------------------------------------
+
+    def _count(self, name: str) -> None:
+        SEEN.steps += 1
+        SEEN.rules[name] += 1
+
+    def _start(self, press: Callable[[], None]) -> None:
+        """A start that does nothing says why, unless something moves already."""
+        self._count("start")
+        machine = self.machine
+        old = machine.state
+        refused = len(machine.said("refused"))
+        starts = len(machine.said("start"))
+        recent = [e for e in machine.events if e.kind == "start" and machine.clock.now() - e.t < 0.31]
+        machine.pressed = True
+        press()
+        machine.tick()
+        if old not in ACTIVE and machine.state is old and old in CYCLE | {State.IDLE, State.DISABLED}:
+            said = len(machine.said("refused")) > refused or len(machine.said("start")) > starts
+            assert said or recent or machine.shot.start_refused or self._silent(), (
+                f"{old}: a start says nothing"
+            )
+
+    def _silent(self) -> bool:
+        return True
+
+    def _post(self, command: Command, *, moves: bool = False) -> None:
+        self._count(type(command).__name__)
+        machine = self.machine
+        machine.pressed = isinstance(command, CycleStart)
+        old, told = machine.shot, len(machine.events)
+        machine.post(command)
+        if moves and machine.state is old.state and machine.state is not State.JOG:
+            words = [event.kind for event in machine.events[told:]]
+            assert (
+                "refused" in words
+                or machine.shot.alarms != old.alarms
+                or machine.shot.wheel
+                or machine.shot.wheel_ended
+            ), f"{command} in {old.state} says nothing"

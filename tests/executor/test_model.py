@@ -1,0 +1,13 @@
+"""A seed set of the model of the executor; ``tests.benchmarks.bench_executor_model`` runs 50 000 steps."""
+
+from __future__ import annotations
+
+from hypothesis import HealthCheck, settings
+
+from tests.executor.model import ExecutorModel
+
+# The test class that hypothesis makes: the same examples at every run, by the suite's own profile.
+TestExecutorModel = ExecutorModel.TestCase
+TestExecutorModel.settings = settings(
+    max_examples=20, stateful_step_count=40, deadline=None, suppress_health_check=list(HealthCheck)
+)
