@@ -6,6 +6,7 @@ from app.desk import interrupted
 from app.desk.session import Loaded, Phase
 from app.desk.view import View
 from core.executor.snapshot import Alarm, Snapshot, State
+from core.language.diagnostics import Severity
 
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
@@ -116,9 +117,16 @@ def refusal(loaded: Loaded) -> str:
 
 
 def remedy(loaded: Loaded, prompt: str) -> str:
-    """What to do about a program that will not run, where the prompt line says why."""
+    """What to do about a program that will not run, where the prompt line says why; of one that may be
+    started, what a check has warned of."""
     errors = loaded.errors
-    return errors[0].hint if errors and prompt == refusal(loaded) else ""
+    if errors:
+        return errors[0].hint if prompt == refusal(loaded) else ""
+    if not prompt.startswith("TO START"):
+        return ""
+    warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
+    first = next(warned, None)
+    return f"LINE {first.line}: {first.text} {first.hint}" if first is not None else ""
 
 
 def _progress(loaded: Loaded) -> str:

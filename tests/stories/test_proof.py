@@ -54,6 +54,13 @@ def test_a_mistake_that_breaks_metal_is_told_with_its_line_and_remedy(
     is_refused(story.begins(f"{HEAD}{lines}{end}", tools=TOOLS), line, why, remedy)
 
 
+def test_a_program_that_names_no_tool_may_start_and_says_what_to_look_at(story: Story) -> None:
+    operator = story.begins("G90G94F300\nM03S600\nX.5Z.5\nF20Z.3\nM30\n", tools=TOOLS)
+    operator.drives_on()
+    operator.sees("LINE 4: This move cuts with no tool")
+    assert "TO START" in operator.prompt
+
+
 def test_a_bar_program_whose_branches_are_good_runs_either_way(story: Story) -> None:
     good = BAR.replace("Z9", "Z.8").replace("F300", "F100")
     operator = story.begins(good, tools=TOOLS)

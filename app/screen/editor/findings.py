@@ -92,7 +92,7 @@ class FindingList(Panel):
         put(painter, QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height()), LEFT, str(found.line or "FILE"))
         room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
         painter.setFont(look.font(1.8))
-        put(painter, room, LEFT, found.message)
+        put(painter, room, LEFT, found.text)
         painter.setPen(look.colour("soft"))
         painter.setFont(look.font(1.6))
         put(painter, room.translated(0, room.height()), LEFT, found.hint)

@@ -105,7 +105,7 @@ class EditorPage(EditorParts):
         line = self.field.line
         found = self.field.finding_at(line)
         if found is not None:
-            return f"LINE {line}: {found.message} {found.hint}".strip()
+            return f"LINE {line}: {found.text} {found.hint}".strip()
         return words.STANDING
 
     def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:

@@ -159,7 +159,7 @@ class TextField(QPlainTextEdit):
         )
         if room.width() > 12 * u:
             painter.setPen(self.look.colour(TONES[found.severity]))
-            put(painter, room, LEFT, found.message)
+            put(painter, room, LEFT, found.text)
 
     def shown(self) -> list[tuple[QTextBlock, QRectF]]:
         """The lines in the window and where they stand."""
