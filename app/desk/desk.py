@@ -32,6 +32,7 @@ from core.executor.snapshot import Snapshot, Starts, State
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
+BY_SCREEN = "key or finger at the screen"  # who holds, for the log
 
 
 class Desk(DeskParts):
@@ -155,7 +156,7 @@ class Desk(DeskParts):
             self.ask(words.format(what=waiting), close)
         return not waiting
 
-    def feed_hold(self, by: str = "key or finger at the screen") -> None:
+    def feed_hold(self, by: str = BY_SCREEN) -> None:
         """Feed hold, whatever else is going on."""
         self.post(FeedHold(by))
         self.clear()

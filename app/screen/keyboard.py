@@ -9,6 +9,7 @@ until it is let go, and what waited behind a stall of the screen is text or noth
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import shiboken6
@@ -48,7 +49,7 @@ _KEYS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 class Behind(Protocol):
     """What the keyboard does at once, and what it asks of the window behind it."""
 
-    def hold(self) -> None: ...
+    def hold(self, by: str = "") -> None: ...
 
     def estop(self) -> None: ...
 
@@ -240,7 +241,8 @@ class Keyboard(QObject):
             return self._behind.estop
         holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold" or self._is(letter, "H", event)
         holds = holds or (key == Key.Key_Space and self._is(" ", " ", event))
-        holds = holds or (key == Key.Key_Escape and self._behind.moving())
+        if key == Key.Key_Escape and self._behind.moving():
+            return partial(self._behind.hold, "Esc at the screen")
         return self._behind.hold if holds else None
 
     def _is(self, letter: str, wanted: str, event: QKeyEvent) -> bool:

@@ -16,7 +16,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.desk.desk import Desk
+from app.desk.desk import BY_SCREEN, Desk
 from app.desk.pages import AUTOMATIC
 from app.desk.prompts import MOVING, UNDER_WAY
 from app.desk.words import tr
@@ -156,11 +156,11 @@ class MainWindow(QWidget):
 
     # --- what the keyboard does at once --------------------------------------------------------------
 
-    def hold(self) -> None:
-        """Feed hold, whatever page, field or question has the keyboard."""
+    def hold(self, by: str = "") -> None:
+        """Feed hold, whatever page, field or question has the keyboard; ``by`` which key, for the log."""
         if self.frame is not None:
             self.frame.page.pressed()
-            self.frame.desk.feed_hold()
+            self.frame.desk.feed_hold(by or BY_SCREEN)
             self.refresh()
 
     def estop(self) -> None:

@@ -116,9 +116,9 @@ def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
     operator.cycle_start()
     operator.reaches("PROGRAM STOP")
     operator.key("r")
-    operator.sees("ONCE MORE")
-    operator.during(0.3)
-    operator.key("r")
+    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
+    operator.during(0.6)  # long enough to have been read
+    operator.key("y")
     operator.reaches("READY")
     operator.key("F7")
     for text in ("703  ·  RESET", "part.nc was given up", "705  ·  OPTIONAL STOP", "706  ·  SINGLE BLOCK"):
