@@ -74,16 +74,14 @@ class Notice(Panel):
     def _draw_alarm(self, painter: QPainter, alarm: Alarm, *more: Alarm) -> None:
         """What came first is the cause of what came behind it more often than not."""
         where = f"  ·  LINE {alarm.line}" if alarm.line else ""
-        room = self._head(painter, Tone.ALARM, f"ALARM {alarm.number}{where}")
+        room = self._head(painter, Tone.ALARM, f"ALARM {alarm.number}: {alarm.text}{where}")
         if more:
             room = self._draw_more(painter, room, more)
         high = room.height()
-        what = QRectF(room.x(), room.y(), room.width(), 0.19 * high)
-        self._wrapped(painter, what, tr(alarm.text), 3.4, "text")
         causes = "\n".join(tr(each) for each in dict.fromkeys((alarm.cause, *alarm.causes)))
         for label, text, y, part in (
-            ("CAUSE, THE LIKELIEST FIRST", causes, 0.21, 0.47),
-            ("WHAT TO DO", tr(alarm.remedy), 0.70, 0.30),
+            ("CAUSE, THE LIKELIEST FIRST", causes, 0.0, 0.62),
+            ("WHAT TO DO", tr(alarm.remedy), 0.64, 0.36),
         ):
             box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
             self._labelled(painter, box, label, text)
