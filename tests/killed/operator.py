@@ -45,7 +45,9 @@ class Operator:
             yield False
         yield from self._set_tool_nine()
         while True:
-            if self._state is State.IDLE:
+            if self._asked:
+                self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
+            elif self._state is State.IDLE:
                 for key in (Key.Key_F11, Key.Key_F12):
                     QTest.keyPress(self._window, key)
                 yield True
@@ -70,7 +72,12 @@ class Operator:
 
     @property
     def _ready(self) -> bool:
-        return self._frame.prompt.text.startswith(("TO START", "PRESS"))
+        return self._frame.prompt.text.startswith(("TO START", "PRESS", "LINE"))
+
+    @property
+    def _asked(self) -> bool:
+        shot = self._frame.desk.snapshot()
+        return shot.state is State.IDLE and bool(shot.interrupted_line) and not shot.confirmed
 
     def _tell(self) -> None:
         """What has changed since the last time, as a line of JSON."""

@@ -84,5 +84,5 @@ def test_a_killed_feeder_stops_the_program_and_says_so(files: tuple[str, str], t
         cutting(desk, 0)
         os.kill(desk.feeder(), signal.SIGKILL)
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
-        assert "feeder process has ended" in str(desk.lines[-1]["alarms"])
+        assert "THE FEEDER HAS ENDED" in str(desk.lines[-1]["alarms"])
         assert desk.family() == {desk.popen.pid}  # the screen goes on: offsets and editor stay at hand
