@@ -73,8 +73,8 @@ class Notice(Panel):
 
     def _draw_alarm(self, painter: QPainter, alarm: Alarm, *more: Alarm) -> None:
         """What came first is the cause of what came behind it more often than not."""
-        where = f"  ·  LINE {alarm.line}" if alarm.line else ""
-        room = self._head(painter, Tone.ALARM, f"ALARM {alarm.number}: {alarm.text}{where}")
+        parts = [f"ALARM {alarm.number}: {alarm.text}", *([f"LINE {alarm.line}"] if alarm.line else [])]
+        room = self._head(painter, Tone.ALARM, "  ·  ".join(parts))
         if more:
             room = self._draw_more(painter, room, more)
         high = room.height()

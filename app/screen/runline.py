@@ -93,11 +93,12 @@ class RunLine(Panel):
 
 def stop_words(view: View) -> str:
     """Number and words of the alarm that came first, of the E-stop, or of a hold that nobody pressed."""
-    if view.alarms:
-        first, more = view.alarms[0], len(view.alarms) - 1
-        where = f"  ·  LINE {first.line}" if first.line else ""
-        return f"ALARM {first.number}: {first.text}{where}{f'  ·  AND {more} MORE' if more else ''}"
-    if view.stop is None:
+    first = view.alarms[0] if view.alarms else view.stop
+    if first is None:
         return ""
-    where = f"  ·  LINE {view.stop.line}" if view.stop.line else ""
-    return f"{view.stop.number}: {view.stop.text}{where}"
+    parts = [f"ALARM {first.number}: {first.text}" if view.alarms else f"STOP {first.number}: {first.text}"]
+    if first.line:
+        parts.append(f"LINE {first.line}")
+    if len(view.alarms) > 1:
+        parts.append(f"AND {len(view.alarms) - 1} MORE")
+    return "  ·  ".join(parts)
