@@ -55,7 +55,7 @@ def plan_of(found: Found, snapshot: Snapshot, job: Job, choices: Choices) -> Pla
         begin=begin,
         rows=(*_passes(found), *_rows(begin.checkpoint, snapshot)),
         starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
-        legs=drawn(begin.way, snapshot, (modal.tool_x, modal.tool_z)),
+        legs=() if out else drawn(begin.way, snapshot, (modal.tool_x, modal.tool_z)),
         warning=_left_out(found),
         trouble=_collet(found.checkpoint, snapshot) or out,
     )

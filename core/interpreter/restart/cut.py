@@ -24,6 +24,7 @@ from core.interpreter.series import Series
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
 
 FEED, THREAD, STILL, FACE, SIDE, PER_REV, REVERSE = 1, 2, 4, 8, 16, 32, 64
 """Bits of ``how``: it feeds; it is a thread; C is held while it moves; it mills the face or the side; it
@@ -185,9 +186,7 @@ def _told(rows: _Rows, blocks: int) -> Cut:
     )  # fmt: skip
 
 
-def _faces(
-    feeds: npt.NDArray[np.bool_], x0: Floats, x: Floats, z: Floats, tool: Ints, radius: float
-) -> dict[int, float]:
+def _faces(feeds: Bools, x0: Floats, x: Floats, z: Floats, tool: Ints, radius: float) -> dict[int, float]:
     """Of each tool the least Z beyond all that is cut at which a rapid brings it within that radius.
 
     Where a cut begins there may be air, where it goes to there was metal.
@@ -201,14 +200,14 @@ def _faces(
     return {int(each): float(z[known & (tool == each)].min()) for each in np.unique(tool[known])}
 
 
-def _farthest(feeds: npt.NDArray[np.bool_], z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
+def _farthest(feeds: Bools, z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
     """Of each tool the greatest Z to which it goes by rapid, where that is beyond the start of all cuts."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
     told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
     return {each: far for each, far in told.items() if far > cut + SAME}
 
 
-def _over(feeds: npt.NDArray[np.bool_], x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:
+def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:
     """The least radius to which a rapid goes out among the cuts, none of which goes to it or along it.
 
     A boring bar is drawn off towards the centre, and what it comes to by rapid is smaller than what it cuts.

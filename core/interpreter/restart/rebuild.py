@@ -30,7 +30,7 @@ _ELSEWHERE = (7.3, -11.9, 0.0)  # mm: the other start; no program's words fall t
 _SAME = 1e-7  # mm
 _WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 _NEAR = 64  # lines looked at one by one for the place from which positions are known
-_UP, _DOWN = 3, 500  # lines tried
+_UP, _DOWN = 3, 100  # lines tried
 
 
 class Rebuild:

@@ -15,7 +15,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.restart.cut import FACE, FEED, PER_REV, REVERSE, SAME, SIDE, STILL, THREAD, Cut
+from core.interpreter.restart.cut import (
+    FACE,
+    FEED,
+    PER_REV,
+    REVERSE,
+    SAME,
+    SIDE,
+    STILL,
+    THREAD,
+    Bools,
+    Cut,
+    Floats,
+)
 
 NEAR = 0.1  # mm: no farther from the path a tool stands on it
 _END = 0.005  # mm: nearer to its end a row is done
@@ -25,6 +37,8 @@ _BACK_A_LITTLE = 0.25  # mm
 _FROM_A_SHOULDER = 0.1  # mm: no nearer to a face that is still to be cut
 _ON_CENTRE = 0.05  # mm of radius; a tool there drills or taps
 _AHEAD, _BACK, _LEGS = 400, 400, 60  # rows looked at; legs that an operator can still follow
+_FAR = 100_000  # rows in which the next way off the part is looked for
+_TRIED = 24  # rows back from which the program's own way is tried
 
 
 class Lies(Enum):
@@ -211,23 +225,60 @@ class _Search:
 
         None where cuts come before that may still have to make room for it.
         """
+        level, first = self.z + _ASIDE, self.row + 1
         grew = shrank = False
-        level = self.z + _ASIDE
-        steps = self._ahead()
-        for seg in steps:
-            feeds = bool(seg.how & FEED)
-            if not feeds and seg.z > level and seg.z0 <= level:
-                return self._out_with(seg, steps, grew=grew, shrank=shrank)
-            if not feeds:
-                continue
-            if max(seg.z, seg.z0) > level or seg.how & (STILL | FACE | SIDE):
+        if self.within and self.how & FEED:
+            sideways = self._rest_of_the_cut(level)
+            if sideways is None:
                 return None
-            here = max(seg.z, seg.z0 if seg.row != self.row else seg.z)
-            if not seg.how & THREAD and here > self.z - _FROM_A_SHOULDER and abs(seg.outwards) > _ASIDE:
-                return None  # it cuts along X right here
-            if not seg.how & THREAD:
-                grew, shrank = grew or seg.outwards > _ASIDE, shrank or seg.outwards < -_ASIDE
-        return None
+            grew, shrank = sideways > _ASIDE, sideways < -_ASIDE
+        elif self.within:
+            first = self.row
+        rows = self._with_this_tool(first)
+        passes = np.flatnonzero(((self.cut.how[rows] & FEED) == 0) & self._comes_past(rows, level))
+        if not len(passes):
+            return None
+        crossing = first + int(passes[0])
+        cuts = slice(first, crossing)
+        if self._in_the_way(cuts, level):
+            return None
+        out = self._sideways(cuts)
+        grew, shrank = grew or bool((out > _ASIDE).any()), shrank or bool((out < -_ASIDE).any())
+        steps = (self._seg(row) for row in range(crossing + 1, min(crossing + _AHEAD, rows.stop)))
+        return self._out_with(self._seg(crossing), steps, grew=grew, shrank=shrank)
+
+    def _rest_of_the_cut(self, level: float) -> float | None:
+        """How far outwards the rest of this row goes, mm, 0 in a thread; None: it is in the way itself."""
+        x, z = float(self.cut.x[self.row]), float(self.cut.z[self.row])
+        sideways = 0.0 if self.how & THREAD else abs(x) - abs(self.x)
+        here = z > self.z - _FROM_A_SHOULDER and abs(sideways) > _ASIDE
+        return None if here or z > level else sideways
+
+    def _with_this_tool(self, first: int) -> slice:
+        """The rows from here on that this tool makes on this bar, no more than are looked at."""
+        cut = self.cut
+        far = slice(first, first + _FAR)
+        other = (cut.tool[far] != cut.tool[self.row]) | (cut.bar[far] != cut.bar[self.row])
+        ends = np.flatnonzero(other)
+        return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
+
+    def _comes_past(self, rows: slice, level: float) -> Bools:
+        return (self.cut.z[rows] > level) & (self.cut.z0[rows] <= level)
+
+    def _in_the_way(self, rows: slice, level: float) -> bool:
+        """Whether a cut among these rows comes up to this Z, or goes along X at it."""
+        cut = self.cut
+        feeds = (cut.how[rows] & FEED) != 0
+        upper = np.maximum(cut.z[rows], cut.z0[rows])
+        here = (upper > self.z - _FROM_A_SHOULDER) & (np.abs(self._sideways(rows)) > _ASIDE)
+        held = (cut.how[rows] & (STILL | FACE | SIDE)) != 0
+        return bool((feeds & ((upper > level) | here | held)).any())
+
+    def _sideways(self, rows: slice) -> Floats:
+        """How far each cut among these rows goes outwards, mm; threads, and rapids, are none."""
+        cut = self.cut
+        out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
+        return np.where((cut.how[rows] & (FEED | THREAD)) == FEED, out, 0.0)
 
     def _out_with(self, seg: _Seg, steps: Iterator[_Seg], *, grew: bool, shrank: bool) -> Retract | None:
         share = (max(self.z, seg.z0) - seg.z0) / (seg.z - seg.z0)
@@ -293,7 +344,7 @@ class _Search:
         for seg in self._back():
             if not self.within and len(points) == 1:
                 points[0] = Hop(seg.x, seg.z)
-            ahead = self._from(seg, points[-1])
+            ahead = self._from(seg, points[-1]) if len(points) <= _TRIED else None
             if ahead is not None:
                 return self._made([*_shortest([*points, ahead[0]])[1:], *ahead[1]])
             points.append(Hop(seg.x0, seg.z0))
