@@ -61,6 +61,7 @@ PROGRAMS = (
 SAFE = "G90G94F300\nX.05\nX0\nM30\n"
 MOVES = ACTIVE | {State.JOG, State.HOME}
 SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
+LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
 STILL = 0.02  # mm in a tick; servo noise and the last of a lag are less
 ON_PATH = 0.005  # mm
 FINE = 0.002  # s between two looks at the setpoints
@@ -133,6 +134,7 @@ class Machine(Rig):
         self.pressed = self.jogged = self.homed = self.switched = False  # since the tick before
         self.unexpected = False  # a driver has raised what no driver may
         self.blind = False  # an encoder may tell what is not so
+        self.jog_asked = 0.0
         self.left = -1e9  # when the last state in which slides move was left
         self.fed_badly = 0.0
         self.before = self.shot
@@ -208,6 +210,8 @@ class Machine(Rig):
         self._feeds_as_commanded(new)
         self._known(new)
         self._on_the_path(new)
+        self._stopped_is_off(new)
+        self._jog_ends(new)
         if not self.unexpected:
             assert all(alarm.code != "internal" for alarm in new.alarms), new.alarms
 
@@ -258,6 +262,17 @@ class Machine(Rig):
         if new.t - self.left > SETTLES and all(new.homed):
             true = self.sim.machine.true_position()
             assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
+
+    def _stopped_is_off(self, new: Snapshot) -> None:
+        """An alarm and the E-stop leave no command to the spindle, whatever it did."""
+        if new.state in {State.FAULT, State.ESTOP} and not self.unexpected:
+            assert new.rpm_command == 0.0, f"{new.rpm_command} rpm in {new.state}"
+
+    def _jog_ends(self, new: Snapshot) -> None:
+        """Nothing is jogged for longer than its lease, its step and the braking take."""
+        if self.jogged or new.state is not State.JOG:
+            self.jog_asked = new.t
+        assert new.t - self.jog_asked < LONGEST_JOG, f"jogged for {new.t - self.jog_asked:.1f} s"
 
     def _on_the_path(self, new: Snapshot) -> None:
         """Wherever a cycle was stopped: on a line or circle of its program."""
@@ -315,8 +330,17 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule()
     def presses_start_after_reading(self) -> None:
-        self.machine.run(0.4)
-        self._start(lambda: self.machine.executor.post(CycleStart()))
+        """As a job is worked: what is off is switched on, what was asked is answered, then both palms."""
+        machine = self.machine
+        if machine.state is State.FAULT:
+            machine.post(Reset())
+        if machine.state is State.DISABLED:
+            machine.post(EnableDrives())
+        if machine.shot.interrupted is not None:
+            machine.confirm()
+        machine.run(0.4)
+        self._start(lambda: machine.executor.post(CycleStart()))
+        machine.run(0.2)
 
     @rule()
     def presses_palms(self) -> None:
@@ -331,24 +355,29 @@ class ExecutorModel(RuleBasedStateMachine):
     def _stopping(self) -> bool:
         return self.machine.state in {State.HOLDING, State.JOG}
 
-    @rule(button=st.booleans())
-    def hold_button(self, button: bool) -> None:
+    @rule()
+    def hold_button(self) -> None:
         self._count("hold button")
-        (self.hands.press_hold if button else self.hands.release_hold)()
-        self.machine.tick()
+        self.hands.press_hold()
+        self.machine.run(0.05)
+        self.hands.release_hold()
+        self.machine.run(0.3)
 
-    @rule(down=st.booleans())
-    def estop(self, down: bool) -> None:
+    @rule(drives=st.booleans())
+    def estop_and_back(self, drives: bool) -> None:
         self._count("estop")
-        (self.hands.press_estop if down else self.hands.release_estop)()
+        self.hands.press_estop()
         self.machine.tick()
-        if down:
-            assert self.machine.state is State.ESTOP
+        assert self.machine.state is State.ESTOP
+        self.machine.run(1.0)
+        self.hands.release_estop()
+        self.machine.run(0.2)
+        if drives:
+            self.machine.post(EnableDrives())
 
     @rule(
         command=st.sampled_from(
             [
-                Reset(),
                 Reset(),
                 EnableDrives(),
                 EnableDrives(),
@@ -404,12 +433,14 @@ class ExecutorModel(RuleBasedStateMachine):
         self.hands.turn_handwheel(counts)
         self.machine.tick()
 
-    @rule(auto=st.booleans())
-    def spindle_switch(self, auto: bool) -> None:
+    @rule(off=st.integers(1, 80))
+    def spindle_switch_off_and_auto(self, off: int) -> None:
         self._count("spindle switch")
+        self.hands.set_spindle_auto(False)
+        self.machine.run(off * TICK)
         self.machine.switched = True
-        self.hands.set_spindle_auto(auto)
-        self.machine.tick()
+        self.hands.set_spindle_auto(True)
+        self.machine.run(0.1)
 
     @rule(
         which=st.sampled_from(["feed", "spindle"]), fraction=st.sampled_from([0.0, 0.01, 0.3, 0.7, 1.0, 1.0])
@@ -426,10 +457,12 @@ class ExecutorModel(RuleBasedStateMachine):
 
     # --- what breaks --------------------------------------------------------------------------------------
 
-    @rule(on=st.booleans())
-    def station_is_silent(self, on: bool) -> None:
+    @rule(ticks=st.integers(5, 90))
+    def station_is_silent(self, ticks: int) -> None:
         self._count("silent")
-        self.hands.station_silent(on)
+        self.hands.station_silent(True)
+        self.machine.run(ticks * TICK)
+        self.hands.station_silent(False)
         self.machine.tick()
 
     @rule(width=st.sampled_from([0.0, 0.0, 0.05, 0.6]))
@@ -444,42 +477,39 @@ class ExecutorModel(RuleBasedStateMachine):
         self.hands.spindle_bog(fraction)
         self.machine.tick()
 
-    @rule(text=st.sampled_from(["overvoltage", "", ""]))
-    def spindle_trips(self, text: str) -> None:
-        self._count("spindle trip")
-        self.hands.spindle_fault(text)
+    @rule(
+        what=st.sampled_from(["jam", "encoder", "trip", "spindle", "collet", "coolant", "mend", "mend"]),
+        axis=st.sampled_from(["X", "Z"]),
+    )
+    def breaks(self, what: str, axis: str) -> None:
+        self._count(f"breaks: {what}")
+        hands = self.hands
+        match what:
+            case "jam":
+                hands.jam(axis, True)
+            case "encoder":
+                self.machine.blind = True
+                hands.encoder_stuck(axis, True)
+            case "trip":
+                hands.drive_fault(axis)
+            case "spindle":
+                hands.spindle_fault("overvoltage")
+            case "collet":
+                hands.set_input("collet_closed", False)
+            case "coolant":
+                hands.switch_output("coolant", axis == "X")
+            case _:
+                self._mended()
         self.machine.tick()
 
-    @rule(axis=st.sampled_from(["X", "Z"]))
-    def drive_trips(self, axis: str) -> None:
-        self._count("drive trip")
-        self.hands.drive_fault(axis)
-        self.machine.tick()
-
-    @rule(axis=st.sampled_from(["X", "Z"]), on=st.booleans())
-    def slide_jams(self, axis: str, on: bool) -> None:
-        self._count("jam")
-        self.hands.jam(axis, on)
-        self.machine.tick()
-
-    @rule(axis=st.sampled_from(["X", "Z"]), on=st.booleans())
-    def encoder_sticks(self, axis: str, on: bool) -> None:
-        self._count("encoder")
-        self.machine.blind = True
-        self.hands.encoder_stuck(axis, on)
-        self.machine.tick()
-
-    @rule(name=st.sampled_from(["collet_closed"]), on=st.booleans())
-    def input_flaps(self, name: str, on: bool) -> None:
-        self._count("input")
-        self.hands.set_input(name, on)
-        self.machine.tick()
-
-    @rule(on=st.booleans())
-    def output_is_switched_by_another(self, on: bool) -> None:
-        self._count("output")
-        self.hands.switch_output("coolant", on)
-        self.machine.tick()
+    def _mended(self) -> None:
+        hands = self.hands
+        hands.spindle_fault("")
+        hands.spindle_bog(1.0)
+        for axis in ("X", "Z"):
+            hands.jam(axis, False)
+            hands.encoder_stuck(axis, False)
+        hands.set_input("collet_closed", True)
 
     @rule(
         port=st.sampled_from(_PORTS),
@@ -510,17 +540,12 @@ class ExecutorModel(RuleBasedStateMachine):
             port.breaks.clear()
         hands.station_silent(False)
         hands.pot_noise(0.0)
-        hands.spindle_bog(1.0)
-        hands.spindle_fault("")
-        for axis in ("X", "Z"):
-            hands.jam(axis, False)
-            hands.encoder_stuck(axis, False)
+        self._mended()
         hands.release_hold()
         hands.release_estop()
         hands.set_feed_pot(1.0)
         hands.set_spindle_pot(1.0)
         hands.set_spindle_auto(True)
-        hands.set_input("collet_closed", True)
         self.machine.switched = True
         for _ in range(150):
             self.machine.tick()

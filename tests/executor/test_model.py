@@ -9,5 +9,5 @@ from tests.executor.model import ExecutorModel
 # The test class that hypothesis makes: the same examples at every run, by the suite's own profile.
 TestExecutorModel = ExecutorModel.TestCase
 TestExecutorModel.settings = settings(
-    max_examples=20, stateful_step_count=40, deadline=None, suppress_health_check=list(HealthCheck)
+    max_examples=12, stateful_step_count=30, deadline=None, suppress_health_check=list(HealthCheck)
 )
