@@ -23,6 +23,7 @@ from tests.executor.rig import Rig
 STOPPED = {State.BLOCK_END, State.PROGRAM_STOP}
 _QUICK = 8.0  # times the feeds and through the dwells: steps and places are the same
 _TICK = 0.02
+_LONGEST = 1000.0  # s of the machine
 _APART = 5  # ticks of .08 s between a stop and the next start
 
 
@@ -83,6 +84,13 @@ def steps_of(blocks: Iterable[Block]) -> list[int]:
     return steps
 
 
+def _answered(rig: Rig) -> None:
+    """The loader or bar feeder for whose terminal the program waits does what it waits for."""
+    for model in rig.machine.inputs.values():
+        if rig.state is State.WAIT and model.terminal and rig.shot.waiting_for == model.terminal:
+            rig.sim.machine.set_input(model.name, model.name not in rig.shot.inputs)
+
+
 def stepped_through(
     source: Source, setup: Setup, machine: Machine, limit: int = 2000
 ) -> tuple[QuickRig, list[int]]:
@@ -99,7 +107,11 @@ def stepped_through(
     stops: list[int] = []
     while rig.state not in {State.IDLE, State.FAULT}:
         assert rig.state is not State.HOLD, rig.shot.waiting_for
+        assert rig.clock.now() < _LONGEST, (
+            f"still {rig.state} in line {rig.shot.line}: {rig.shot.waiting_for}"
+        )
         if rig.state not in STOPPED:
+            _answered(rig)
             rig.tick(_TICK)
             continue
         stops.append(rig.shot.block)
