@@ -14,9 +14,10 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from core.executor.commands import CycleStart
+from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.setup import ToolOffset
+from core.ports import DriverError
 from drivers.simulated import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig
 
@@ -231,3 +232,19 @@ def test_a_stall_is_seen_while_the_command_still_rises() -> None:
     rig.sim.machine.spindle_bog(0.2)
     rig.until(State.HOLD, State.FAULT, limit=3.0)
     assert rig.shot.demand[0] > 0.6 * INCH
+
+
+def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The driver foresees the first motion, the control does not yet: no alarm, the pass is made."""
+    rig, _ = begun(300, 0.1, "P")
+    rig.until_true(lambda shot: shot.block_text.startswith("G33"))
+
+    def refused(_: object) -> None:
+        raise DriverError("the slides follow the spindle", "broken-path")
+
+    with monkeypatch.context() as begins:
+        begins.setattr(rig.sim.ports.axes, "splice", refused)
+        rig.post(FeedHold())
+    rig.until(State.HOLD, State.FAULT)
+    assert rig.shot.alarms == ()
+    assert rig.shot.demand[0] == pytest.approx(FORMS["P"][1] * INCH, abs=1e-4)
