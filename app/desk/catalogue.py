@@ -16,6 +16,7 @@ HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 BETWEEN = "  ·  "  # parts of a title are texts of their own
 _WORD = re.compile(r"[^\W\d_]{2}")
 _DEEPEST = 3  # values in values
+_SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has
 
 
 class _Template:
@@ -25,6 +26,8 @@ class _Template:
         pieces = HOLE.split(english)
         self.head, self.tail = pieces[0], pieces[-1]
         self.weight = sum(map(len, pieces))
+        self.joined = BETWEEN in english
+        self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
         self._holes = HOLE.findall(english)
         self._other = other
         self._pattern: re.Pattern[str] | None = None
@@ -50,7 +53,8 @@ class Catalogue:
     def __init__(self, find: Find, templates: Iterable[str]) -> None:
         self._find = find
         found = [_Template(text, other) for text in templates if (other := find(text))]
-        self._templates = sorted(found, key=lambda template: -template.weight)
+        told = (template for template in found if not template.slight)
+        self._templates = sorted(told, key=lambda template: -template.weight)
         self.translate = lru_cache(8192)(self._translated)
 
     def _translated(self, text: str) -> str:
@@ -74,8 +78,9 @@ class Catalogue:
         return joined if joined != text else ""
 
     def _made(self, text: str, depth: int) -> str:
+        joined = BETWEEN in text  # its parts are texts: no hole reaches over from one into the next
         for template in self._templates:
-            values = template.values(text)
+            values = template.values(text) if template.joined or not joined else None
             if values is not None:
                 known = {hole: self._look_up(v, depth + 1) or v for hole, v in values.items()}
                 return template.made(known)

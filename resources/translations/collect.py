@@ -13,6 +13,7 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+from core.alarms.catalogue import CATALOGUE
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -26,9 +27,12 @@ ROOMS = (
     *("app/desk", "app/screen", "core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
 )
-# Scripts and tables that no screen shows.
+# Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
-    {"pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless.py", "logs.py"}
+    {
+        *("pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless.py"),
+        *("logs.py", "screen/display.py"),
+    }
 )
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
@@ -38,17 +42,29 @@ ALSO = (
     "done",
     "rapid",
     "none",
+    "on",
+    "off",
     "in/min",
     "in/rev",
     "IN/OUT",
     "%1 · SIMULATED",
+    # What the screen puts together of parts that are texts of their own.
+    "LINE %1",
+    "AND %1 MORE",
+    "STOP %1: %2",
+    "%1 COMES ON",
+    "%1 GOES OFF",
+    "%1 HAS COME ON AND %2",
+    "%1 HAS GONE OFF AND %2",
+    "Line %1 begins in the work, and no sure way leads there.",
+    "With input %1 %2 at line %3: %4",
 )
 LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _NO_TEXT = re.compile(
     r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
     r"|^F\d+$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
-    r"|^(Page|Zoom|Pan|Shift) \w+$|.*\\|^[A-Z]{2}\d"
+    r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
 )
 _WORDS = re.compile(
     r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$|[^\W\d_]{3,}[:;,]?\s+%|%\d\s+[^\W\d_]{2,}"
@@ -72,7 +88,13 @@ def texts() -> dict[str, str]:
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {**dict.fromkeys(ALSO, ""), **found}
+    return {**dict.fromkeys([*ALSO, *_loud_alarms()], ""), **found}
+
+
+def _loud_alarms() -> list[str]:
+    """Alarms that are shown in capitals and are not found by their small letters: M30, E-stop, C."""
+    texts = [entry.text for entry in CATALOGUE.values()]
+    return [text.upper() for text in texts if text != text.lower()]
 
 
 def _is_read(text: str, loud: bool) -> bool:

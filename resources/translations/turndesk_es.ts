@@ -5,13 +5,58 @@
     <name>turndesk</name>
     <message>
       <location filename="" />
+      <source>%1 COMES ON</source>
+      <translation>SE ENCIENDE %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 GOES OFF</source>
+      <translation>SE APAGA %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 HAS COME ON AND %2</source>
+      <translation>SE ENCENDIÓ %1 Y %2</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 HAS GONE OFF AND %2</source>
+      <translation>SE APAGÓ %1 Y %2</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 · SIMULATED</source>
       <translation>%1 · SIMULADO</translation>
     </message>
     <message>
       <location filename="" />
+      <source>AN I/O MODULE DOES NOT ANSWER</source>
+      <translation>UN MÓDULO DE E/S NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>AND %1 MORE</source>
+      <translation>Y %1 MÁS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>C MOVES WHILE THE SPINDLE TURNS</source>
+      <translation>C SE MUEVE MIENTRAS EL HUSILLO GIRA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>E-STOP AT THE CONTROLLER</source>
+      <translation>PARO DE EMERGENCIA EN EL CONTROLADOR</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>IN/OUT</source>
       <translation>INT/EXT</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Line %1 begins in the work, and no sure way leads there.</source>
+      <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí.</translation>
     </message>
     <message>
       <location filename="" />
@@ -30,6 +75,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>THE PROGRAM ENDS WITHOUT M30 OR M02</source>
+      <translation>EL PROGRAMA TERMINA SIN M30 NI M02</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE SPINDLE DOES NOT BECOME C</source>
+      <translation>EL HUSILLO NO PASA A SER C</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>With input %1 %2 at line %3: %4</source>
+      <translation>Con la entrada %1 %2 en la línea %3: %4</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>in/min</source>
       <translation>pulg/min</translation>
     </message>
@@ -37,6 +97,16 @@
       <location filename="" />
       <source>in/rev</source>
       <translation>pulg/rev</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>off</source>
+      <translation>apagada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>on</source>
+      <translation>encendida</translation>
     </message>
     <message>
       <location filename="app/compose/journal.py" />
@@ -55,6 +125,11 @@
     </message>
     <message>
       <location filename="app/compose/screen.py" />
+      <source>MTCONNECT</source>
+      <translation>MTCONNECT</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
       <source>NO SHOP-FLOOR DATA: {why}</source>
       <translation>SIN DATOS PARA LA PLANTA: {why}</translation>
     </message>
@@ -70,8 +145,28 @@
     </message>
     <message>
       <location filename="app/compose/screen.py" />
+      <source>WHAT KEEPS OFFSETS AND COUNTS</source>
+      <translation>LO QUE GUARDA COMPENSACIONES Y CUENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>WHAT TALKS TO THE INVERTER</source>
+      <translation>LO QUE HABLA CON EL VARIADOR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>WHAT WATCHES THE PROGRAM'S FILE</source>
+      <translation>LO QUE VIGILA EL ARCHIVO DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
       <source>machine file: %1</source>
       <translation>archivo de máquina: %1</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen.py" />
+      <source>{what} HAS ENDED: SAVE THE LOG, END TURNDESK AND START IT AGAIN</source>
+      <translation>{what} TERMINÓ: GUARDE LA BITÁCORA, CIERRE TURNDESK Y ÁBRALO OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/desk/answers.py" />
@@ -180,8 +275,28 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>Esc at the screen</source>
+      <translation>Esc en la pantalla</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>FILE NOT FOUND: %1</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO: %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY</source>
+      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, O OPRIMA Y PARA CERRAR, ESC PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>THE DRIVES ARE ON</source>
       <translation>LOS SERVOS ESTÁN ENCENDIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>THE E-STOP IS NOT PRESSED</source>
+      <translation>EL PARO DE EMERGENCIA NO ESTÁ OPRIMIDO</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -190,8 +305,28 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>THE INTERRUPTED PROGRAM {name} IS NOT IN THE FOLDER: F2</source>
+      <translation>EL PROGRAMA INTERRUMPIDO {name} NO ESTÁ EN LA CARPETA: F2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST</source>
       <translation>LA MÁQUINA SE MUEVE: OPRIMA PRIMERO H, RETENCIÓN DE AVANCE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON</source>
+      <translation>Y SIRVE EN LA PÁGINA AUTOMÁTICO, CON LOS SERVOS ENCENDIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>key or finger at the screen</source>
+      <translation>tecla o dedo en la pantalla</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>{name} IS NOT LOADED: A JOB WAS INTERRUPTED</source>
+      <translation>{name} NO SE CARGA: HAY UN TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
       <location filename="app/desk/drawing/measured.py" />
@@ -395,8 +530,13 @@
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
-      <source>F3 SAVES AND PUTS THE PROGRAM ON THE DESK, PROVED ANEW</source>
-      <translation>F3 GUARDA Y PONE EL PROGRAMA EN EL CONTROL, COMPROBADO DE NUEVO</translation>
+      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
+      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
+      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
@@ -407,11 +547,6 @@
       <location filename="app/desk/editing/words.py" />
       <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
       <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/editing/words.py" />
-      <source>PRESS F10 ONCE MORE TO LEAVE WITHOUT SAVING, ESC TO GO ON</source>
-      <translation>OPRIMA F10 OTRA VEZ PARA SALIR SIN GUARDAR, ESC PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
@@ -465,13 +600,28 @@
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
+      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
+      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
+      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
+      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/editing/words.py" />
       <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
       <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
     </message>
     <message>
       <location filename="app/desk/editing/words.py" />
-      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: SAVE ONCE MORE TO REPLACE IT (IT STAYS IN HISTORY)</source>
-      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: GUARDE OTRA VEZ PARA REEMPLAZARLO (QUEDA EN LA HISTORIA)</translation>
+      <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
+      <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
     </message>
     <message>
       <location filename="app/desk/files/changes.py" />
@@ -545,8 +695,8 @@
     </message>
     <message>
       <location filename="app/desk/files/changing.py" />
-      <source>PRESS F6 ONCE MORE TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>OPRIMA F6 OTRA VEZ PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/desk/files/changing.py" />
@@ -557,6 +707,11 @@
       <location filename="app/desk/files/changing.py" />
       <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
       <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/files/changing.py" />
+      <source>{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST</source>
+      <translation>{name} ESTÁ INTERRUMPIDO: PRIMERO TERMÍNELO O ABANDÓNELO</translation>
     </message>
     <message>
       <location filename="app/desk/files/changing.py" />
@@ -635,8 +790,8 @@
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
-      <source>%1: the control ended in the middle of its last run</source>
-      <translation>%1: el control terminó en medio de su última ejecución</translation>
+      <source>: the control ended in the middle of its last run</source>
+      <translation>: el control terminó en medio de su última corrida</translation>
     </message>
     <message>
       <location filename="app/desk/files/record.py" />
@@ -835,11 +990,6 @@
     </message>
     <message>
       <location filename="app/desk/files/traffic.py" />
-      <source>RETURN</source>
-      <translation>RETURN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/files/traffic.py" />
       <source>RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK</source>
       <translation>RETURN ABRE UN LUGAR O CARPETA, Y SOBRE UN PROGRAMA LO IMPORTA; F5 IMPORTA TODO; ESC REGRESA</translation>
     </message>
@@ -865,8 +1015,8 @@
     </message>
     <message>
       <location filename="app/desk/files/traffic.py" />
-      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. {key} ONCE MORE REPLACES, ESC KEEPS</source>
-      <translation>{names}: YA EXISTE CON OTRO TEXTO. {key} OTRA VEZ REEMPLAZA, ESC LO CONSERVA</translation>
+      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. OPRIMA Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/desk/files/transfer.py" />
@@ -897,6 +1047,16 @@
       <location filename="app/desk/files/transfer.py" />
       <source>replaced by an import</source>
       <translation>reemplazado por una importación</translation>
+    </message>
+    <message>
+      <location filename="app/desk/home.py" />
+      <source>TURNDESK_HOME: %1 %2 a file and no folder; name a folder, or unset it</source>
+      <translation>TURNDESK_HOME: %1 %2 un archivo y no una carpeta; nombre una carpeta, o quítela</translation>
+    </message>
+    <message>
+      <location filename="app/desk/home.py" />
+      <source>lies below %1, which is</source>
+      <translation>está debajo de %1, que es</translation>
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
@@ -1064,6 +1224,61 @@
       <translation>compensación de herramienta</translation>
     </message>
     <message>
+      <location filename="app/desk/interrupted.py" />
+      <source> (ITS TEXT HAS CHANGED SINCE)</source>
+      <translation> (SU TEXTO HA CAMBIADO DESDE ENTONCES)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source> PASS {now} OF {all}</source>
+      <translation> PASADA {now} DE {all}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK</source>
+      <translation>EMPIEZA EN LA LÍNEA 1, {text}, DESDE DONDE ESTÁ T{tool}: {start}; ESC LO ANULA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}</source>
+      <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {at}: {why}{changed}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>STANDS AT {stood} FROM HOME</source>
+      <translation>ESTÁ EN {stood} DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>STOOD AT {stood} FROM HOME</source>
+      <translation>ESTABA EN {stood} DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING</source>
+      <translation>ESTABA EN {stood} DESDE LA REFERENCIA; DÓNDE ESTÁ AHORA NO SE SABE SIN REFERENCIAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>STOOD AT {stood}, STANDS AT {now} FROM HOME</source>
+      <translation>ESTABA EN {stood}, ESTÁ EN {now} DESDE LA REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/interrupted.py" />
+      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
+    </message>
+    <message>
       <location filename="app/desk/jogging/asked.py" />
       <source>TOOL NUMBER?</source>
       <translation>¿NÚMERO DE HERRAMIENTA?</translation>
@@ -1205,8 +1420,8 @@
     </message>
     <message>
       <location filename="app/desk/jogging/home.py" />
-      <source>HOME {first}: PRESS HOME ONCE MORE FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
-      <translation>REFERENCIAR {first}: OPRIMA REFERENCIA OTRA VEZ PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
+      <source>HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
+      <translation>REFERENCIAR {first}: OPRIMA RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/home.py" />
@@ -1222,6 +1437,11 @@
       <location filename="app/desk/jogging/home.py" />
       <source>NOT HOMED</source>
       <translation>SIN REF</translation>
+    </message>
+    <message>
+      <location filename="app/desk/jogging/home.py" />
+      <source>T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. </source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA: PRIMERO SÁQUELA A MANO. </translation>
     </message>
     <message>
       <location filename="app/desk/jogging/home.py" />
@@ -1361,7 +1581,7 @@
     <message>
       <location filename="app/desk/jogging/wheel.py" />
       <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
-      <translation>EL CONMUTADOR DEL PUESTO ELIGE EL EJE DEL VOLANTE</translation>
+      <translation>EL INTERRUPTOR DE LA ESTACIÓN ELIGE EL EJE DEL VOLANTE</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/wheel.py" />
@@ -1480,6 +1700,11 @@
     </message>
     <message>
       <location filename="app/desk/mdi/mdi.py" />
+      <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
+      <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
       <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
       <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
     </message>
@@ -1487,6 +1712,11 @@
       <location filename="app/desk/mdi/mdi.py" />
       <source>THE LINE CANNOT BE PROVED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/mdi/mdi.py" />
+      <source>THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET</source>
+      <translation>LA LÍNEA SE COMPRUEBA Y CORRE CON SERVOS ENCENDIDOS: F5 LOS ENCIENDE, F6 ES RESET</translation>
     </message>
     <message>
       <location filename="app/desk/mdi/mdi.py" />
@@ -1580,8 +1810,8 @@
     </message>
     <message>
       <location filename="app/desk/offsets/desk.py" />
-      <source>PRESS C ONCE MORE TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
-      <translation>OPRIMA C OTRA VEZ PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
+      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
+      <translation>OPRIMA Y PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
     </message>
     <message>
       <location filename="app/desk/offsets/desk.py" />
@@ -1990,8 +2220,18 @@
     </message>
     <message>
       <location filename="app/desk/parts.py" />
-      <source>RELEASE THE BUTTON (SHIFT+E)</source>
-      <translation>SUELTE EL BOTÓN (SHIFT+E)</translation>
+      <source>RELEASE THE BUTTON (U)</source>
+      <translation>SUELTE EL BOTÓN (U)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_file.py" />
+      <source>{name} HAS CHANGED ON THE DISK: F2 READS IT ANEW, THE START RUNS WHAT IS SHOWN</source>
+      <translation>{name} CAMBIÓ EN EL DISCO: F2 LO LEE DE NUEVO, EL ARRANQUE CORRE LO QUE SE MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_file.py" />
+      <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
+      <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2005,18 +2245,28 @@
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
+      <source>%1  ·  WHAT TO DO: %2</source>
+      <translation>%1  ·  QUÉ HACER: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
       <source>%1 CANNOT BE LOADED: %2; PRESS F2 FOR ANOTHER</source>
       <translation>NO SE PUEDE CARGAR %1: %2; OPRIMA F2 PARA OTRO</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
-      <source>ALARM %1: %2: F7 LISTS IT, R ACKNOWLEDGES IT</source>
-      <translation>ALARMA %1: %2: F7 LA MUESTRA, R LA RECONOCE</translation>
+      <source>A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST</source>
+      <translation>HAY UNA TECLA DE PARO OPRIMIDA: SUÉLTELA PRIMERO</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
       <source>ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE</source>
       <translation>ALARMA: CORRIJA LA CAUSA Y OPRIMA R PARA RECONOCERLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>CAUSE: %1</source>
+      <translation>CAUSA: %1</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2040,11 +2290,6 @@
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
-      <source>E-STOP: WHAT TO DO STANDS ON THE AUTOMATIC PAGE (F1, F2)</source>
-      <translation>PARO DE EMERGENCIA: QUÉ HACER SE VE EN LA PÁGINA AUTOMÁTICO (F1, F2)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompts.py" />
       <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
       <translation>NO SE ENCONTRÓ EL ARCHIVO, OPRIMA CUALQUIER TECLA PARA CONTINUAR</translation>
     </message>
@@ -2057,6 +2302,11 @@
       <location filename="app/desk/prompts.py" />
       <source>LINE %1: </source>
       <translation>LÍNEA %1: </translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>LINE %1: %2 %3</source>
+      <translation>LÍNEA %1: %2 %3</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2075,18 +2325,28 @@
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
+      <source>ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH</source>
+      <translation>UN BOTÓN DE PALMA SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y OPRIMA LOS DOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>PAUSE HOLDS THE FEED (SO DO H AND ESC), SCROLL LOCK IS THE E-STOP</source>
+      <translation>PAUSA RETIENE EL AVANCE (TAMBIÉN H Y ESC), BLOQ DESPL ES EL PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
       <source>PRESS F2 TO CHOOSE A PROGRAM</source>
       <translation>OPRIMA F2 PARA ELEGIR UN PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
-      <source>PRESS H FOR FEED HOLD</source>
-      <translation>OPRIMA H PARA RETENCIÓN DE AVANCE</translation>
+      <source>PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
-      <source>PRESS R ONCE MORE TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
-      <translation>OPRIMA R OTRA VEZ PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN</source>
+      <translation>OPRIMA Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO OPRIMIDO</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2097,6 +2357,11 @@
       <location filename="app/desk/prompts.py" />
       <source>THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW</source>
       <translation>EL CONTROL NO RESPONDE: OPRIMA EL PARO DE EMERGENCIA; LO QUE SE VE NO ES DE AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED</source>
+      <translation>EL PARO DE EMERGENCIA ES EL BOTÓN ROJO DE LA MÁQUINA: OPRÍMALO. ESTA TECLA RETUVO EL AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2115,8 +2380,23 @@
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
+      <source>TO START</source>
+      <translation>PARA ARRANCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
       <source>TO START %1</source>
       <translation>PARA ARRANCAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING</source>
+      <translation>ESCRIBA UN NOMBRE, O MARQUE UN PROGRAMA CON LAS FLECHAS, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompts.py" />
+      <source>WHAT TO DO: %1  ·  R ACKNOWLEDGES, F7 LISTS</source>
+      <translation>QUÉ HACER: %1  ·  R RECONOCE, F7 LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/prompts.py" />
@@ -2174,6 +2454,46 @@
       <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
     </message>
     <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT</source>
+      <translation>C GIRÓ DESDE QUE ENTRÓ T{tool}: LIBÉRELA GIRANDO EL HUSILLO A MANO Y SAQUE T{tool} A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME</source>
+      <translation>NO SE SABE CÓMO LLEGÓ AQUÍ T{tool}: SÁQUELA A MANO DE LA PIEZA POR DONDE ENTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING</source>
+      <translation>T{tool} ES UN MACHUELO EN SU ROSCA: SÁQUELO A MANO GIRANDO EL HUSILLO, CON Z DETRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} STANDS CLEAR OF THE PART ALREADY</source>
+      <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z</source>
+      <translation>T{tool} ESTÁ EN UNA ROSCA: SAQUE PRIMERO X DE LA ROSCA A MANO, NO Z</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA A MANO POR DONDE ENTRÓ, {x} Y Z+ A LA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN Z+, NO EN X</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/leaving.py" />
+      <source>T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN {x}, NO EN Z</translation>
+    </message>
+    <message>
       <location filename="app/desk/searchto/opening.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
@@ -2195,8 +2515,18 @@
     </message>
     <message>
       <location filename="app/desk/searchto/plan.py" />
-      <source>LOOK: {leg} COMES IN AT R{at}, AND THE PROGRAM HAS CUT AT R{bar}</source>
-      <translation>OJO: {leg} ENTRA EN R{at}, Y EL PROGRAMA CORTÓ EN R{bar}</translation>
+      <source>CALLED ON LINE</source>
+      <translation>LLAMADA EN LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>LOOK: LINES {first} TO {last} ARE LEFT OUT AND THEIR METAL IS STILL THERE</source>
+      <translation>OJO: SE OMITEN LAS LÍNEAS {first} A {last} Y SU METAL SIGUE AHÍ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/plan.py" />
+      <source>PASS OF LINES {first}-{last}</source>
+      <translation>PASADA DE LAS LÍNEAS {first}-{last}</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/plan.py" />
@@ -2225,13 +2555,13 @@
     </message>
     <message>
       <location filename="app/desk/searchto/plan.py" />
-      <source>T{now} STANDS AT THE PART AND THE LINE WORKS WITH T{wanted}: JOG Z CLEAR OF THE PART FIRST</source>
-      <translation>T{now} ESTÁ EN LA PIEZA Y LA LÍNEA TRABAJA CON T{wanted}: PRIMERO ALEJE Z DE LA PIEZA A MANO</translation>
+      <source>{name} ON</source>
+      <translation>{name} ENCENDIDO</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/plan.py" />
-      <source>{name} ON</source>
-      <translation>{name} ENCENDIDO</translation>
+      <source>{number} OF {count}</source>
+      <translation>{number} DE {count}</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
@@ -2245,8 +2575,13 @@
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
-      <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE</source>
-      <translation>LA LÍNEA {line} CORRÍA CUANDO SE INTERRUMPIÓ EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO</translation>
+      <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT</source>
+      <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
+      <source>LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT</source>
+      <translation>VEA EL CAMINO DE SALIDA DE LA PIEZA; F10 LO CONFIRMA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
@@ -2265,13 +2600,28 @@
     </message>
     <message>
       <location filename="app/desk/searchto/prompting.py" />
+      <source>TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK</source>
+      <translation>PARA SACAR LA HERRAMIENTA DE LA PIEZA {start}; ESC LO ANULA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/prompting.py" />
       <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
       <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
+      <source>(WAY OUT OF THE PART)</source>
+      <translation>(SALIDA DE LA PIEZA)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
       <source>CHOOSE A GOOD LINE FIRST</source>
       <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES</source>
+      <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN LAZO O DE UNA SUBRUTINA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
@@ -2292,6 +2642,11 @@
       <location filename="app/desk/searchto/search.py" />
       <source>TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE</source>
       <translation>ESCRIBA PRIMERO UN TEXTO; COMILLAS ANTES DE LAS CIFRAS LAS VUELVEN TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/searchto/search.py" />
+      <source>WAY OUT</source>
+      <translation>SALIDA</translation>
     </message>
     <message>
       <location filename="app/desk/searchto/search.py" />
@@ -2540,8 +2895,8 @@
     </message>
     <message>
       <location filename="app/desk/special/keeping.py" />
-      <source>PRESS RETURN ONCE MORE TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
-      <translation>OPRIMA RETURN OTRA VEZ PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/desk/special/keeping.py" />
@@ -2620,8 +2975,8 @@
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
-      <source>PRESS F2 ONCE MORE TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
-      <translation>OPRIMA F2 OTRA VEZ PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ AHORA, ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/desk/special/machine_file.py" />
@@ -2685,8 +3040,8 @@
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
-      <source>PRESS F4 ONCE MORE TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
-      <translation>OPRIMA F4 OTRA VEZ PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/desk/special/parts.py" />
@@ -2780,8 +3135,8 @@
     </message>
     <message>
       <location filename="app/desk/special/preferences.py" />
-      <source>RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (SHIFT+E)</source>
-      <translation>SUELTE EL PARO DE EMERGENCIA DE LA ESTACIÓN ANTES DE OCULTARLA (SHIFT+E)</translation>
+      <source>RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)</source>
+      <translation>SUELTE EL PARO DE EMERGENCIA DE LA ESTACIÓN ANTES DE OCULTARLA (U)</translation>
     </message>
     <message>
       <location filename="app/desk/special/preferences.py" />
@@ -2905,13 +3260,13 @@
     </message>
     <message>
       <location filename="app/desk/special/signals.py" />
-      <source>PRESS RETURN ONCE MORE TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
-      <translation>OPRIMA RETURN OTRA VEZ PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+      <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
+      <translation>OPRIMA Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
     </message>
     <message>
       <location filename="app/desk/special/signals.py" />
-      <source>PRESS RETURN ONCE MORE TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
-      <translation>OPRIMA RETURN OTRA VEZ PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+      <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
+      <translation>OPRIMA Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
     </message>
     <message>
       <location filename="app/desk/special/signals.py" />
@@ -3000,8 +3355,8 @@
     </message>
     <message>
       <location filename="app/desk/special/speed.py" />
-      <source>PRESS F4 ONCE MORE TO LIFT THE LIMIT, ESC TO KEEP IT</source>
-      <translation>OPRIMA F4 OTRA VEZ PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/special/speed.py" />
@@ -3160,8 +3515,8 @@
     </message>
     <message>
       <location filename="app/desk/transfer/section.py" />
-      <source>PRESS F6 ONCE MORE TO THROW THE RECEIVED PROGRAM AWAY, RETURN TO STORE IT</source>
-      <translation>OPRIMA F6 OTRA VEZ PARA DESECHAR EL PROGRAMA RECIBIDO, RETURN PARA GUARDARLO</translation>
+      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
+      <translation>OPRIMA Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/transfer/section.py" />
@@ -3330,6 +3685,16 @@
     </message>
     <message>
       <location filename="app/desk/view.py" />
+      <source>ALARM %1: %2</source>
+      <translation>ALARMA %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
+      <source>FEED HOLD %1: %2</source>
+      <translation>RETENCIÓN DE AVANCE %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/view.py" />
       <source>PROGRAM STOP</source>
       <translation>PARO DE PROGRAMA</translation>
     </message>
@@ -3365,8 +3730,8 @@
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
-      <source>PRESS C ONCE MORE TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
-      <translation>OPRIMA C OTRA VEZ PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+      <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
+      <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/desk/zero_offsets/desk.py" />
@@ -3437,6 +3802,16 @@
       <location filename="app/screen/dock.py" />
       <source>OUT</source>
       <translation>AFUERA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>PAUSE</source>
+      <translation>PAUSA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/dock.py" />
+      <source>SCR LOCK</source>
+      <translation>BLOQ DES</translation>
     </message>
     <message>
       <location filename="app/screen/dock.py" />
@@ -3665,11 +4040,6 @@
     </message>
     <message>
       <location filename="app/screen/editor/page.py" />
-      <source>LINE %1: %2 %3</source>
-      <translation>LÍNEA %1: %2 %3</translation>
-    </message>
-    <message>
-      <location filename="app/screen/editor/page.py" />
       <source>NOTHING WAS FOUND THAT IS WRONG</source>
       <translation>NO SE HALLÓ NADA MAL</translation>
     </message>
@@ -3720,6 +4090,11 @@
     </message>
     <message>
       <location filename="app/screen/frame_parts.py" />
+      <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
+      <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame_parts.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
@@ -3727,6 +4102,16 @@
       <location filename="app/screen/frame_parts.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame_parts.py" />
+      <source>NOT KEPT</source>
+      <translation>SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/frame_parts.py" />
+      <source>NOT KEPT: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
       <location filename="app/screen/frame_parts.py" />
@@ -3815,6 +4200,11 @@
     </message>
     <message>
       <location filename="app/screen/jog/page.py" />
+      <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
+      <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/jog/page.py" />
       <source>READOUT</source>
       <translation>LECTURA</translation>
     </message>
@@ -3865,6 +4255,11 @@
     </message>
     <message>
       <location filename="app/screen/letters.py" />
+      <source>RETURN</source>
+      <translation>RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/letters.py" />
       <source>SPACE</source>
       <translation>ESPACIO</translation>
     </message>
@@ -3894,11 +4289,6 @@
       <translation>UN ERROR DE LA PANTALLA; LA MÁQUINA NO TIENE QUE VER: %1: %2</translation>
     </message>
     <message>
-      <location filename="app/screen/main.py" />
-      <source>FILE NOT FOUND: %1</source>
-      <translation>NO SE ENCONTRÓ EL ARCHIVO: %1</translation>
-    </message>
-    <message>
       <location filename="app/screen/mdi/history.py" />
       <source>HISTORY  ·  ARROW UP AND DOWN</source>
       <translation>HISTORIA  ·  FLECHA ARRIBA Y ABAJO</translation>
@@ -3917,6 +4307,11 @@
       <location filename="app/screen/mdi/line.py" />
       <source>LINE  ·  READY, CYCLE START RUNS IT</source>
       <translation>LÍNEA  ·  LISTA, INICIO DE CICLO LA CORRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/mdi/page.py" />
+      <source>DRIVES</source>
+      <translation>SERVOS</translation>
     </message>
     <message>
       <location filename="app/screen/mdi/page.py" />
@@ -3975,28 +4370,28 @@
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
-      <source>  ·  LINE %1</source>
-      <translation>  ·  LÍNEA %1</translation>
+      <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER</source>
+      <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  AV PÁG: ANTERIORES</translation>
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
-      <source>ALARM %1%2</source>
-      <translation>ALARMA %1%2</translation>
+      <source>ALSO: %1</source>
+      <translation>TAMBIÉN: %1</translation>
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
-      <source>ALARM LOG  ·  ESC CLOSES</source>
-      <translation>BITÁCORA DE ALARMAS  ·  ESC CIERRA</translation>
+      <source>CAUSE, THE LIKELIEST FIRST</source>
+      <translation>CAUSA, LA MÁS PROBABLE PRIMERO</translation>
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
-      <source>CAUSE</source>
-      <translation>CAUSA</translation>
+      <source>LINE %1</source>
+      <translation>LÍNEA %1</translation>
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
-      <source>No alarm since the start.</source>
-      <translation>Ninguna alarma desde el arranque.</translation>
+      <source>No alarm and no stop yet.</source>
+      <translation>Todavía ninguna alarma ni paro.</translation>
     </message>
     <message>
       <location filename="app/screen/overlay.py" />
@@ -4079,6 +4474,11 @@
       <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
     </message>
     <message>
+      <location filename="app/screen/runline.py" />
+      <source>STOP %1: %2</source>
+      <translation>PARO %1: %2</translation>
+    </message>
+    <message>
       <location filename="app/screen/scenes.py" />
       <source>%1 cannot be written</source>
       <translation>no se puede escribir %1</translation>
@@ -4099,6 +4499,16 @@
       <translation>AHORA</translation>
     </message>
     <message>
+      <location filename="app/screen/searchto/beside.py" />
+      <source>Pass after</source>
+      <translation>Pasada sig.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/beside.py" />
+      <source>Pass before</source>
+      <translation>Pasada ant.</translation>
+    </message>
+    <message>
       <location filename="app/screen/searchto/page.py" />
       <source>AFTER</source>
       <translation>DESPUÉS</translation>
@@ -4112,16 +4522,6 @@
       <location filename="app/screen/searchto/page.py" />
       <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
       <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/searchto/page.py" />
-      <source>F4: INSIDE A BORE, Z LAST</source>
-      <translation>F4: DENTRO DE UN BARRENO, Z AL FINAL</translation>
-    </message>
-    <message>
-      <location filename="app/screen/searchto/page.py" />
-      <source>F4: OUTSIDE, X LAST</source>
-      <translation>F4: POR FUERA, X AL FINAL</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
@@ -4150,8 +4550,23 @@
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
+      <source>H HOLDS IT ON ITS WAY</source>
+      <translation>H LA RETIENE EN SU CAMINO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
       <source>LINE {line} IS NOT GOOD</source>
       <translation>LA LÍNEA {line} NO ES BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>NOTHING BUT THE SLIDES</source>
+      <translation>NADA MÁS LOS CARROS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>PASS {number} OF {count}</source>
+      <translation>PASADA {number} DE {count}</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
@@ -4162,6 +4577,16 @@
       <location filename="app/screen/searchto/page.py" />
       <source>STATE AT LINE {line}</source>
       <translation>ESTADO EN LA LÍNEA {line}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>THE TOOL LEAVES THE PART AT {feed}</source>
+      <translation>LA HERRAMIENTA SALE DE LA PIEZA A {feed}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/searchto/page.py" />
+      <source>THE WAY OUT OF THE PART</source>
+      <translation>CAMINO DE SALIDA DE LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/screen/searchto/page.py" />
@@ -4180,11 +4605,6 @@
     </message>
     <message>
       <location filename="app/screen/searchto/starts.py" />
-      <source>NOTHING BUT THE SLIDES</source>
-      <translation>NADA MÁS LOS CARROS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/searchto/starts.py" />
       <source>WILL START</source>
       <translation>ARRANCARÁ</translation>
     </message>
@@ -4197,6 +4617,21 @@
       <location filename="app/screen/window.py" />
       <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
       <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window.py" />
+      <source>AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE</source>
+      <translation>UN CAMPO TIENE EL TECLADO, Y NO ADMITE {key} AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window.py" />
+      <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
+      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window.py" />
+      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
+      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>
     <message>
       <location filename="app/screen/zero_offsets/page.py" />
@@ -4214,269 +4649,1539 @@
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>C moves while the spindle turns</source>
-      <translation>C se mueve mientras gira el husillo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>E-stop is pressed or the safety circuit is open</source>
+      <translation>el paro de emergencia está oprimido o el circuito de seguridad está abierto</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>PRESS E-STOP, then find out why</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA y luego busque la causa</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>Reset, Drives On, home all axes before anything is started</source>
+      <translation>Reset, encienda servos, referencie todos los ejes antes de arrancar nada</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>Reset, drives on, start again</source>
-      <translation>Reset, encienda servos, arranque de nuevo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>Reset, Drives On, home; if it stands on the switch move it off by hand first</source>
+      <translation>Reset, encienda servos, referencie; si está sobre el interruptor, sáquelo antes a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>a block leaves the soft limits</source>
-      <translation>un bloque sale de los límites por programa</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>Reset, Drives On, start again; if it comes again, the log says what was refused</source>
+      <translation>Reset, encienda servos, arranque otra vez; si se repite, la bitácora dice qué se rechazó</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>a drive has tripped</source>
-      <translation>un servo se disparó</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>Reset, Drives On; compare the machine file with the drives before the program is run again</source>
+      <translation>Reset, encienda servos; compare el archivo de máquina con los servos antes de correr otra vez el programa</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>a driver could not do what it was asked</source>
-      <translation>un controlador de equipo no pudo hacer lo que se le pidió</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>Reset, Drives On; end other programs on this computer, and restart at the line</source>
+      <translation>Reset, encienda servos; cierre otros programas de esta computadora y reinicie en la línea</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>a mistake in the control</source>
-      <translation>un error en el control</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>a drive does not take its settings</source>
+      <translation>un servo no acepta sus ajustes</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>a slide does not follow its setpoints</source>
-      <translation>un carro no sigue sus consignas</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>a drive has restarted</source>
+      <translation>un servo se reinició</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/alarms/axes.py" />
+      <source>a drive has tripped: its display says why</source>
+      <translation>un servo se disparó: su pantalla dice por qué</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a drive keeps its fault</source>
+      <translation>un servo conserva su falla</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a drive shows a fault</source>
+      <translation>un servo muestra una falla</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a drive was not ready any more</source>
+      <translation>un servo ya no estaba listo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a fuse or the drives' supply</source>
+      <translation>un fusible o la alimentación de los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a motor or encoder cable</source>
+      <translation>un cable de motor o de encoder</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a move beyond what the drives allow</source>
+      <translation>un movimiento más allá de lo que permiten los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a node number is wrong</source>
+      <translation>un número de nodo está mal</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>a slide has hit its limit switch</source>
+      <translation>un carro tocó su interruptor de límite</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>an axis drive does not answer</source>
+      <translation>el servo de un eje no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>an axis has moved unasked</source>
+      <translation>un eje se movió sin que nadie lo pidiera</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>an axis is not where it ought to stand</source>
+      <translation>un eje no está donde debe estar</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
       <source>axis drive fault</source>
       <translation>falla de servo de eje</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>check air and switch, Reset</source>
-      <translation>revise el aire y el interruptor, Reset</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>axis sent, its encoder does not count</source>
+      <translation>un eje recibe orden y su encoder no cuenta</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>check collet and bar</source>
-      <translation>revise la boquilla y la barra</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>bus cable or power</source>
+      <translation>cable del bus o alimentación</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>check offsets and start position</source>
-      <translation>revise compensaciones y posición de arranque</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>check its supply, Reset, Drives On; home again</source>
+      <translation>revise su alimentación, Reset, encienda servos; referencia otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>check spindle drive and load, Reset</source>
-      <translation>revise el variador del husillo y la carga, Reset</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>check the drive's power and bus cable, Reset, Drives On; home again</source>
+      <translation>revise alimentación y cable de bus del servo, Reset, encienda servos; referencia otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>check the part</source>
-      <translation>revise la pieza</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>close the safety circuit, Reset, Drives On; home where the axis asks for it</source>
+      <translation>cierre el circuito de seguridad, Reset, encienda servos; referencia donde el eje la pida</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>clear the cause, Reset, drives on</source>
-      <translation>elimine la causa, Reset, encienda servos</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>clear the drive's fault, Reset</source>
-      <translation>borre la falla del variador, Reset</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>close it with M12</source>
-      <translation>ciérrela con M12</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>collet does not answer</source>
-      <translation>la boquilla no responde</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>collet has opened</source>
-      <translation>la boquilla se abrió</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>correct the program and load it again</source>
-      <translation>corrija el programa y cárguelo de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>driver refuses</source>
-      <translation>el controlador de equipo se niega</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>end of travel</source>
-      <translation>fin de carrera</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
-      <source>feed per revolution with a still spindle</source>
-      <translation>avance por vuelta con el husillo parado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/alarms/axes.py" />
       <source>following error</source>
       <translation>error de seguimiento</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>free the slide, Reset</source>
-      <translation>libere el carro, Reset</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>homing has failed</source>
+      <translation>la búsqueda de referencia falló</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>it turns faster than it was told</source>
-      <translation>gira más rápido de lo que se le ordenó</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it has failed</source>
+      <translation>se averió</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>its switch did not follow</source>
-      <translation>su interruptor no siguió</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it has to be switched off and on</source>
+      <translation>hay que apagarlo y encenderlo</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>look for a blocked slide, Reset</source>
-      <translation>busque un carro trabado, Reset</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it is another drive than the machine file says, or has other firmware</source>
+      <translation>es otro servo que el del archivo de máquina, o tiene otro firmware</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>no M03 or M04</source>
-      <translation>ni M03 ni M04</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it sinks: no brake, or the brake slips</source>
+      <translation>se cae: sin freno, o el freno patina</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>not in position in time</source>
-      <translation>no está en posición a tiempo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it was moved before it was homed</source>
+      <translation>se movió antes de referenciarse</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>on this machine the spindle is C</source>
-      <translation>en esta máquina el husillo es C</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>it was moved by hand while the drives are off</source>
+      <translation>se movió a mano con los servos apagados</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>program error</source>
-      <translation>error de programa</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>its bus cable is off or damaged</source>
+      <translation>su cable de bus está suelto o dañado</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>save the log, restart the control</source>
-      <translation>guarde la bitácora, reinicie el control</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>its control power broke down for a moment</source>
+      <translation>su alimentación de control falló por un momento</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/alarms/axes.py" />
+      <source>its encoder or the encoder's cable</source>
+      <translation>su encoder o el cable del encoder</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>its limit was hit</source>
+      <translation>se tocó su límite</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>its power is off</source>
+      <translation>no tiene alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>keep clear of the slide, it may jump when it comes free; look what holds it, Reset, Drives On</source>
+      <translation>aléjese del carro, puede saltar al soltarse; vea qué lo detiene, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>look at switch and direction, Reset, Drives On, home again</source>
+      <translation>revise interruptor y dirección, Reset, encienda servos, referencia otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>look for what keeps the slide from its place, Reset</source>
+      <translation>busque qué impide al carro llegar a su lugar, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>look where the slide really stands; check encoder and coupling, Reset, Drives On, home the axis</source>
+      <translation>vea dónde está el carro de verdad; revise encoder y cople, Reset, encienda servos, referencia del eje</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>look where the slide stands and that nothing is in its way, Reset, Drives On</source>
+      <translation>vea dónde está el carro y que nada le estorbe, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>look where the tool stands, free the slide, Reset, Drives On; home where the axis asks for it</source>
+      <translation>vea dónde está la herramienta, libere el carro, Reset, encienda servos; referencia donde el eje la pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>read the drive's display, put the cause right, Reset, Drives On</source>
+      <translation>lea la pantalla del servo, corrija la causa, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>read the drive's display; switch the machine off and on when it does not clear</source>
+      <translation>lea la pantalla del servo; apague y encienda la máquina si no se borra</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>release the E-stop, switch the drives' power on, Reset, Drives On</source>
+      <translation>suelte el paro de emergencia, encienda la alimentación de los servos, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>run 'turndesk machine check' with the machine file: it names the setting</source>
+      <translation>corra 'turndesk machine check' con el archivo de máquina: nombra el ajuste</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
       <source>slide does not arrive</source>
       <translation>el carro no llega</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>speed fell during a pass; X was drawn back</source>
-      <translation>la velocidad cayó durante una pasada; X se retiró</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>somebody else moves the drive: its own software, a pendant</source>
+      <translation>otro mueve el servo: su propio software, un mando</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>speed not reached in time</source>
-      <translation>no se alcanzó la velocidad a tiempo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>somebody has reset it or works on it by its own software</source>
+      <translation>alguien lo reinició o trabaja en él con su propio software</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>spindle drive fault</source>
-      <translation>falla del variador del husillo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>something was asked of the drives that they cannot do now</source>
+      <translation>se pidió a los servos algo que ahora no pueden hacer</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>spindle ignores the command</source>
-      <translation>el husillo no obedece la orden</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>speed or travel in the machine file differ from the drives' own</source>
+      <translation>velocidad o recorrido del archivo de máquina difieren de los del servo</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>spindle lost in a thread</source>
-      <translation>husillo perdido en una rosca</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the bus was disturbed</source>
+      <translation>el bus tuvo interferencias</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>spindle not at speed</source>
-      <translation>el husillo no llega a su velocidad</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the cause still stands: too hot, no motor, no encoder</source>
+      <translation>la causa sigue: demasiado caliente, sin motor, sin encoder</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>spindle start with the collet open</source>
-      <translation>arranque del husillo con la boquilla abierta</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the computer was busy with something else for too long</source>
+      <translation>la computadora estuvo ocupada con otra cosa demasiado tiempo</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>start the spindle first</source>
-      <translation>arranque primero el husillo</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the controller was stopped while the slides moved</source>
+      <translation>el controlador se detuvo mientras los carros se movían</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>stop it with M05 first</source>
-      <translation>párelo primero con M05</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the cut is too heavy</source>
+      <translation>el corte es demasiado pesado</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>stop the spindle before M13</source>
-      <translation>pare el husillo antes de M13</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the drive has no power or its motor cable is off</source>
+      <translation>el servo no tiene potencia o su cable de motor está suelto</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the collet is not closed</source>
-      <translation>la boquilla no está cerrada</translation>
+      <location filename="core/alarms/axes.py" />
+      <source>the drive holds it too softly, or its motor cable is off</source>
+      <translation>el servo lo sostiene muy débil, o su cable de motor está suelto</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/alarms/axes.py" />
+      <source>the drives do not come on</source>
+      <translation>los servos no encienden</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the drives have lost power</source>
+      <translation>los servos perdieron la potencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the drives ran out of setpoints</source>
+      <translation>los servos se quedaron sin consignas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the drives refuse</source>
+      <translation>los servos rechazan</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the drives' main power is off</source>
+      <translation>la potencia de los servos está apagada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the encoder, its cable or its coupling: the slide may have moved all the same</source>
+      <translation>el encoder, su cable o su cople: el carro pudo moverse de todos modos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the motor cable is off</source>
+      <translation>el cable del motor está suelto</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the position is lost</source>
+      <translation>se perdió la posición</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the safety circuit has opened: door, guard, E-stop elsewhere on the machine</source>
+      <translation>el circuito de seguridad se abrió: puerta, guarda, otro paro de emergencia de la máquina</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the slide is blocked</source>
+      <translation>el carro está bloqueado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the slide is blocked or runs stiff</source>
+      <translation>el carro está bloqueado o corre duro</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the slide is blocked, or the tool has run into something</source>
+      <translation>el carro está bloqueado, o la herramienta chocó con algo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the slide is jammed, or something pushes against it</source>
+      <translation>el carro está atorado, o algo lo empuja</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the slide is jammed, or the tool has run into something</source>
+      <translation>el carro está atorado, o la herramienta chocó con algo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the spindle was too fast for the thread's lead</source>
+      <translation>el husillo iba demasiado rápido para el paso de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the switch or its cable</source>
+      <translation>el interruptor o su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the switch was not found: its cable, or the slide went the wrong way</source>
+      <translation>no se encontró el interruptor: su cable, o el carro fue al lado equivocado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the travel in the machine file is too long</source>
+      <translation>el recorrido en el archivo de máquina es demasiado largo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axes.py" />
+      <source>the window for in position is too narrow in the machine file</source>
+      <translation>la ventana de posición en el archivo de máquina es demasiado angosta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/catalogue.py" />
+      <source>Bus, feeder and controller</source>
+      <translation>Bus, alimentador y controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/catalogue.py" />
+      <source>Operator station and stops</source>
+      <translation>Estación del operador y paros</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/catalogue.py" />
+      <source>Slides and axis drives</source>
+      <translation>Carros y servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/catalogue.py" />
+      <source>Spindle, C axis and threads</source>
+      <translation>Husillo, eje C y roscas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/catalogue.py" />
+      <source>The control</source>
+      <translation>El control</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA, apague la máquina; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>Reset, Drives On; save program and log (F10), and restart at another line</source>
+      <translation>Reset, encienda servos; guarde programa y bitácora (F10) y reinicie en otra línea</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>a driver does not come back: its wire, its adapter, the computer's disk or network</source>
+      <translation>un controlador de equipo no regresa: su cable, su adaptador, el disco o la red de la computadora</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
+      <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>a fuse, a relay or a terminal has switched it</source>
+      <translation>un fusible, un relevador o una terminal la conmutó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>a mistake in TurnDesk; nothing of the wrong piece was moved</source>
+      <translation>un error de TurnDesk; nada del tramo malo se movió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>a mistake in TurnDesk; the log has it</source>
+      <translation>un error de TurnDesk; está en la bitácora</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>an output is not as commanded</source>
+      <translation>una salida no está como se ordenó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>another program, a backup or an update keeps this computer busy</source>
+      <translation>otro programa, un respaldo o una actualización ocupa esta computadora</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>look at the tool; read what starts again, then Cycle Start; measure the part: it is not counted</source>
+      <translation>vea la herramienta; lea qué arranca otra vez y luego inicio de ciclo; mida la pieza: no se cuenta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>look where the tool stands; save the log (F10), end TurnDesk and start it again</source>
+      <translation>vea dónde está la herramienta; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>look why; read what is switched again, then Cycle Start; measure the part, it is not counted</source>
+      <translation>busque por qué; lea qué se conmuta otra vez y luego inicio de ciclo; mida la pieza, no se cuenta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>setpoints ran low</source>
+      <translation>se agotaron las consignas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>somebody else switches it: a pendant, the drive's own software</source>
+      <translation>otro la conmuta: un mando, el propio software del servo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>the computer is too slow or too hot, or its disk hangs</source>
+      <translation>la computadora es muy lenta o está muy caliente, o su disco se traba</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
+      <source>the computer was too late</source>
+      <translation>la computadora llegó tarde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control.py" />
       <source>the control has failed</source>
       <translation>el control falló</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the slides brake and hold, spindle off, outputs safe</source>
-      <translation>los carros frenan y sostienen, husillo apagado, salidas seguras</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the control's thread is stuck or dead</source>
+      <translation>el hilo del control está atorado o muerto</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the slides brake and lose power, spindle off, outputs safe</source>
-      <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the feeder has switched off</source>
+      <translation>el alimentador apagó</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the spindle drive has tripped</source>
-      <translation>el variador del husillo se disparó</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the machine could not be made safe</source>
+      <translation>no se pudo poner la máquina en estado seguro</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the spindle still turns</source>
-      <translation>el husillo todavía gira</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the planned path does not fit together</source>
+      <translation>la trayectoria planeada no empalma</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>the switch fell while the spindle turned</source>
-      <translation>el interruptor cayó mientras giraba el husillo</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the screen was locked or the computer asleep</source>
+      <translation>la pantalla estaba bloqueada o la computadora dormida</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
-      <source>this line cannot be run</source>
-      <translation>esta línea no se puede correr</translation>
+      <location filename="core/alarms/control.py" />
+      <source>the slides have stopped on the path; end other programs, then Cycle Start</source>
+      <translation>los carros pararon sobre la trayectoria; cierre otros programas y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/alarms/document.py" />
+      <source>Likely: %1.  </source>
+      <translation>Probable: %1.  </translation>
+    </message>
+    <message>
+      <location filename="core/alarms/document.py" />
+      <source>alarm, drives off</source>
+      <translation>alarma, servos apagados</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/entry.py" />
+      <source>the slides brake and hold, spindle off, outputs safe; Reset acknowledges</source>
+      <translation>los carros frenan y se sostienen, husillo apagado, salidas seguras; Reset reconoce</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/entry.py" />
+      <source>the slides brake and lose power, spindle off, outputs safe; Reset acknowledges</source>
+      <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras; Reset reconoce</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/entry.py" />
+      <source>the slides stop on the path, the spindle goes on turning; Cycle Start goes on</source>
+      <translation>los carros paran sobre la trayectoria, el husillo sigue girando; inicio de ciclo continúa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/entry.py" />
+      <source>what was asked for: a stop that somebody pressed or programmed</source>
+      <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>an input or a counter led to a line that was never run before</source>
+      <translation>una entrada o un contador llevó a una línea que nunca se había corrido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>check the tool's offset and where the slides stood at the start; Reset</source>
+      <translation>revise la compensación de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>compare the end of the program with the original, add M30, load it again</source>
+      <translation>compare el final del programa con el original, agregue M30, cárguelo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>correct the line in the editor (F3), load the program again</source>
+      <translation>corrija la línea en el editor (F3), cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>end of travel</source>
+      <translation>fin de carrera</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>program error</source>
+      <translation>error de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>the last line is missing: cut off when it was sent or copied</source>
+      <translation>falta la última línea: se cortó al enviarlo o copiarlo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>the offset of the tool, or the zero of the part, is wrong</source>
+      <translation>la compensación de la herramienta o el cero de la pieza está mal</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>the program ends without M30 or M02</source>
+      <translation>el programa termina sin M30 ni M02</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>the program was started at another place than it was proved from</source>
+      <translation>el programa arrancó en otro lugar que donde se probó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/program.py" />
+      <source>this line cannot be run as it stands</source>
+      <translation>esta línea no se puede correr como está</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>C moves while the spindle turns</source>
+      <translation>C se mueve mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>E-stop is pressed</source>
+      <translation>el paro de emergencia está oprimido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>IF THE SPINDLE TURNS PRESS E-STOP; then check the inverter's cable and power, Reset</source>
+      <translation>SI EL HUSILLO GIRA OPRIMA EL PARO DE EMERGENCIA; luego revise cable y alimentación del variador, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>PRESS E-STOP; look at belt and encoder before the spindle is started again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; revise banda y encoder antes de arrancar otra vez el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>PRESS E-STOP; then find out why before it is started again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; luego busque por qué antes de arrancarlo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>Reset, Drives On; try M19 in MDI</source>
+      <translation>Reset, encienda servos; pruebe M19 en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>WAIT UNTIL THE SPINDLE STANDS; check air, collet and bar, Reset</source>
+      <translation>ESPERE A QUE EL HUSILLO PARE; revise aire, boquilla y barra, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>X was drawn back: look at part and insert; the thread is not finished</source>
+      <translation>X se retiró: vea pieza e inserto; la rosca no está terminada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>a fault of its drive stands</source>
+      <translation>hay una falla de su variador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>a thread needs a turning spindle</source>
+      <translation>una rosca necesita un husillo que gire</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>air was lost while the spindle turned</source>
+      <translation>se perdió el aire mientras el husillo giraba</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>bar or part keeps it from moving</source>
+      <translation>la barra o la pieza no la deja moverse</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>baud rate or address</source>
+      <translation>velocidad en baudios o dirección</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>check air and switch, Reset</source>
+      <translation>revise el aire y el interruptor, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>check encoder and cable, Reset; without it no thread is cut</source>
+      <translation>revise encoder y cable, Reset; sin él no se corta ninguna rosca</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>close the collet with M12, Reset, start again</source>
+      <translation>cierre la boquilla con M12, Reset, arranque otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>collet does not answer</source>
+      <translation>la boquilla no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>collet has opened</source>
+      <translation>la boquilla se abrió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>counts a turn in the machine file</source>
+      <translation>cuentas por vuelta en el archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>encoder and spindle drive disagree</source>
+      <translation>encoder y variador del husillo no coinciden</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>feed per revolution with a still spindle</source>
+      <translation>avance por vuelta con el husillo parado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>it has restarted or reports a fault</source>
+      <translation>se reinició o reporta una falla</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>it is held as C</source>
+      <translation>está sostenido como C</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>it was started at the drive itself</source>
+      <translation>se arrancó en el propio variador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>it was stopped from outside</source>
+      <translation>se paró desde fuera</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its cable</source>
+      <translation>su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its cable is off, or disturbed by the motor cable</source>
+      <translation>su cable está suelto, o el cable del motor lo perturba</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its index was not found</source>
+      <translation>no se encontró su índice</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its pot was turned down</source>
+      <translation>se bajó su perilla</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its power</source>
+      <translation>su alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its supply or motor cable</source>
+      <translation>su alimentación o el cable del motor</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>its switch or cable</source>
+      <translation>su interruptor o cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>let it come to speed, then Cycle Start</source>
+      <translation>deje que tome velocidad y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>look at spindle and tool; Cycle Start starts it again, as it says, and goes on</source>
+      <translation>vea husillo y herramienta; inicio de ciclo lo arranca otra vez, como se anuncia, y continúa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>look at spindle and tool; Cycle Start tries again, Reset gives the program up</source>
+      <translation>vea husillo y herramienta; inicio de ciclo lo intenta otra vez, Reset abandona el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>look at the spindle, Reset; try the speed in MDI before the program is run again</source>
+      <translation>vea el husillo, Reset; pruebe la velocidad en MDI antes de correr otra vez el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>no M03 or M04 before the cut</source>
+      <translation>no hay M03 ni M04 antes del corte</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>no M03 or M04 before the thread</source>
+      <translation>no hay M03 ni M04 antes de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>no air</source>
+      <translation>no hay aire</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>on this machine the spindle is C, and M05 is missing before this line</source>
+      <translation>en esta máquina el husillo es C, y falta M05 antes de esta línea</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>power was lost meanwhile</source>
+      <translation>mientras tanto se perdió la potencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>put M05 before M13, load the program again</source>
+      <translation>ponga M05 antes de M13, cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>put M05 before the line, load the program again</source>
+      <translation>ponga M05 antes de la línea, cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>put right what is named, Reset, start again</source>
+      <translation>corrija lo que se nombra, Reset, arranque otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>read the drive's display, put the cause right, Reset</source>
+      <translation>lea la pantalla del variador, corrija la causa, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>something between control and spindle has switched it off: safety circuit, guard, its drive</source>
+      <translation>algo entre control y husillo lo apagó: circuito de seguridad, guarda, su variador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle below half its speed</source>
+      <translation>husillo por debajo de la mitad de su velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle drive fault</source>
+      <translation>falla del variador del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle encoder lost</source>
+      <translation>se perdió el encoder del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle has stopped</source>
+      <translation>el husillo se detuvo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle ignores the command</source>
+      <translation>el husillo no obedece la orden</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle lost in a thread</source>
+      <translation>husillo perdido en una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle not at its speed</source>
+      <translation>el husillo no está en su velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle not at speed</source>
+      <translation>el husillo no llega a su velocidad</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle override at 0</source>
+      <translation>perilla del husillo en 0</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle start with the collet open</source>
+      <translation>arranque del husillo con la boquilla abierta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle stopped</source>
+      <translation>husillo parado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>spindle switch off</source>
+      <translation>interruptor del husillo en OFF</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>start the spindle before the thread; without an encoder use a die or tap</source>
+      <translation>arranque el husillo antes de la rosca; sin encoder use tarraja o machuelo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>start the spindle in the program before this line</source>
+      <translation>arranque el husillo en el programa antes de esta línea</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>start the spindle, then Cycle Start; else Reset</source>
+      <translation>arranque el husillo y luego inicio de ciclo; si no, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>switch it to AUTO, let the spindle come to speed, then Cycle Start</source>
+      <translation>póngalo en AUTO, deje que el husillo tome velocidad y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the belt slips</source>
+      <translation>la banda patina</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the belt slips or is off</source>
+      <translation>la banda patina o se salió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the collet's switch does not answer</source>
+      <translation>el interruptor de la boquilla no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the cut stalled the spindle</source>
+      <translation>el corte frenó el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the drive did not change over in time</source>
+      <translation>el variador no conmutó a tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the encoder's coupling is loose</source>
+      <translation>el cople del encoder está flojo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the feeder had no word of the control for a moment and made the machine safe</source>
+      <translation>el alimentador no supo del control por un momento y puso la máquina segura</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the inverter does not answer</source>
+      <translation>el variador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the program starts the spindle before M12</source>
+      <translation>el programa arranca el husillo antes de M12</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the speed is more than it reaches with this chuck and part</source>
+      <translation>la velocidad es más de la que alcanza con este mandril y pieza</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle did not come back to its speed: load, belt, drive</source>
+      <translation>el husillo no volvió a su velocidad: carga, banda, variador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle does not become C</source>
+      <translation>el husillo no pasa a ser C</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle does not turn: belt, brake, or its drive is not enabled</source>
+      <translation>el husillo no gira: banda, freno, o su variador no está habilitado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle drive does not follow its command: cable, settings, local mode at its keypad</source>
+      <translation>el variador del husillo no sigue su orden: cable, ajustes, modo local en su teclado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle drive has tripped: its display says why</source>
+      <translation>el variador del husillo se disparó: su pantalla dice por qué</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle may not start</source>
+      <translation>el husillo no puede arrancar</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle pot stands at 0</source>
+      <translation>la perilla del husillo está en 0</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle pot was turned down</source>
+      <translation>se bajó la perilla del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle still turns where the program opens the collet</source>
+      <translation>el husillo todavía gira donde el programa abre la boquilla</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle switch stands at OFF</source>
+      <translation>el interruptor del husillo está en OFF</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle was stopped while the program fed by the revolution</source>
+      <translation>el husillo se paró mientras el programa avanzaba por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>the spindle was switched off during the pass</source>
+      <translation>el husillo se apagó durante la pasada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>this machine has no encoder on the spindle</source>
+      <translation>esta máquina no tiene encoder en el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>too heavy a cut</source>
+      <translation>un corte demasiado pesado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
+      <source>turn the spindle pot up, let it come to speed, then Cycle Start</source>
+      <translation>suba la perilla del husillo, deje que tome velocidad y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle.py" />
       <source>unclamping refused</source>
       <translation>apertura de boquilla rechazada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>Cycle Start goes on; O switches Optional Stop off</source>
+      <translation>inicio de ciclo continúa; O apaga el paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>Cycle Start goes on; Reset gives the program up</source>
+      <translation>inicio de ciclo continúa; Reset abandona el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>Cycle Start runs the next block; S switches Single Block off</source>
+      <translation>inicio de ciclo corre el bloque siguiente; S apaga bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>M00 in the program</source>
+      <translation>M00 en el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>M01 in the program, and Optional Stop is on</source>
+      <translation>M01 en el programa, y el paro opcional está activo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>Reset was pressed: the program was given up</source>
+      <translation>se oprimió Reset: el programa se abandonó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>Single Block is on: each block waits for Cycle Start</source>
+      <translation>bloque a bloque está activo: cada bloque espera el inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>an E-stop button was pressed</source>
+      <translation>se oprimió un botón de paro de emergencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>check cable and power of the station; its buttons do nothing now. Then Cycle Start</source>
+      <translation>revise cable y alimentación de la estación; sus botones ahora no hacen nada. Luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>do what the message says, then Cycle Start</source>
+      <translation>haga lo que dice el mensaje y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>feed hold</source>
+      <translation>retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>feed hold was pressed</source>
+      <translation>se oprimió la retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>held by the control</source>
+      <translation>retenido por el control</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>its cable is loose</source>
+      <translation>su cable está flojo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>its own feed hold or safety door input is on</source>
+      <translation>su propia entrada de retención o de puerta de seguridad está activa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>look at the controller's hold and door inputs, then Cycle Start</source>
+      <translation>revise las entradas de retención y puerta del controlador y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>look where the tool stands before anything is started</source>
+      <translation>vea dónde está la herramienta antes de arrancar nada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>make the machine safe, release the button, then Drives On</source>
+      <translation>ponga la máquina segura, suelte el botón y luego encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>nothing: it was asked for</source>
+      <translation>nada: se pidió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>operator station silent</source>
+      <translation>estación del operador en silencio</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>optional stop</source>
+      <translation>paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>override pot jumps</source>
+      <translation>la perilla salta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>program stop</source>
+      <translation>paro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>put right what is named, then Cycle Start</source>
+      <translation>corrija lo que se nombra y luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>single block</source>
+      <translation>bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>stopped by hand</source>
+      <translation>parado a mano</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the controller holds</source>
+      <translation>el controlador retiene</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the feed or spindle pot has a worn track</source>
+      <translation>la perilla de avance o de husillo tiene la pista gastada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the safety circuit has opened</source>
+      <translation>el circuito de seguridad se abrió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the spindle was stopped by hand</source>
+      <translation>el husillo se paró a mano</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the station's cable is off or damaged</source>
+      <translation>el cable de la estación está suelto o dañado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>turn the pot slowly through its range; if it still jumps change it. Then Cycle Start</source>
+      <translation>gire despacio la perilla por todo su rango; si aún salta cámbiela. Luego inicio de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>what is told here</source>
+      <translation>lo que se dice aquí</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>E-stop at the controller</source>
+      <translation>paro de emergencia en el controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>PRESS E-STOP; check cable, terminators and interface, then start the control again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; revise cable, terminadores e interfaz y luego arranque otra vez el control</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; mueve lo que tiene y luego para. Revise cable y alimentación, arranque otra vez el control</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked</source>
+      <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez, referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>Reset, Drives On; compare its settings with the machine file ('turndesk machine check')</source>
+      <translation>Reset, encienda servos; compare sus ajustes con el archivo de máquina ('turndesk machine check')</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>a line was damaged on its way</source>
+      <translation>una línea se dañó en el camino</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>alarm of the controller</source>
+      <translation>alarma del controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>an I/O module does not answer</source>
+      <translation>un módulo de E/S no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>an output cannot be switched</source>
+      <translation>una salida no se puede conmutar</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>another master is on the bus</source>
+      <translation>hay otro maestro en el bus</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>another program has written to the controller</source>
+      <translation>otro programa escribió al controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>check the cable, Reset; switch the controller off and on when it does not answer</source>
+      <translation>revise el cable, Reset; apague y encienda el controlador si no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>check the module's power and cable, Reset, Drives On; look what the outputs have let go</source>
+      <translation>revise alimentación y cable del módulo, Reset, encienda servos; vea qué soltaron las salidas</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>check the output in the machine file, Reset</source>
+      <translation>revise la salida en el archivo de máquina, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>end whatever else talks to the controller, Reset, Drives On</source>
+      <translation>cierre lo demás que hable con el controlador, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>it has restarted: its outputs have fallen</source>
+      <translation>se reinició: sus salidas cayeron</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>it was reset unseen</source>
+      <translation>se reinició sin que se viera</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its E-stop or reset input is on</source>
+      <translation>su entrada de paro de emergencia o de reset está activa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its bus cable or power</source>
+      <translation>su cable de bus o alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its cable, or its line is disturbed</source>
+      <translation>su cable, o su línea tiene interferencias</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its module has failed</source>
+      <translation>su módulo se averió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its reset button or input</source>
+      <translation>su botón o entrada de reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its settings forbid what the program asks for: travel, speed, spindle</source>
+      <translation>sus ajustes prohíben lo que pide el programa: recorrido, velocidad, husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>its supply broke down for a moment</source>
+      <translation>su alimentación falló por un momento</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>put right what is named, Reset, Drives On; home where asked</source>
+      <translation>corrija lo que se nombra, Reset, encienda servos; referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>release the E-stop, Reset, Drives On</source>
+      <translation>suelte el paro de emergencia, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>spindle and coolant are off: close the door, Reset, Drives On</source>
+      <translation>husillo y refrigerante están apagados: cierre la puerta, Reset, encienda servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the CAN cable is off, or a terminator is missing</source>
+      <translation>el cable CAN está suelto, o falta un terminador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the CAN interface was unplugged</source>
+      <translation>se desconectó la interfaz CAN</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the cable to the controller was pulled or damaged</source>
+      <translation>el cable al controlador se jaló o se dañó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the computer is overloaded: the slides stop at the end of what they have</source>
+      <translation>la computadora está sobrecargada: los carros paran al final de lo que tienen</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the computer ran out of memory</source>
+      <translation>la computadora se quedó sin memoria</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the connection to the controller is lost</source>
+      <translation>se perdió la conexión con el controlador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller does not answer</source>
+      <translation>el controlador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller hangs</source>
+      <translation>el controlador se trabó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller has lost its modes</source>
+      <translation>el controlador perdió sus modos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller refuses a block</source>
+      <translation>el controlador rechaza un bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller was reset</source>
+      <translation>el controlador se reinició</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the controller's power is off</source>
+      <translation>el controlador no tiene alimentación</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the door was opened in the cycle</source>
+      <translation>la puerta se abrió en el ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the door's switch or cable</source>
+      <translation>el interruptor de la puerta o su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the drive bus has failed</source>
+      <translation>falló el bus de los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the feeder does not answer</source>
+      <translation>el alimentador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the feeder has ended</source>
+      <translation>el alimentador terminó</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the feeder has failed</source>
+      <translation>el alimentador se averió</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the feeder process was ended or has failed: slides, spindle and outputs are off</source>
+      <translation>el proceso alimentador se terminó o falló: carros, husillo y salidas están apagados</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the machine file does not name it, or the controller does not have it</source>
+      <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the program is given up: look where the tool stands, Reset, Drives On, home</source>
+      <translation>el programa se abandonó: vea dónde está la herramienta, Reset, encienda servos, referencia</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>the safety door is open</source>
+      <translation>la puerta de seguridad está abierta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/wires.py" />
+      <source>what the controller's number says</source>
+      <translation>lo que dice el número del controlador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source> line %1</source>
+      <translation> línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/alarms.py" />
+      <source>asked for by %1</source>
+      <translation>pedido por %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/announced.py" />
+      <source>look first: %1; then start again</source>
+      <translation>vea primero: %1; luego arranque otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 degrees</source>
+      <translation>%1 grados</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 has moved by %2</source>
+      <translation>%1 se movió %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 is %2 off its setpoint</source>
+      <translation>%1 está a %2 de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 mm</source>
+      <translation>%1 mm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 stays %2 off its setpoint</source>
+      <translation>%1 queda a %2 de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/axis_watch.py" />
+      <source>%1 was sent %2, its encoder stands</source>
+      <translation>%1 recibió %2, su encoder no se mueve</translation>
     </message>
     <message>
       <location filename="core/executor/blockwise/jogger.py" />
@@ -4515,11 +6220,6 @@
     </message>
     <message>
       <location filename="core/executor/by_hand.py" />
-      <source>spindle stopped by hand</source>
-      <translation>husillo parado a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/by_hand.py" />
       <source>the collet is not opened by hand while the spindle turns</source>
       <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
     </message>
@@ -4534,9 +6234,44 @@
       <translation>esta máquina no tiene la salida %1</translation>
     </message>
     <message>
+      <location filename="core/executor/commanded.py" />
+      <source>%1 HAS COME ON</source>
+      <translation>SE ENCENDIÓ %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/commanded.py" />
+      <source>%1 HAS GONE OFF</source>
+      <translation>SE APAGÓ %1</translation>
+    </message>
+    <message>
       <location filename="core/executor/conductor.py" />
-      <source>feed hold</source>
-      <translation>retención de avance</translation>
+      <source>%1 was given up</source>
+      <translation>%1 se abandonó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>FORWARD</source>
+      <translation>ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>REVERSE</source>
+      <translation>EN REVERSA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>SWITCH TO AUTO: %1</source>
+      <translation>INTERRUPTOR EN AUTO: %1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>THE SPINDLE STARTS AT %1 RPM %2</source>
+      <translation>EL HUSILLO ARRANCA A %1 RPM %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/conductor.py" />
+      <source>a driver does not obey: %1</source>
+      <translation>un controlador de equipo no obedece: %1</translation>
     </message>
     <message>
       <location filename="core/executor/conductor.py" />
@@ -4549,14 +6284,14 @@
       <translation>las consignas se agotaban; los carros paran sobre la trayectoria</translation>
     </message>
     <message>
-      <location filename="core/executor/cycle.py" />
-      <source>FEED OVERRIDE AT 0</source>
-      <translation>AVANCE EN 0 POR LA PERILLA</translation>
+      <location filename="core/executor/conductor.py" />
+      <source>while giving the program up: %1</source>
+      <translation>al abandonar el programa: %1</translation>
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
-      <source>SETPOINTS RAN LOW</source>
-      <translation>LAS CONSIGNAS SE AGOTARON</translation>
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AVANCE EN 0 POR LA PERILLA</translation>
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
@@ -4565,28 +6300,43 @@
     </message>
     <message>
       <location filename="core/executor/cycle.py" />
+      <source>SPINDLE NOT AT ITS SPEED</source>
+      <translation>EL HUSILLO NO ESTÁ A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/executor/cycle.py" />
       <source>THE CONTROLLER HOLDS</source>
       <translation>EL CONTROLADOR RETIENE</translation>
     </message>
     <message>
-      <location filename="core/executor/cycle.py" />
-      <source>optional stop</source>
-      <translation>paro opcional</translation>
+      <location filename="core/executor/disturbance.py" />
+      <source>%1 BY ITSELF</source>
+      <translation>%1 POR SÍ SOLO</translation>
     </message>
     <message>
-      <location filename="core/executor/cycle.py" />
-      <source>program stop</source>
-      <translation>paro de programa</translation>
+      <location filename="core/executor/disturbance.py" />
+      <source>COMES ON</source>
+      <translation>SE ENCIENDE</translation>
     </message>
     <message>
-      <location filename="core/executor/cycle.py" />
-      <source>the program ends without M30 or M02</source>
-      <translation>el programa termina sin M30 ni M02</translation>
+      <location filename="core/executor/disturbance.py" />
+      <source>CONTROL WAS SILENT FOR %1 S, SWITCHED OFF: %2</source>
+      <translation>EL CONTROL CALLÓ %1 S, SE APAGÓ: %2</translation>
     </message>
     <message>
-      <location filename="core/executor/cycle.py" />
-      <source>the spindle is not at its speed</source>
-      <translation>el husillo no está a su velocidad</translation>
+      <location filename="core/executor/disturbance.py" />
+      <source>GOES OFF</source>
+      <translation>SE APAGA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/disturbance.py" />
+      <source>THE FEEDER HAS SWITCHED OFF</source>
+      <translation>EL ALIMENTADOR APAGÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/disturbance.py" />
+      <source>output %1</source>
+      <translation>la salida %1</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />
@@ -4600,13 +6350,13 @@
     </message>
     <message>
       <location filename="core/executor/executor.py" />
-      <source>the control was away for %1 s</source>
-      <translation>el control estuvo ausente %1 s</translation>
+      <source>the button at the station</source>
+      <translation>el botón de la estación</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />
-      <source>the drives have lost power</source>
-      <translation>los servos perdieron la potencia</translation>
+      <source>the control was away for %1 s</source>
+      <translation>el control estuvo ausente %1 s</translation>
     </message>
     <message>
       <location filename="core/executor/gate.py" />
@@ -4675,18 +6425,18 @@
     </message>
     <message>
       <location filename="core/executor/gate.py" />
+      <source>the spindle is not started with the collet open: close it first</source>
+      <translation>el husillo no arranca con la boquilla abierta: ciérrela primero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
       <source>tool offset %1 has never been set</source>
       <translation>la compensación de herramienta %1 nunca se puso</translation>
     </message>
     <message>
       <location filename="core/executor/geared_pass.py" />
-      <source>a thread needs a turning spindle with an encoder</source>
-      <translation>una rosca necesita el husillo girando y con encoder</translation>
-    </message>
-    <message>
-      <location filename="core/executor/geared_pass.py" />
-      <source>the thread could not be queued in time; look for what keeps the computer busy</source>
-      <translation>la rosca no se pudo encolar a tiempo; busque qué ocupa la computadora</translation>
+      <source>the thread could not be queued in time</source>
+      <translation>la rosca no se pudo encolar a tiempo</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
@@ -4696,7 +6446,7 @@
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>a key or finger came while it was turned</source>
-      <translation>se pulsó una tecla o la pantalla mientras giraba</translation>
+      <translation>se oprimió una tecla o la pantalla mientras giraba</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
@@ -4726,7 +6476,7 @@
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>its enabling switch is not held</source>
-      <translation>no se mantiene su pulsador de habilitación</translation>
+      <translation>no se sostiene su botón de habilitación</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
@@ -4741,7 +6491,7 @@
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>the station's switch does not select %1</source>
-      <translation>el conmutador del puesto no elige %1</translation>
+      <translation>el interruptor de la estación no elige %1</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
@@ -4762,6 +6512,56 @@
       <location filename="core/executor/homing.py" />
       <source>this machine has no axis %1 to home</source>
       <translation>esta máquina no tiene eje %1 que referenciar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interrupted.py" />
+      <source>%1 line %2, T%3, part %4: %5</source>
+      <translation>%1 línea %2, T%3, pieza %4: %5</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interrupted.py" />
+      <source>GIVEN UP BY RESET</source>
+      <translation>ABANDONADO POR RESET</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interrupted.py" />
+      <source>THE CONTROL LOST ITS POWER OR WAS KILLED</source>
+      <translation>EL CONTROL PERDIÓ LA CORRIENTE O LO MATARON</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interrupted.py" />
+      <source>THE CONTROL WAS CLOSED</source>
+      <translation>EL CONTROL SE CERRÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>%1; %2 was loaded in its place</source>
+      <translation>%1; se cargó %2 en su lugar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>%1; the program begins anew</source>
+      <translation>%1; el programa empieza de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>go on there by SEARCHTO (F6), or press Y</source>
+      <translation>siga allí con SEARCHTO (F6), u oprima Y</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>jog it clear, press Y</source>
+      <translation>sáquela a mano, oprima Y</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>line %1 of %2 was interrupted and T%3 may stand in the part: %4 and then start at the first line</source>
+      <translation>la línea %1 de %2 se interrumpió y T%3 puede estar en la pieza: %4 y luego arranque en la primera línea</translation>
+    </message>
+    <message>
+      <location filename="core/executor/interruption.py" />
+      <source>there is no interrupted job to be answered for now</source>
+      <translation>ahora no hay trabajo interrumpido por el que responder</translation>
     </message>
     <message>
       <location filename="core/executor/job.py" />
@@ -4821,7 +6621,7 @@
     <message>
       <location filename="core/executor/jog.py" />
       <source>the spindle's drive becomes C: let go, and begin again in two seconds</source>
-      <translation>el accionamiento del husillo pasa a ser C: suelte y empiece de nuevo en dos segundos</translation>
+      <translation>el variador del husillo pasa a ser C: suelte y empiece de nuevo en dos segundos</translation>
     </message>
     <message>
       <location filename="core/executor/jog.py" />
@@ -4849,9 +6649,14 @@
       <translation>hay un programa en curso: debe terminar o abandonarse antes de cargar otro</translation>
     </message>
     <message>
+      <location filename="core/executor/loading.py" />
+      <source>a start at the first line is meant</source>
+      <translation>se quiere arrancar en la primera línea</translation>
+    </message>
+    <message>
       <location filename="core/executor/mover.py" />
-      <source>the spindle changed its speed faster than the slides could follow</source>
-      <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir</translation>
+      <source>the spindle changed its speed faster than the slides could follow: check the thread</source>
+      <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir: revise la rosca</translation>
     </message>
     <message>
       <location filename="core/executor/moving.py" />
@@ -4930,6 +6735,11 @@
     </message>
     <message>
       <location filename="core/executor/orders.py" />
+      <source>the spindle limit is raised only while the spindle stands</source>
+      <translation>el tope del husillo sólo se sube con el husillo parado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/orders.py" />
       <source>there is no switch %1</source>
       <translation>no hay interruptor %1</translation>
     </message>
@@ -4945,6 +6755,11 @@
     </message>
     <message>
       <location filename="core/executor/parts.py" />
+      <source>its cycle was disturbed (%1): measure it, and add it on F10 if it is good</source>
+      <translation>su ciclo fue perturbado (%1): mídala, y súmela en F10 si es buena</translation>
+    </message>
+    <message>
+      <location filename="core/executor/parts.py" />
       <source>part %1, %2 s</source>
       <translation>pieza %1, %2 s</translation>
     </message>
@@ -4952,6 +6767,11 @@
       <location filename="core/executor/prepared.py" />
       <source>%1, and the program says nothing of it: load it again</source>
       <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/prepared.py" />
+      <source>ask for the way out again</source>
+      <translation>pida otra vez la salida</translation>
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
@@ -4990,8 +6810,8 @@
     </message>
     <message>
       <location filename="core/executor/prepared.py" />
-      <source>the state has changed since the line was proved: press Enter again</source>
-      <translation>el estado cambió desde que se comprobó la línea: oprima Enter otra vez</translation>
+      <source>the state has changed since the line was proved: %1</source>
+      <translation>el estado cambió desde que se comprobó la línea: %1</translation>
     </message>
     <message>
       <location filename="core/executor/renewal.py" />
@@ -5002,6 +6822,26 @@
       <location filename="core/executor/renewal.py" />
       <source>the changed offsets are in force</source>
       <translation>las compensaciones cambiadas están en vigor</translation>
+    </message>
+    <message>
+      <location filename="core/executor/retreat.py" />
+      <source>%1 in the pull-out: the thread is cut, its end runs out short</source>
+      <translation>%1 en la salida: la rosca está cortada, su final sale corto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/retreat.py" />
+      <source>%1: the tool left the thread at Z%2, behind it this pass is not cut</source>
+      <translation>%1: la herramienta salió de la rosca en Z%2, más allá esta pasada no se cortó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/retreat.py" />
+      <source>the spindle fell to %1 of %2 rpm</source>
+      <translation>el husillo cayó a %1 de %2 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/retreat.py" />
+      <source>the spindle turned the wrong way, at %1 rpm</source>
+      <translation>el husillo giró al revés, a %1 rpm</translation>
     </message>
     <message>
       <location filename="core/executor/rounds.py" />
@@ -5039,6 +6879,21 @@
       <translation>la línea se abandonó con reset</translation>
     </message>
     <message>
+      <location filename="core/executor/safe_stop.py" />
+      <source>the outputs</source>
+      <translation>las salidas</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safe_stop.py" />
+      <source>the slides</source>
+      <translation>los carros</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safe_stop.py" />
+      <source>while stopping %1: %2</source>
+      <translation>al parar %1: %2</translation>
+    </message>
+    <message>
       <location filename="core/executor/snapshot.py" />
       <source>DRIVES OFF</source>
       <translation>SERVOS APAGADOS</translation>
@@ -5060,8 +6915,8 @@
     </message>
     <message>
       <location filename="core/executor/spindle.py" />
-      <source>%1 rpm, %2 asked</source>
-      <translation>%1 rpm, se pidieron %2</translation>
+      <source>SPINDLE HAS STOPPED</source>
+      <translation>EL HUSILLO SE DETUVO</translation>
     </message>
     <message>
       <location filename="core/executor/spindle.py" />
@@ -5077,6 +6932,21 @@
       <location filename="core/executor/spindle.py" />
       <source>SPINDLE SWITCH OFF</source>
       <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>it turns at %1 rpm, %2 are commanded</source>
+      <translation>gira a %1 rpm, se ordenaron %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>the spindle</source>
+      <translation>el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle.py" />
+      <source>the spindle's drive tells a speed that is no number</source>
+      <translation>el variador del husillo da una velocidad que no es un número</translation>
     </message>
     <message>
       <location filename="core/executor/states.py" />
@@ -5095,18 +6965,23 @@
     </message>
     <message>
       <location filename="core/executor/supervisor.py" />
-      <source>%1 is %2 off its setpoint</source>
-      <translation>%1 está a %2 de su consigna</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervisor.py" />
-      <source>while stopping: %1</source>
-      <translation>al detenerse: %1</translation>
+      <source>%1: its drive tells a position that is no number</source>
+      <translation>%1: su servo da una posición que no es un número</translation>
     </message>
     <message>
       <location filename="core/executor/thread_way.py" />
       <source>a thread has no length or no lead</source>
       <translation>una rosca no tiene largo o no tiene paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/turns.py" />
+      <source>the encoder on the spindle counts nothing</source>
+      <translation>el encoder del husillo no cuenta nada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/turns.py" />
+      <source>the spindle does not turn</source>
+      <translation>el husillo no gira</translation>
     </message>
     <message>
       <location filename="core/executor/waits.py" />
@@ -5132,6 +7007,16 @@
       <location filename="core/executor/waits.py" />
       <source>the spindle turns at %1 rpm</source>
       <translation>el husillo gira a %1 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/watchdog.py" />
+      <source>its thread has ended</source>
+      <translation>su hilo terminó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/watchdog.py" />
+      <source>its thread is stuck</source>
+      <translation>su hilo está atorado</translation>
     </message>
     <message>
       <location filename="core/geometry/bevel.py" />
@@ -5985,13 +7870,18 @@
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
-      <source>At %1 rpm this feed is %2; %3 is the most.</source>
-      <translation>A %1 rpm este avance es %2; lo más es %3.</translation>
+      <source>Feed %1 is out of range: %2 to %3.</source>
+      <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
-      <source>Feed %1 is out of range: %2 to %3.</source>
-      <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
+      <source>Feed %1 is over %2 at %3 rpm, which is %4.</source>
+      <translation>El avance %1 pasa de %2 a %3 rpm, que es %4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/feeds.py" />
+      <source>Feed %1 is over %2.</source>
+      <translation>El avance %1 pasa de %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
@@ -6060,8 +7950,8 @@
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
-      <source>This move takes %1 s at its feed.</source>
-      <translation>Este movimiento tarda %1 s a su avance.</translation>
+      <source>This move takes %1 s at %2.</source>
+      <translation>Este movimiento tarda %1 s a %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/feeds.py" />
@@ -6460,13 +8350,23 @@
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
-      <source>M%1 is no code of this machine.</source>
-      <translation>M%1 no es código de esta máquina.</translation>
+      <source>%1 is defined, and not switched on in the machine file.</source>
+      <translation>%1 está definido, y no activado en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>%1 is no code of this machine. %2</source>
+      <translation>%1 no es código de esta máquina. %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
       <source>M13 opens the collet while the spindle turns.</source>
       <translation>M13 abre la boquilla con el husillo girando.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/mcodes.py" />
+      <source>Set enabled = true for %1 under [m_codes].</source>
+      <translation>Ponga enabled = true para %1 en [m_codes].</translation>
     </message>
     <message>
       <location filename="core/interpreter/mcodes.py" />
@@ -6542,11 +8442,6 @@
       <location filename="core/interpreter/needs.py" />
       <source>more axes than X and Z</source>
       <translation>más ejes que X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/needs.py" />
-      <source>output %1</source>
-      <translation>la salida %1</translation>
     </message>
     <message>
       <location filename="core/interpreter/needs.py" />
@@ -6890,6 +8785,11 @@
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
+      <source>%1 is a comment without its ~, and so are the lines up to (END): nothing is milled.</source>
+      <translation>%1 es un comentario sin su ~, y también las líneas hasta (END): no se fresa nada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
       <source>A comment stands inside a loop.</source>
       <translation>Hay un comentario dentro de un lazo.</translation>
     </message>
@@ -6925,6 +8825,11 @@
     </message>
     <message>
       <location filename="core/interpreter/program.py" />
+      <source>Write (~%1.</source>
+      <translation>Escriba (~%1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/program.py" />
       <source>Write G90 and M30.</source>
       <translation>Escriba G90 y M30.</translation>
     </message>
@@ -6935,8 +8840,13 @@
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
-      <source>%1 is no code of this control.</source>
-      <translation>%1 no es código de este control.</translation>
+      <source>%1 has no meaning here. %2</source>
+      <translation>%1 no significa nada aquí. %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/reading.py" />
+      <source>%1 is no code of this control. %2</source>
+      <translation>%1 no es código de este control. %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/reading.py" />
@@ -7065,8 +8975,8 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
-      <source>is in subroutine %1: the line that calls it may be good.</source>
-      <translation>está en la subrutina %1: la línea que la llama puede servir.</translation>
+      <source>is in subroutine %1.</source>
+      <translation>está en la subrutina %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/good.py" />
@@ -7092,6 +9002,31 @@
       <location filename="core/interpreter/restart/good.py" />
       <source>stands after the end of the program.</source>
       <translation>está después del final del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>A tap stands in its thread there.</source>
+      <translation>Allí hay un machuelo en su rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>A threading tool stands in its thread there.</source>
+      <translation>Allí hay una herramienta de roscar en su rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1</source>
+      <translation>Línea %1</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 begins in metal that %2 would have had to cut.</source>
+      <translation>La línea %1 empieza en metal que debieron cortar antes: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
+      <source>Line %1 begins in the work, and no sure way leads there. %2</source>
+      <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí. %2</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
@@ -7135,6 +9070,11 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/rebuild.py" />
+      <source>lines %1 to %2</source>
+      <translation>líneas %1 a %2</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/rebuild.py" />
       <source>what input %1 answered on line %2 is not known.</source>
       <translation>no se sabe qué respondió la entrada %1 en la línea %2.</translation>
     </message>
@@ -7142,6 +9082,21 @@
       <location filename="core/interpreter/restart/rebuild.py" />
       <source>what the input of line %1 answered is not known.</source>
       <translation>no se sabe qué respondió la entrada de la línea %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/visits.py" />
+      <source>Line %1 is run %2 times; there is no pass %3.</source>
+      <translation>La línea %1 corre %2 veces; no hay pasada %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/visits.py" />
+      <source>Line %1 is run more than %2 times: choose the line that begins the loop.</source>
+      <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el lazo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/visits.py" />
+      <source>The program never comes to line %1.</source>
+      <translation>El programa nunca llega a la línea %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/single.py" />
@@ -7585,6 +9540,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/statement.py" />
+      <source>%1 is no code of this control.</source>
+      <translation>%1 no es código de este control.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/statement.py" />
       <source>%1 is programmed twice in the block.</source>
       <translation>%1 está programado dos veces en el bloque.</translation>
     </message>
@@ -7900,8 +9860,8 @@
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
-      <source>%1: the angle of infeed is 30 degrees at most.</source>
-      <translation>%1: el ángulo de entrada es de 30 grados a lo más.</translation>
+      <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
+      <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/thread_words.py" />
@@ -8070,6 +10030,11 @@
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
+      <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
+      <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
       <source>G%1 needs X or Z.</source>
       <translation>G%1 necesita X o Z.</translation>
     </message>
@@ -8095,13 +10060,23 @@
     </message>
     <message>
       <location filename="core/interpreter/tools.py" />
+      <source>Set their offsets.</source>
+      <translation>Ponga sus compensaciones.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/tools.py" />
       <source>Write the coordinates.</source>
       <translation>Escriba las coordenadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/units.py" />
-      <source>%1 mm</source>
-      <translation>%1 mm</translation>
+      <location filename="core/language/diagnostics.py" />
+      <source>%1 (%2 times)</source>
+      <translation>%1 (%2 veces)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cursor.py" />
+      <source>%1 A comment begins with ;.</source>
+      <translation>%1 Un comentario empieza con ;.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cursor.py" />
@@ -8725,6 +10700,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
+      <source>%1 is no word of the language. %2</source>
+      <translation>%1 no es una palabra del lenguaje. %2</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
       <source>%1 is out of range: %2 goes from %3 to %4.</source>
       <translation>%1 está fuera de rango: %2 va de %3 a %4.</translation>
     </message>
@@ -8750,6 +10730,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
+      <source>%1: a feed of 0 moves nothing; a rapid is G00 here.</source>
+      <translation>%1: un avance de 0 no mueve nada; un rápido es aquí G00.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
       <translation>%1: las compensaciones van de 1 a 32.</translation>
     </message>
@@ -8765,6 +10750,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
+      <source>'%1' is text outside parentheses.</source>
+      <translation>'%1' es texto fuera de paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
       <source>')' closes no comment.</source>
       <translation>')' no cierra ningún comentario.</translation>
     </message>
@@ -8777,11 +10767,6 @@
       <location filename="core/language/omniturn/faults.py" />
       <source>A comma is not allowed anywhere.</source>
       <translation>La coma no se permite en ninguna parte.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/faults.py" />
-      <source>A feed is F.</source>
-      <translation>Un avance es F.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
@@ -8875,6 +10860,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
+      <source>Write (%1).</source>
+      <translation>Escriba (%1).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
       <source>Write a decimal point.</source>
       <translation>Escriba un punto decimal.</translation>
     </message>
@@ -8895,6 +10885,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/faults.py" />
+      <source>Write the feed.</source>
+      <translation>Escriba el avance.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/faults.py" />
       <source>Write the number after it.</source>
       <translation>Escriba después el número.</translation>
     </message>
@@ -8907,6 +10902,321 @@
       <location filename="core/language/omniturn/faults.py" />
       <source>Write two digits.</source>
       <translation>Escriba dos cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>%1 numbers a program elsewhere; here the file has a name.</source>
+      <translation>%1 numera un programa en otros controles; aquí el archivo tiene nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>%1: T%2 takes tool %3 with its offset here%4.</source>
+      <translation>%1: aquí T%2 toma la herramienta %3 con su compensación%4.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>, and a second offset is D%1</source>
+      <translation>, y una segunda compensación es D%1</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>A feed is F here, and the lead of a thread K.</source>
+      <translation>Aquí un avance es F, y el paso de una rosca K.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>A line of % stands round a program that is transferred, not in it.</source>
+      <translation>Una línea de % va alrededor de un programa que se transfiere, no dentro de él.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>A stop is M00 here.</source>
+      <translation>Un paro es aquí M00.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>A subroutine ends with M99 here.</source>
+      <translation>Una subrutina termina aquí con M99.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>A thread is G33 here, with all its passes.</source>
+      <translation>Una rosca es aquí G33, con todas sus pasadas.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Boring is written out here.</source>
+      <translation>El mandrinado se escribe aquí movimiento por movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Coolant is M08 here.</source>
+      <translation>El refrigerante es aquí M08.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Cycles act on their own line here, and nothing has to end them.</source>
+      <translation>Aquí los ciclos actúan en su propia línea, y nada tiene que terminarlos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Drilling is G81 here, in pecks G83, and a dwell is G04.</source>
+      <translation>Barrenar es aquí G81, con picoteo G83, y una pausa G04.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Feed per minute is G94 here.</source>
+      <translation>El avance por minuto es aquí G94.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Feed per revolution is G95 here.</source>
+      <translation>El avance por vuelta es aquí G95.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>High-speed modes have no code here.</source>
+      <translation>Los modos de alta velocidad no tienen código aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Inch is G70 here.</source>
+      <translation>La pulgada es aquí G70.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Incremental moves are X and Z under G91 here.</source>
+      <translation>Los movimientos incrementales son aquí X y Z con G91.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Machine coordinates are those of T0 here.</source>
+      <translation>Las coordenadas de máquina son aquí las de T0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Metric is G71 here.</source>
+      <translation>El métrico es aquí G71.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Milling of the face ends with (END) here.</source>
+      <translation>El fresado de la cara termina aquí con (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Milling of the face is (~PLXC) here.</source>
+      <translation>El fresado de la cara es aquí (~PLXC).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Milling round the part is (~PLZC) here.</source>
+      <translation>El fresado alrededor de la pieza es aquí (~PLZC).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Move to a clear X and Z.</source>
+      <translation>Vaya a una X y una Z libres.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Part zero is in the tool's offset here, and a work shift is G10.</source>
+      <translation>El cero de pieza está aquí en la compensación de la herramienta, y un desplazamiento es G10.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Put a comment in parentheses.</source>
+      <translation>Ponga el comentario entre paréntesis.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Q is a word of other controls' cycles; here they are G33, G74, G75, G81 and G83.</source>
+      <translation>Q es una palabra de los ciclos de otros controles; aquí son G33, G74, G75, G81 y G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>See the language page.</source>
+      <translation>Vea la página del lenguaje.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>T alone changes the tool here.</source>
+      <translation>Aquí T sola cambia la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>T0 takes the tool's offset away here.</source>
+      <translation>Aquí T0 quita la compensación de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Take M06 out.</source>
+      <translation>Quite M06.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Tapping is written out here: G95, in, M04, out.</source>
+      <translation>El machueleado se escribe aquí entero: G95, entrar, M04, salir.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>The highest speed under G96 is G77Sn here, and a preset of the position G92.</source>
+      <translation>La velocidad máxima con G96 es aquí G77Sn, y preajustar la posición es G92.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>The offset of a tool is T here, and a second one D.</source>
+      <translation>La compensación de una herramienta es aquí T, y una segunda D.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>The offset of a tool is T here.</source>
+      <translation>La compensación de una herramienta es aquí T.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>The plane is always that of X and Z here.</source>
+      <translation>El plano es aquí siempre el de X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>The way of going round corners has no code here.</source>
+      <translation>La forma de pasar las esquinas no tiene código aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>There are no macros here; a subroutine is M98Pn.</source>
+      <translation>Aquí no hay macros; una subrutina es M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>There is no reference point to move to here.</source>
+      <translation>Aquí no hay punto de referencia al que ir.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Type a point.</source>
+      <translation>Escriba un punto.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write (END).</source>
+      <translation>Escriba (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write (~PLXC) … (END).</source>
+      <translation>Escriba (~PLXC) … (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write (~PLZC) … (END).</source>
+      <translation>Escriba (~PLZC) … (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write F or K.</source>
+      <translation>Escriba F o K.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write G33XnZnInKn.</source>
+      <translation>Escriba G33XnZnInKn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write G77Sn or G92.</source>
+      <translation>Escriba G77Sn o G92.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write G81 or G83.</source>
+      <translation>Escriba G81 o G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write G91 and X.</source>
+      <translation>Escriba G91 y X.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write G91 and Z.</source>
+      <translation>Escriba G91 y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write M98Pn.</source>
+      <translation>Escriba M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write T and the tool's number.</source>
+      <translation>Escriba T y el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write T or D.</source>
+      <translation>Escriba T o D.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write T%1.</source>
+      <translation>Escriba T%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write T, or G10XnZn before it.</source>
+      <translation>Escriba T, o antes G10XnZn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write T0 before the move.</source>
+      <translation>Escriba T0 antes del movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write the moves.</source>
+      <translation>Escriba los movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>Write the number.</source>
+      <translation>Escriba el número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>a comma, and there are none here</source>
+      <translation>una coma, y aquí no las hay</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>a variable of other controls, and there are none here</source>
+      <translation>una variable de otros controles, y aquí no las hay</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>a word of other controls</source>
+      <translation>una palabra de otros controles</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>how a comment or a line's end is written elsewhere</source>
+      <translation>como se escribe en otros controles un comentario o el final de una línea</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>how other controls calculate, and this one does not</source>
+      <translation>como calculan otros controles, y éste no</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>how other controls number programs; here the file has a name</source>
+      <translation>como numeran programas otros controles; aquí el archivo tiene nombre</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/habits.py" />
+      <source>what a transfer puts round a program, and no line of it</source>
+      <translation>lo que una transferencia pone alrededor de un programa, y no es línea suya</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane.py" />
@@ -9055,8 +11365,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
-      <source>A subprogram's name stands alone in its block.</source>
-      <translation>El nombre de un subprograma va solo en su bloque.</translation>
+      <source>A comment begins with ;, and a subprogram's name stands alone.</source>
+      <translation>Un comentario empieza con ;, y el nombre de un subprograma va solo.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/lexer.py" />
@@ -9299,6 +11609,36 @@
       <translation>falló la lectura</translation>
     </message>
     <message>
+      <location filename="core/language/typography.py" />
+      <source>a quotation mark, and there are none here</source>
+      <translation>unas comillas, y aquí no las hay</translation>
+    </message>
+    <message>
+      <location filename="core/language/typography.py" />
+      <source>a sign that nobody sees</source>
+      <translation>un signo que nadie ve</translation>
+    </message>
+    <message>
+      <location filename="core/language/typography.py" />
+      <source>no decimal point of the keyboard</source>
+      <translation>un punto decimal que no es el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/typography.py" />
+      <source>no minus sign of the keyboard</source>
+      <translation>un signo menos que no es el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/typography.py" />
+      <source>no parenthesis of the keyboard</source>
+      <translation>un paréntesis que no es el del teclado</translation>
+    </message>
+    <message>
+      <location filename="core/language/typography.py" />
+      <source>no plus sign of the keyboard</source>
+      <translation>un signo más que no es el del teclado</translation>
+    </message>
+    <message>
       <location filename="core/motion/limits.py" />
       <source>%1 of axis %2</source>
       <translation>%1 del eje %2</translation>
@@ -9429,6 +11769,136 @@
       <translation>Bloque %1: css es %2 mm/s; programe una velocidad superficial con S.</translation>
     </message>
     <message>
+      <location filename="core/proving/block_delete.py" />
+      <source>With block delete %1: %2</source>
+      <translation>Con salto de bloque %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>%1 Never proved: %2.</source>
+      <translation>%1 Nunca comprobado: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>%1 ways through the program by its inputs were not proved; %2 were.</source>
+      <translation>%1 caminos del programa según sus entradas no se comprobaron; %2 sí.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>Fewer conditional calls in loops, or subroutines that end where they begin, make all provable.</source>
+      <translation>Con menos llamadas condicionales en lazos, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>With %1 and %2: %3</source>
+      <translation>Con %1 y %2: %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>With %1: %2</source>
+      <translation>Con %1: %2</translation>
+    </message>
+    <message>
+      <location filename="core/proving/branches.py" />
+      <source>input %1 %2 at line %3</source>
+      <translation>la entrada %1 %2 en la línea %3</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Begin with X and Z under G90.</source>
+      <translation>Empiece con X y Z en G90.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Close the collet with M12 before it.</source>
+      <translation>Cierre antes la boquilla con M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Correct the number, or name the input under [io.in] of the machine file.</source>
+      <translation>Corrija el número, o nombre la entrada en [io.in] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Start it with M03 or M04 before it.</source>
+      <translation>Arránquelo antes con M03 o M04.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Switch it on with %1 before it.</source>
+      <translation>Enciéndala antes con %1.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>The first move is incremental: it begins where the slides stand, and is proved from home.</source>
+      <translation>El primer movimiento es incremental: empieza donde están los carros, y se comprobó desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>The program ends with the collet open, and the next cycle cuts on line %1 before any M12.</source>
+      <translation>El programa termina con la boquilla abierta, y el ciclo siguiente corta en la línea %1 antes de un M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This machine has no input %1.</source>
+      <translation>Esta máquina no tiene la entrada %1.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This machine has no input %1: the wait would never end.</source>
+      <translation>Esta máquina no tiene la entrada %1: la espera no acabaría nunca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts after %1: its numbers count from the machine's home.</source>
+      <translation>Este movimiento corta después de %1: sus números cuentan desde la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts after the program has stopped the spindle, and no live tool is on.</source>
+      <translation>Este movimiento corta después de que el programa paró el husillo, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with no tool: its numbers count from the machine's home.</source>
+      <translation>Este movimiento corta sin herramienta: sus números cuentan desde la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with the collet open: the part is held by nothing.</source>
+      <translation>Este movimiento corta con la boquilla abierta: nada sujeta la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with the spindle held as C, and no live tool is on.</source>
+      <translation>Este movimiento corta con el husillo sostenido como C, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move feeds with the collet open, and not away from the spindle as a bar is pulled.</source>
+      <translation>Este movimiento avanza con la boquilla abierta, y no alejándose del husillo como al jalar la barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move mills, and no live tool is on.</source>
+      <translation>Este movimiento fresa, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Write M12 at its end or its start.</source>
+      <translation>Escriba M12 a su final o a su inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Write T with the tool's number before it.</source>
+      <translation>Escriba antes T con el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>the T0 on line %1</source>
+      <translation>el T0 de la línea %1</translation>
+    </message>
+    <message>
       <location filename="core/proving/interlock.py" />
       <source>C moves while the spindle turns, and on this machine the spindle itself is C</source>
       <translation>C se mueve mientras gira el husillo, y en esta máquina el husillo mismo es C</translation>
@@ -9464,6 +11934,16 @@
       <translation>revise la palabra %1, la compensación de T%2 y cualquier G10 o G92</translation>
     </message>
     <message>
+      <location filename="core/proving/uncalled.py" />
+      <source>Call it with M98P%1, or take it out.</source>
+      <translation>Llámela con M98P%1, o quítela.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/uncalled.py" />
+      <source>Subroutine %1 is called from nowhere, so it was not proved.</source>
+      <translation>Nadie llama a la subrutina %1, así que no se comprobó.</translation>
+    </message>
+    <message>
       <location filename="core/store/backup.py" />
       <source>%1 cannot be restored: %2; nothing was changed. Take another backup</source>
       <translation>%1 no se puede restaurar: %2; no se cambió nada. Use otro respaldo</translation>
@@ -9497,6 +11977,41 @@
       <location filename="core/store/backup.py" />
       <source>there is no store in %1 yet, so there is nothing to back up</source>
       <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>the disk is full: {path} takes nothing more; make room on that disk</source>
+      <translation>el disco está lleno: {path} no admite nada más; haga espacio en ese disco</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path} cannot be used ({error}); it is left as it is</source>
+      <translation>{path} no se puede usar ({error}); se deja como está</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE</source>
+      <translation>{path} está dañado ({error}); se deja como está. Restaure un respaldo: turndesk store restore FILE</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path} is locked by another program; close that one, then try again</source>
+      <translation>{path} está bloqueado por otro programa; ciérrelo e intente otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path} is not there (any more); put it back, then start turndesk again</source>
+      <translation>{path} (ya) no está; regréselo y arranque turndesk otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path} may not be used so by this user ({error}); check its rights and those of its folder</source>
+      <translation>este usuario no puede usar así {path} ({error}); revise sus permisos y los de su carpeta</translation>
+    </message>
+    <message>
+      <location filename="core/store/causes.py" />
+      <source>{path}: the disk fails ({error}); check that it is there and sound</source>
+      <translation>{path}: el disco falla ({error}); revise que esté y que esté sano</translation>
     </message>
     <message>
       <location filename="core/store/checking.py" />
@@ -9567,11 +12082,6 @@
       <location filename="core/store/lock.py" />
       <source> (process %1)</source>
       <translation> (proceso %1)</translation>
-    </message>
-    <message>
-      <location filename="core/store/lock.py" />
-      <source>%1 cannot be written (%2); check its rights, or set TURNDESK_HOME</source>
-      <translation>no se puede escribir %1 (%2); revise sus permisos, o ponga TURNDESK_HOME</translation>
     </message>
     <message>
       <location filename="core/store/lock.py" />
@@ -9664,9 +12174,29 @@
       <translation>T%1 nunca se puso; toque X y Z</translation>
     </message>
     <message>
+      <location filename="core/store/unwritten.py" />
+      <source>%1 events had no room while nothing could be written</source>
+      <translation>%1 eventos no cupieron mientras no se podía escribir</translation>
+    </message>
+    <message>
+      <location filename="core/store/unwritten.py" />
+      <source>not kept: %1</source>
+      <translation>sin guardar: %1</translation>
+    </message>
+    <message>
+      <location filename="core/store/unwritten.py" />
+      <source>other entry</source>
+      <translation>otro apunte</translation>
+    </message>
+    <message>
       <location filename="core/store/writer.py" />
-      <source>nothing was stored (%1); check the disk's space and rights, then enter it again</source>
-      <translation>no se guardó nada (%1); revise el espacio y los permisos del disco, y escríbalo de nuevo</translation>
+      <source>nothing was stored (%1)</source>
+      <translation>no se guardó nada (%1)</translation>
+    </message>
+    <message>
+      <location filename="core/store/writer.py" />
+      <source>nothing was stored: %1, then enter it again</source>
+      <translation>no se guardó nada: %1, y escríbalo de nuevo</translation>
     </message>
     <message>
       <location filename="core/store/writer.py" />

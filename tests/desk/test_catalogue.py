@@ -16,6 +16,10 @@ KNOWN = {
     "the entry is longer than %1 characters": "la entrada pasa de %1 caracteres",
     "LINE %1: ": "LÍNEA %1: ",
     "WILL NOT RUN: %1%2": "NO CORRERÁ: %1%2",
+    "SPINDLE %1": "HUSILLO %1",
+    "spindle has stopped": "el husillo se detuvo",
+    "LINE %1": "LÍNEA %1",
+    "{number} OF {count}": "{number} DE {count}",
 }
 
 
@@ -65,3 +69,12 @@ def test_tr_is_english_until_somebody_translates() -> None:
         assert tr("ALARM") == "ALARM"
     finally:
         speak(None)
+
+
+def test_a_hole_does_not_reach_into_the_next_part(spanish: Catalogue) -> None:
+    assert spanish.translate("SPINDLE HAS STOPPED  ·  LINE 4") == "EL HUSILLO SE DETUVO  ·  LÍNEA 4"
+
+
+def test_two_holes_and_a_preposition_are_not_found_in_a_name(spanish: Catalogue) -> None:
+    assert spanish.translate("BUSH OF BRASS") == "BUSH OF BRASS"
+    assert spanish.translate("{number} OF {count}") == "{number} DE {count}"

@@ -17,6 +17,7 @@ from app.screen.look import Look
 from app.screen.pages import Page
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
+from core.alarms.catalogue import CATALOGUE, Entry
 from core.executor.snapshot import Alarm
 from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
@@ -67,16 +68,43 @@ def test_program_text_and_comments_are_left_alone(spanish: Hands, monkeypatch: p
 
 
 def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+    remedy = CATALOGUE["following"].remedy
     spanish.machine.fault(
-        Alarm(
-            102, "following", "FOLLOWING ERROR", "Z is 2.1 off its setpoint", "free the slide, Reset", line=4
-        )
+        Alarm(102, "following", "FOLLOWING ERROR", "Z is 2.1 off its setpoint", remedy, line=4)
     )
     texts = " / ".join(drawn(spanish, monkeypatch))
     assert "ALARMA 102" in texts
     assert "ERROR DE SEGUIMIENTO" in texts
     assert "Z está a 2.1 de su consigna" in texts
-    assert "libere el carro, Reset" in texts
+    assert "libere el carro" in texts
+    assert "LÍNEA 4" in texts
+    assert "  ·  LINE" not in texts
+
+
+@pytest.mark.parametrize("entry", CATALOGUE.values(), ids=str)
+def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
+    text, known = entry.text.upper(), catalogue("es").translate
+    spoken = known(text)
+    assert spoken != text or text == "RESET"
+    line = f"{entry.number}: {text}  ·  LINE 4"
+    assert known(f"ALARM {line}  ·  AND 2 MORE") == f"ALARMA {entry.number}: {spoken}  ·  LÍNEA 4  ·  Y 2 MÁS"
+    assert known(f"STOP {line}") == f"PARO {entry.number}: {spoken}  ·  LÍNEA 4"
+
+
+@pytest.mark.parametrize(
+    ("english", "told"),
+    [
+        ("THE SPINDLE STARTS AT 1500 RPM REVERSE", "EL HUSILLO ARRANCA A 1500 RPM EN REVERSA"),
+        ("MIST COMES ON", "SE ENCIENDE MIST"),
+        ("MIST HAS GONE OFF AND X2 HAS GONE OFF", "SE APAGÓ MIST Y SE APAGÓ X2"),
+        (
+            "With input 7 on at line 5: G99 is no code of this control. Write T.",
+            "Con la entrada 7 encendida en la línea 5: G99 no es código de este control. Write T.",
+        ),
+    ],
+)
+def test_what_is_put_together_is_told_whole(english: str, told: str) -> None:
+    assert catalogue("es").translate(english) == told
 
 
 def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
