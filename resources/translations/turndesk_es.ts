@@ -286,7 +286,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, O OPRIMA Y PARA CERRAR, ESC PARA SEGUIR</translation>
+      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U OPRIMA Y PARA CERRAR, ESC PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -316,7 +316,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON</source>
-      <translation>Y SIRVE EN LA PÁGINA AUTOMÁTICO, CON LOS SERVOS ENCENDIDOS</translation>
+      <translation>LA TECLA Y SIRVE EN LA PÁGINA AUTOMÁTICO, CON LOS SERVOS ENCENDIDOS</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -1111,7 +1111,7 @@
     <message>
       <location filename="app/desk/inforce.py" />
       <source>G10 AT NEXT T</source>
-      <translation>G10 EN LA T SIGUIENTE</translation>
+      <translation>G10 EN T SIG.</translation>
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
@@ -1186,7 +1186,7 @@
     <message>
       <location filename="app/desk/inforce.py" />
       <source>TOOL OFFSET</source>
-      <translation>COMP DE HERRAMIENTA</translation>
+      <translation>COMP HERRAM</translation>
     </message>
     <message>
       <location filename="app/desk/inforce.py" />
@@ -1246,12 +1246,12 @@
     <message>
       <location filename="app/desk/interrupted.py" />
       <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted.py" />
       <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted.py" />
@@ -1276,7 +1276,7 @@
     <message>
       <location filename="app/desk/interrupted.py" />
       <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
-      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/asked.py" />
@@ -1376,7 +1376,7 @@
     <message>
       <location filename="app/desk/jogging/hold.py" />
       <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
-      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, O OPRIMA SIN SHIFT</translation>
+      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U OPRIMA SIN SHIFT</translation>
     </message>
     <message>
       <location filename="app/desk/jogging/hold.py" />
@@ -6526,7 +6526,7 @@
     <message>
       <location filename="core/executor/interrupted.py" />
       <source>THE CONTROL LOST ITS POWER OR WAS KILLED</source>
-      <translation>EL CONTROL PERDIÓ LA CORRIENTE O LO MATARON</translation>
+      <translation>EL CONTROL PERDIÓ LA CORRIENTE O FUE TERMINADO A LA FUERZA</translation>
     </message>
     <message>
       <location filename="core/executor/interrupted.py" />
@@ -6546,12 +6546,12 @@
     <message>
       <location filename="core/executor/interruption.py" />
       <source>go on there by SEARCHTO (F6), or press Y</source>
-      <translation>siga allí con SEARCHTO (F6), u oprima Y</translation>
+      <translation>siga allí con BUSCAR A (F6), u oprima la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption.py" />
       <source>jog it clear, press Y</source>
-      <translation>sáquela a mano, oprima Y</translation>
+      <translation>sáquela a mano, oprima la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption.py" />
