@@ -13,7 +13,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.alarms import TroubleError
 from core.executor.thread_way import Phases, Way
 from core.executor.turns import Turns
 from core.interpreter.blocks import Block
@@ -127,9 +126,7 @@ class GearedPass:
 
     def _mesh_from_rest(self, early: float) -> bool:
         """Plan the whole pass; False when that came too late."""
-        state = self._turns.at(self._axes.now())
-        if state is None or state[1] == 0.0:
-            raise TroubleError("thread-no-encoder")
+        state = self._turns.turning_at(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._running_up(self._speed)
         first = self._sign * state[0] + self._speed * (self._axes.commit + early)

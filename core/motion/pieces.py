@@ -13,7 +13,8 @@ from core.motion.words import Words
 
 SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
 _STEEPEST = 1e5  # degrees of C a mm: distances along the path are good to 1e-9 mm, so C to a ten-thousandth
-_NO_WAY = 1e-4  # mm of the slides that are rounding, and what such a block means is the turn of C
+_NO_WAY = 1e-4  # mm of the slides beside a turn of C that measures the path then
+_TURN_ALONE = 1e-6  # mm of the slides under which the feed is that of C
 RADII_DIFFER = 0.02  # mm by which start and end of an arc may differ in their distance from the centre
 
 
@@ -83,8 +84,10 @@ def make_pieces(words: Words, rate: FloatArray) -> Pieces:
     delta = words.end - words.start
     length = np.hypot(delta[:, 0], delta[:, 1])
     turn = np.abs(delta[:, 2])
-    slides = length > np.maximum(SAME_POINT, np.minimum(turn / _STEEPEST, _NO_WAY))
-    length = np.where(slides, length, np.where(turn > SAME_POINT, turn, 0.0))
+    way, slides = length, length > np.maximum(SAME_POINT, np.minimum(turn / _STEEPEST, _NO_WAY))
+    length = np.where(slides, way, np.where(turn > SAME_POINT, turn, 0.0))
+    beside = ~slides & (way > _TURN_ALONE) & np.isnan(words.length)
+    rate = np.where(beside, rate * length / np.maximum(way, _TURN_ALONE), rate)  # the slides keep their feed
     length = np.where(np.isnan(words.length), length, words.length)
     centre, radius, angle, curvature, sweep = _circles(words)
     length = np.where(curvature != 0.0, radius * sweep, length)

@@ -22,7 +22,7 @@ class Cause(Enum):
     FULL = "the disk is full: {path} takes nothing more; make room on that disk"
     LOCKED = "{path} is locked by another program; close that one, then try again"
     FORBIDDEN = "{path} may not be used so by this user ({error}); check its rights and those of its folder"
-    GONE = "{path} is not there (any more); put it back, then start turndesk again"
+    GONE = "{path} is not there: look at the name, or put it back and start turndesk again"
     FAILING = "{path}: the disk fails ({error}); check that it is there and sound"
     DAMAGED = (
         "{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE"

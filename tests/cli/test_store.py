@@ -105,7 +105,7 @@ def test_verify_of_no_store(capsys: Captured, home: Path) -> None:
 def test_refusals(capsys: Captured, filled: Path, tmp_path: Path) -> None:
     (tmp_path / "part.nc").write_bytes(b"G90")
     assert "not a database" in refused(capsys, "backup", str(tmp_path / "part.nc"))
-    assert "cannot be read" in refused(capsys, "restore", str(tmp_path / "none.db"))
+    assert "none.db is not there" in refused(capsys, "restore", str(tmp_path / "none.db"))
     assert "not a database" in refused(capsys, "restore", str(tmp_path / "part.nc"))
     assert "not empty" in refused(capsys, "export", str(filled))
     assert "no exported folder" in refused(capsys, "import", str(tmp_path / "none"))

@@ -139,8 +139,6 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     assert "GIVE THE PROGRAM UP" in day.prompt
     yes(day.window)
     day.reaches(State.IDLE)
-    refused(day, "X1.2", "11")
-    clear_of_the_part(day)
     day.key(Key.Key_S)  # nobody lets the first restart of the day run through
     search(day, "X1.2", "11")
     restarts(day)
@@ -157,25 +155,6 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     # The rest of the turning was left out: no part, and that is said.
     assert (day.count("part"), day.count("uncounted")) == (0, 1)
     assert day.prompt.startswith("NOT COUNTED AS A PART: a restart left something of it out")
-
-
-def clear_of_the_part(day: Day) -> None:
-    """Jog, still in steps of .1, Z an inch to the right; back to Automatic."""
-    day.key(Key.Key_F1, Key.Key_F5)
-    z = day.slides[1]
-    for _ in range(10):
-        day.key(Key.Key_Right)
-        day.run(0.05)
-        day.reaches(State.IDLE)
-    assert day.slides[1] == pytest.approx(z + 1.0, abs=NEAR)
-    back_to_automatic(day)
-
-
-def refused(day: Day, text: str, line: str) -> None:
-    """The other tool would be turned in beside the part."""
-    search(day, text, line)
-    assert day.prompt.startswith("T1 STANDS AT THE PART AND THE LINE WORKS WITH T2: JOG Z CLEAR")
-    day.key(Key.Key_F1, Key.Key_F2)
 
 
 def search(day: Day, text: str, line: str) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from core.executor.commands import EnableDrives, Wheel, WheelOff
+from core.executor.commands import CycleStart, EnableDrives, Wheel, WheelOff
 from core.executor.snapshot import State
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_executor import OVER, BusRig, under_way
@@ -162,6 +162,10 @@ def test_the_spindle_switch_and_pot(make: Callable[..., BusRig]) -> None:
     rig.until_true(lambda shot: abs(shot.rpm_actual) < 5.0, limit=3.0)
     assert not rig.shot.spindle_auto
     rig.bench.peers.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: bool(shot.announced), limit=3.0)  # the switch alone starts nothing
+    rig.run(0.5)
+    assert abs(rig.shot.rpm_actual) < 5.0
+    rig.post(CycleStart())
     rig.until_true(lambda shot: abs(shot.rpm_actual - 500.0) < 10.0, limit=3.0)
     rig.bench.peers.machine.set_spindle_auto(False)
     rig.until_true(lambda shot: abs(shot.rpm_actual) < 5.0, limit=3.0)
