@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from core.interpreter.blocks import Block
 from core.motion.limits import FloatArray
 from core.motion.path import Path, PathBuilder, build_path
-from core.motion.plan import plan
+from core.motion.plan import plan, settled_joints
 from core.motion.profile import Profile
 from core.motion.rounding import SUPPORT
 from core.motion.timeline import ChunkPlanner
@@ -204,3 +204,21 @@ def test_nothing_before_a_corner_moves_for_what_comes_behind_it(
     blocks = polyline([(x, z) for x, z in ends], 60.0)
     alone = joints(build_path(blocks[: len(before) + 1], STEPPED))
     assert joints(build_path(blocks, STEPPED))[: len(alone)] == pytest.approx(alone, abs=1e-12)
+
+
+def test_no_joint_that_is_settled_moves_when_more_chords_come_in() -> None:
+    blocks, builder = rounded_chords(400, 5.0, 0.00254), PathBuilder(STEPPED)
+    builder.add(blocks[:200])
+    path = builder.path()
+    settled = settled_joints(path)
+    builder.add(blocks[200:])
+    assert settled > 100
+    assert joints(builder.path())[: settled + 1] == pytest.approx(joints(path)[: settled + 1], abs=1e-12)
+
+
+def test_a_chord_of_two_steps_keeps_half_its_length() -> None:
+    """Both of its ends may move by a quarter of it towards each other, not through each other."""
+    zigzag = [(0.0013 * (i % 2), 0.0025 * i) for i in range(60)]
+    blocks = polyline(zigzag, 60.0)
+    off = np.abs(joints(build_path(blocks, STEPPED)) - written(blocks)).max()
+    assert 0.0 < off <= 0.25 * math.hypot(0.0013, 0.0025) + 1e-12
