@@ -110,6 +110,12 @@ class Feeder:
         axes = self._ports.axes
         return not axes.sample().moving and at_rest(axes.horizon(), axes.now())
 
+    def _stands_in_thread(self) -> bool:
+        """Whether slides that follow the spindle wait for one that turns no more: their queue never ends."""
+        gear = self._ports.gear
+        follows = gear is not None and gear.geared() is not None
+        return follows and not self._ports.axes.sample().moving and abs(self._ports.spindle.speed()) < _STANDS
+
     def _trip(self, away: float, *, spindle: bool = True) -> None:
         """Outputs safe, as modules have made them already that missed our heartbeat, and the spindle stopped
         unless a tool is still in the cut. What was on is what the control has to be told.
@@ -142,6 +148,8 @@ class Feeder:
         """The queue ends at rest by itself; what does not, is stopped once it is over."""
         axes = self._ports.axes
         if not self._resting():
+            if self._stands_in_thread():
+                self._carefully(lambda: axes.stop(Stop.RAMP_HOLD))
             return
         if not self._parted:
             self._parted = True

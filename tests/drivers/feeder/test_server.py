@@ -17,6 +17,7 @@ from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
 from drivers.simulated import Simulation, StepClock, build_simulation
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG, ramp
+from tests.drivers.test_gear import cam
 
 ZERO = (0.0, 0.0, 0.0)
 
@@ -251,3 +252,23 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
         bench.feeder.late(seconds)
     bench.ports.axes.sample()
     assert [line.split("woke up ")[1][:5] for line in caplog.messages] == ["60 ms", "80 ms"]
+
+
+def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: Bench) -> None:
+    """The slides follow the spindle: one that stands in the pass never lets their queue end."""
+    bench.ports.axes.enable(True)
+    bench.ports.spindle.run(600.0)
+    bench.ports.io.write("coolant", True)
+    for _ in range(20):
+        bench.alone(0.1)
+        bench.ports.axes.sample()
+    assert bench.ports.gear is not None
+    bench.ports.gear.mesh(cam(bench.sim, turns=30.0))
+    bench.alone(0.15)
+    bench.line.close()
+    bench.sim.machine.spindle_bog(0.0)
+    bench.alone(4.0)
+    assert not bench.sim.ports.io.outputs()["coolant"]
+    assert not bench.sim.ports.axes.sample().moving
+    bench.alone(9.0)
+    assert bench.feeder.done
