@@ -12000,8 +12000,8 @@
     </message>
     <message>
       <location filename="core/store/causes.py" />
-      <source>{path} is not there (any more); put it back, then start turndesk again</source>
-      <translation>{path} (ya) no está; regréselo y arranque turndesk otra vez</translation>
+      <source>{path} is not there: look at the name, or put it back and start turndesk again</source>
+      <translation>{path} no está: revise el nombre, o regréselo y arranque turndesk otra vez</translation>
     </message>
     <message>
       <location filename="core/store/causes.py" />
