@@ -17,6 +17,7 @@ from typing import Any
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
+from core.executor.announced import READ
 from core.executor.commands import (
     Command,
     CycleStart,
@@ -48,7 +49,7 @@ from tests.executor.rig import TICK, Rig
 TOOLS = {1: ToolOffset(), 2: ToolOffset(x=1.0, z=-2.0)}
 PROGRAMS = (
     "G90G94F300\nX.3Z.3\nX.3\nG01X.4F20\nX.4\nZ.2\nM30\n",
-    "G90G94F300\nM03S1000\nM08\nX.5Z.1\nG01X.4Z-.2F20\nX.6\nM09\nM30\n",
+    "G90G94F300\nM03S1000\nM08\nX.5Z.1\nG01X.4Z-.2F5\nX.6\nM09\nM30\n",
     "G90G94F300\nM03S1500\nX.5Z.1\nG95G01Z-.3F.01\nX.7\nG94M05\nM30\n",
     "G90G94F300\nM03S600\nX.5Z.1\nG33X.48Z-.3I.02K.05\nG00X1\nM30\n",
     "G90G94F300\nX.2\nG04F.3\nM00\nX.3\nM01\nX0Z0\nM30\n",
@@ -137,6 +138,7 @@ class Machine(Rig):
         self.jog_asked = 0.0
         self.left = -1e9  # when the last state in which slides move was left
         self.fed_badly = 0.0
+        self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
         self.before = self.shot
         self.executor.tick()
 
@@ -205,6 +207,8 @@ class Machine(Rig):
     def _check(self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float) -> None:
         if old.state in MOVES and new.state not in MOVES:
             self.left = new.t
+        told = any("SPINDLE STARTS" in text for text in old.announced)
+        self.announced = self.announced + dt if told else 0.0
         self._nothing_moves_unasked(old, new, place, dt)
         self._the_spindle_waits(old, new)
         self._feeds_as_commanded(new)
@@ -218,7 +222,8 @@ class Machine(Rig):
     def _nothing_moves_unasked(
         self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float
     ) -> None:
-        if new.state in ACTIVE and old.state not in ACTIVE:
+        begins = old.state not in ACTIVE or (old.state is State.HOLDING and new.state is not State.HOLDING)
+        if new.state in ACTIVE and begins:
             assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
         if new.state is State.JOG and old.state is not State.JOG:
             assert self.jogged, f"{old.state} became a jog and nobody asked for one"
@@ -234,8 +239,8 @@ class Machine(Rig):
             return
         fresh = old.spindle_asked == 0.0 and (new.state in ACTIVE or old.state in ACTIVE or self.pressed)
         word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE
-        announced = self.pressed and any("SPINDLE STARTS" in text for text in old.announced)
-        switched = self.switched and new.state in BY_HAND and bool(old.announced)
+        announced = self.pressed and self.announced > READ - 1e-6
+        switched = self.switched and new.state in BY_HAND and self.announced > READ - 1e-6
         assert fresh or word or announced or switched, (
             f"the spindle starts by itself in {new.state}: {old.announced}"
         )
@@ -341,6 +346,18 @@ class ExecutorModel(RuleBasedStateMachine):
         machine.run(0.4)
         self._start(lambda: machine.executor.post(CycleStart()))
         machine.run(0.2)
+
+    @rule(late=st.floats(0.6, 3.0), jogs=st.booleans())
+    def presses_while_nobody_looks(self, late: float, jogs: bool) -> None:
+        """A press that waits in the queue of a stalled control, or an edge of the palms behind the stall."""
+        self._count("late press")
+        machine = self.machine
+        if jogs:
+            machine.executor.post(Jog("X", 20.0, 0.3))
+            machine.executor.post(CycleStart())
+        else:
+            self.hands.press_start()
+        machine.tick(round(late, 3))
 
     @rule()
     def presses_palms(self) -> None:
