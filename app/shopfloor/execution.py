@@ -16,6 +16,7 @@ _COLLET = "COLLET"  # a wait for a device that handles the material, as the inpu
 _KEPT = {
     "FEED OVERRIDE AT 0": FEED_HOLD,
     "SPINDLE SWITCH OFF": INTERRUPTED,
+    "GUARD OPEN": INTERRUPTED,
     "SPINDLE OVERRIDE AT 0": INTERRUPTED,
     "SPINDLE STOPPED": INTERRUPTED,
 }

@@ -37,6 +37,7 @@ OwnCode = Literal[
     # holds that nobody pressed
     "station-silent",
     "pot-jumps",
+    "guard-open",
     "low-queue",
     "spindle-slow",
     "spindle-stopped",

@@ -27,6 +27,13 @@ STATION: Entries = {
         ("the feed or spindle pot has a worn track", "its cable is loose"),
         "turn the pot slowly through its range; if it still jumps change it. Then Cycle Start",
     ),
+    "guard-open": Entry(
+        604,
+        HOLD,
+        "guard open",
+        ("the guard was opened in the cycle", "the guard's switch or cable"),
+        "close the guard; Cycle Start says what it starts again",
+    ),
     "controller-holds": Entry(
         603,
         HOLD,

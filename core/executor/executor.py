@@ -13,6 +13,7 @@ from core.executor.commanded import CommandedOutputs
 from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Reset, Wheel
 from core.executor.conductor import Conductor
 from core.executor.feed import Pass
+from core.executor.gate import guard_open
 from core.executor.guard import Attempt, Guard
 from core.executor.interpret import interpret
 from core.executor.interrupted import Interrupted
@@ -155,6 +156,7 @@ class Executor:
         bench.sample = self._ports.axes.sample()
         bench.inputs = dict(self._ports.io.inputs())
         bench.outputs.look(bench.now)
+        bench.spindle.guard_open = guard_open(bench)
         bench.spindle.look()
         bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
         bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
@@ -182,6 +184,8 @@ class Executor:
             conductor.feed_hold("", "the button at the station")
         elif heard.trouble:
             conductor.feed_hold(heard.trouble)
+        elif self._bench.spindle.guard_open and conductor.state in ACTIVE:
+            conductor.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if heard.start:
             conductor.start()
         if heard.turned_on:

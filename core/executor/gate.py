@@ -16,10 +16,17 @@ _BUSY = {
 }
 
 
+def guard_open(bench: Bench) -> bool:
+    """Whether the guard is open at a machine whose file says that it stops the cycle; off is open."""
+    return bench.machine.interlocks.guard_stops and not bench.inputs.get("guard", False)
+
+
 def busy(bench: Bench) -> str:
     """What at the station keeps a cycle from going on."""
     if bench.heard.hold:
         return "feed hold is pressed"
+    if guard_open(bench):
+        return "the guard is open: close it"
     return bench.heard.trouble.lower()
 
 

@@ -53,6 +53,7 @@ class SpindleControl:
         self.turns = Turns()
         self.override = 1.0
         self.auto = True
+        self.guard_open = False  # at a machine whose guard stops the spindle
         self.waits = ""  # why it stands although it is asked to turn: it starts when it is permitted to
         self._ask: Ask | None = None
         self._turned = False  # it has turned since its command was given
@@ -108,6 +109,8 @@ class SpindleControl:
     @property
     def kept_still(self) -> str:
         """What keeps it from being started at all, at the station."""
+        if self.guard_open:
+            return "GUARD OPEN"
         if not self.auto:
             return "SPINDLE SWITCH OFF"
         return "SPINDLE OVERRIDE AT 0" if self.override <= 0.0 else ""

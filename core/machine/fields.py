@@ -110,6 +110,7 @@ INTERLOCKS = (
     Field("spindle_with_collet_open", _FLAG, default=False),
     Field("unclamp_while_turning", _FLAG, default=True),
     Field("two_hand_start", _FLAG, default=True),
+    Field("guard_stops", _FLAG, default=False),
 )
 OUTPUT = (
     Field("at", _TEXT),

@@ -106,6 +106,7 @@ def _machine(
             spindle_with_collet_open=values.flag("interlocks.spindle_with_collet_open"),
             unclamp_while_turning=values.flag("interlocks.unclamp_while_turning"),
             two_hand_start=values.flag("interlocks.two_hand_start"),
+            guard_stops=values.flag("interlocks.guard_stops"),
         ),
         max_feed=values.number("limits.max_feed"),
         manual_rapid=values.number("limits.manual_rapid"),

@@ -88,6 +88,7 @@ class Interlocks:
     spindle_with_collet_open: bool
     unclamp_while_turning: bool
     two_hand_start: bool
+    guard_stops: bool = False  # the input ``guard``, off while open, holds the cycle and stops the spindle
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from core.executor.announced import READ
 from core.executor.commands import CycleStart, FeedHold, Reset, SpindleLimit
 from core.executor.snapshot import State
+from core.machine.load import load_machine
 from tests.executor.rig import TICK, Rig
 
 CUT = "G90G94F300\nM03S1500\nG01F10Z-1\nM30\n"
@@ -279,3 +282,57 @@ def test_a_limit_is_not_raised_under_a_spindle_that_turns() -> None:
     assert any("while the spindle stands" in text for text in rig.said("refused"))
     rig.post(SpindleLimit(300.0))
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(300.0))
+
+
+def guarded(text: str = CUT) -> Rig:
+    """A lathe whose file says that its guard stops it; the guard is closed, the tool in the cut."""
+    machine = load_machine()
+    rig = Rig(
+        machine=dataclasses.replace(
+            machine, interlocks=dataclasses.replace(machine.interlocks, guard_stops=True)
+        )
+    )
+    rig.sim.machine.set_input("guard", True)
+    rig.start(text)
+    rig.until_true(lambda shot: shot.actual[1] < -0.5)
+    return rig
+
+
+def test_an_opened_guard_stops_feed_and_spindle_and_closing_it_starts_nothing() -> None:
+    rig = guarded()
+    rig.sim.machine.set_input("guard", False)
+    rig.until(State.HOLD)
+    rig.until_true(lambda shot: shot.rpm_actual == 0.0)
+    assert rig.shot.stop is not None
+    assert (rig.shot.stop.code, rig.shot.stop.number) == ("guard-open", 604)
+    rig.post(CycleStart())
+    rig.run(0.1)
+    assert rig.shot.start_refused == "the guard is open: close it"
+    rig.sim.machine.set_input("guard", True)
+    never_turns(rig)
+    assert rig.state is State.HOLD
+    assert rig.shot.announced == (SAID,)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+def test_an_opened_guard_lets_a_thread_be_followed_or_drawn_out() -> None:
+    rig = guarded("G90G94F300\nM03S600\nX.5Z.2\nG01F40Z.1\nG33X.48Z-.6I.01K.05O\nM30\n")
+    rig.until_true(lambda shot: shot.line == 5 and shot.actual[1] < -5.0)
+    rig.sim.machine.set_input("guard", False)
+    rig.until(State.HOLD, State.FAULT)
+    assert rig.shot.actual[0] > 0.48 * 25.4 + 0.05  # out of the thread
+
+
+def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
+    machine = load_machine()
+    interlocks = dataclasses.replace(machine.interlocks, guard_stops=True)
+    rig = Rig(machine=dataclasses.replace(machine, interlocks=interlocks))
+    rig.sim.machine.set_input("guard", False)
+    rig.start(CUT)
+    rig.run(0.2)
+    assert (rig.state, rig.shot.start_refused) == (State.IDLE, "the guard is open: close it")
+    rig.sim.machine.set_input("guard", True)
+    never_turns(rig, 1.0)
+    assert rig.state is State.IDLE

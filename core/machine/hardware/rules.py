@@ -32,6 +32,7 @@ def broken(reading: HardwareReading, axes: tuple[str, ...], signals: Mapping[str
     yield from wiring.pots(reading, signals)
     yield from _faults(reading, axes)
     yield from _renewed(reading.values, signals)
+    yield from _guard(reading.values, signals)
     yield from _ports(reading.values)
     yield from wrong_wheel(reading, axes)
     yield from wrong_palms(reading)
@@ -111,6 +112,12 @@ def _renewed(values: Values, signals: Mapping[str, str]) -> Iterator[Finding]:
         if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
             expected = "an output that falls when nobody renews it needs safe = false"
             yield Finding(f"{path}.refresh_ms", f"{1000 * values.number(f'{path}.refresh_ms'):g}", expected)
+
+
+def _guard(values: Values, signals: Mapping[str, str]) -> Iterator[Finding]:
+    path = "interlocks.guard_stops"
+    if values.has(path) and values.flag(path) and "io.in.guard" not in signals:
+        yield Finding(path, "true", "needs the guard's switch as the input guard, on while it is closed")
 
 
 def _bus_times(values: Values) -> Iterator[Finding]:
