@@ -5765,6 +5765,11 @@
     </message>
     <message>
       <location filename="core/alarms/station.py" />
+      <source>close the guard; Cycle Start says what it starts again</source>
+      <translation>cierre la guarda; Inicio de ciclo dice qué vuelve a arrancar</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
       <source>do what the message says, then Cycle Start</source>
       <translation>haga lo que dice el mensaje y luego inicio de ciclo</translation>
     </message>
@@ -5777,6 +5782,11 @@
       <location filename="core/alarms/station.py" />
       <source>feed hold was pressed</source>
       <translation>se oprimió la retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>guard open</source>
+      <translation>guarda abierta</translation>
     </message>
     <message>
       <location filename="core/alarms/station.py" />
@@ -5857,6 +5867,16 @@
       <location filename="core/alarms/station.py" />
       <source>the feed or spindle pot has a worn track</source>
       <translation>la perilla de avance o de husillo tiene la pista gastada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the guard was opened in the cycle</source>
+      <translation>la guarda se abrió en el ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station.py" />
+      <source>the guard's switch or cable</source>
+      <translation>el interruptor de la guarda o su cable</translation>
     </message>
     <message>
       <location filename="core/alarms/station.py" />
@@ -6345,6 +6365,11 @@
     </message>
     <message>
       <location filename="core/executor/executor.py" />
+      <source>GUARD OPEN</source>
+      <translation>GUARDA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
       <source>feed %1 %</source>
       <translation>avance %1 %</translation>
     </message>
@@ -6397,6 +6422,11 @@
       <location filename="core/executor/gate.py" />
       <source>the drives are off: switch them on</source>
       <translation>los servos están apagados: enciéndalos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/gate.py" />
+      <source>the guard is open: close it</source>
+      <translation>la guarda está abierta: ciérrela</translation>
     </message>
     <message>
       <location filename="core/executor/gate.py" />
