@@ -1,7 +1,8 @@
 """Event times: when a key, button or finger went down, by the stamp of its event; and stalls of the screen.
 
 A stamp counts milliseconds of somebody's clock: of the X server, of the compositor, of Qt. Its offset to our
-own clock is the least that was ever seen between the two, as a message can only be late.
+own clock is the least that was ever seen between the two, as a message can only be late. Fingers have an
+offset of their own: a touch screen may be read by another than the keyboard.
 """
 
 from __future__ import annotations
@@ -24,8 +25,7 @@ class EventTimes:
         self._alive: float | None = None
         self._behind = float("-inf")  # the end of the last stall
         self._frames = FRAMES  # shown since
-        self._offset: float | None = None
-        self._seen = 0.0
+        self._offsets: dict[str, tuple[float, float]] = {}  # of whose clock: offset, and when it was seen
 
     def frame(self) -> None:
         """A frame is shown."""
@@ -39,21 +39,25 @@ class EventTimes:
             self.stalled, self._behind, self._frames = now - self._alive, now, 0
         self._alive = now
 
-    def at(self, stamp: int) -> float:
-        """When it happened, seconds of our clock; an event without a stamp happens now."""
+    def at(self, stamp: int, whose: str = "") -> float:
+        """When it happened, seconds of our clock; an event without a stamp happens now.
+
+        ``whose`` clock counts the stamps: events of one clock alone are compared.
+        """
         now = self.clock()
         if not stamp:
             return now
         apart = now - stamp / 1000
-        if self._offset is None or apart - self._offset > _WRAPPED:
-            self._offset = apart
-        self._offset = min(apart, self._offset + _DRIFT * (now - self._seen))
-        self._seen = now
-        return min(now, stamp / 1000 + self._offset)
+        offset, seen = self._offsets.get(whose, (apart, now))
+        if apart - offset > _WRAPPED:
+            offset = apart
+        offset = min(apart, offset + _DRIFT * (now - seen))
+        self._offsets[whose] = offset, now
+        return min(now, stamp / 1000 + offset)
 
-    def late(self, stamp: int) -> bool:
+    def late(self, stamp: int, whose: str = "") -> bool:
         """Whether it waited behind a stall, of the screen or on its way here."""
         if not stamp:
             return False
-        at = self.at(stamp)
+        at = self.at(stamp, whose)
         return at <= self._behind or self._frames < FRAMES or self.clock() - at > STALL

@@ -14,7 +14,15 @@ from typing import Protocol
 
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt
-from PySide6.QtGui import QEventPoint, QGuiApplication, QInputEvent, QKeyEvent, QTouchEvent, QWindow
+from PySide6.QtGui import (
+    QEventPoint,
+    QGuiApplication,
+    QInputDevice,
+    QInputEvent,
+    QKeyEvent,
+    QTouchEvent,
+    QWindow,
+)
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.screen.eventtime import EventTimes
@@ -91,6 +99,7 @@ class Keyboard(QObject):
         self._up: dict[int, int] = {}  # the stamp of the last release
         self._sending = False
         self._stamp = 0  # of the event that is handled now
+        self._whose = ""  # clock counts it
 
     def watch(self, window: QWindow) -> None:
         """From now on see what this window gets."""
@@ -102,7 +111,7 @@ class Keyboard(QObject):
     @property
     def now(self) -> float:
         """When what is handled now has happened; monotonic seconds."""
-        return self.times.at(self._stamp)
+        return self.times.at(self._stamp, self._whose)
 
     # --- what is down --------------------------------------------------------------------------------
 
@@ -156,11 +165,11 @@ class Keyboard(QObject):
             return not self._sending and self._key(event)
         if kind in _PRESSES and isinstance(event, QInputEvent):
             self.times.alive()
-            self._stamp = event.timestamp()
+            self._stamp, self._whose = event.timestamp(), _clock_of(event)
             return self._pressed_late(event)
         if isinstance(event, QInputEvent):
             self.times.alive()
-            self._stamp = event.timestamp()
+            self._stamp, self._whose = event.timestamp(), _clock_of(event)
             if isinstance(event, QTouchEvent) and any(
                 point.state() == QEventPoint.State.Pressed for point in event.points()
             ):
@@ -175,7 +184,7 @@ class Keyboard(QObject):
 
     def _key(self, event: QKeyEvent) -> bool:
         self.times.alive()
-        self._stamp = event.timestamp()
+        self._stamp, self._whose = event.timestamp(), _clock_of(event)
         code = code_of(event)
         if event.type() == QEvent.Type.KeyRelease:
             return self._released(event, code)
@@ -251,7 +260,7 @@ class Keyboard(QObject):
         return _field() is None if event.modifiers() & _CHORD else not self._behind.is_text(wanted)
 
     def _late(self, event: QInputEvent) -> bool:
-        return self.times.late(event.timestamp())
+        return self.times.late(event.timestamp(), _clock_of(event))
 
     def _forget(self) -> bool:
         self._behind.forgotten(self.times.stalled)
@@ -294,6 +303,11 @@ def _like(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
 def code_of(event: QKeyEvent) -> int:
     """Which key it is, whatever modifiers make of it."""
     return event.nativeScanCode() or event.key()
+
+
+def _clock_of(event: QInputEvent) -> str:
+    """Whose clock counts the stamp of an event: fingers may be read by another than keys and mouse."""
+    return "touch" if event.deviceType() is QInputDevice.DeviceType.TouchScreen else ""
 
 
 def _field() -> QWidget | None:

@@ -185,6 +185,20 @@ def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
     assert times.late(51_000 - round(1100 * STALL))
 
 
+def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
+    time = Time()
+    times = EventTimes(time)
+    assert not times.late(50_000)  # keys and mouse
+    for _ in range(100):
+        time.now += 0.01
+        times.frame()
+    assert not times.late(20_000, "touch")  # counts from elsewhere, a second of it behind
+    time.now += 0.01
+    assert not times.late(20_010, "touch")
+    assert times.late(20_010 - round(1100 * STALL), "touch")
+    assert not times.late(51_010)
+
+
 def test_stamps_that_run_over_are_no_stall() -> None:
     time = Time()
     times = EventTimes(time)

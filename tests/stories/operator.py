@@ -18,6 +18,7 @@ from tests.stories.patience import PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
 
 INCH = 25.4  # mm
+_TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
 Told = dict[str, Any]
 
@@ -297,10 +298,13 @@ class Operator:
         """A finger goes down there, and stays; again where the screen has forgotten it."""
         before = self._forgotten()
         self.ask("touch", fingers=[(number, "press", *at)])
-        while self._forgotten() != before:
+        for _ in range(_TRIES):
+            if self._forgotten() == before:
+                return
             before = self._forgotten()
             self.ask("touch", fingers=[(number, "release", *at)])
             self.ask("touch", fingers=[(number, "press", *at)])
+        raise AssertionError(f"no finger is felt at {at}: {self.last_words}")
 
     def minimises(self) -> None:
         """The window goes into the task bar."""
