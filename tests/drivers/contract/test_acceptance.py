@@ -43,7 +43,10 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
         control.press()
     control.until(State.IDLE)
     assert control.shot.alarms == ()
-    assert control.shot.parts == 1
+    # Where a feeder has made the machine safe meanwhile, somebody has to look at the part.
+    disturbed = any("was disturbed" in text for text in control.said("uncounted"))
+    assert (control.shot.ends, control.shot.parts) == (1, 0 if disturbed else 1)
+    assert not disturbed or stall > 1.0
     assert control.world.place() == pytest.approx((0.0, 0.0), abs=0.003)
 
 
