@@ -21,6 +21,13 @@ PROGRAMS: Rows = (
     (*"ASDFGHJKL+/}", "Up"),
     (*"ZXCVBNM=~ ", "Left", "Right", "Down"),
 )
+LINES: Rows = (
+    "1234567890-.",
+    "QWERTYUIOP()",
+    "ASDFGHJKL+/}",
+    "ZXCVBNM=~ ",
+    ("Back", "Left", "Right", "Up", "Down", "Enter"),
+)  # of MDI: no row is longer than fingers allow beside the modal state
 _CODES = {
     "Back": Qt.Key.Key_Backspace,
     "Enter": Qt.Key.Key_Return,

@@ -88,3 +88,19 @@ def test_no_field_lets_a_character_through(story: Story, place: str) -> None:
     assert operator.screen["theme"] == theme
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")
+
+
+def test_a_drawn_keyboard_writes_and_keeps_no_stop_key(story: Story) -> None:
+    operator = story.begins(PART, tools=TOOLS)
+    operator.drives_on()
+    operator.keys("F1", "F4")
+    operator.opens("MDI")
+    operator.clicks("LINE", on="LinePanel")
+    for letter in ("H", "E", "S", "+"):
+        operator.clicks(letter, on="LetterPad")
+    operator.sees("HES+")
+    assert operator.state == "READY"
+    assert operator.machine["single_block"] is False
+    operator.key("Pause", "ctrl")
+    operator.key("Scroll_Lock", "alt")
+    operator.reaches("E-STOP")

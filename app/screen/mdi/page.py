@@ -10,7 +10,7 @@ from app.desk.inforce import rows_of
 from app.desk.mdi.mdi import MdiDesk
 from app.desk.session import Loaded
 from app.desk.view import View
-from app.screen.letters import LetterPad
+from app.screen.letters import LINES, LetterPad
 from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel
@@ -34,7 +34,7 @@ class MdiPage(Page):
         self.model = model
         self.line = LinePanel(self.look, self._other_hand, self)
         self.history = HistoryPanel(self.look, self._recall, self)
-        self.letters = LetterPad(self.look, self._touched, self)
+        self.letters = LetterPad(self.look, self._touched, self, LINES)
         self.inforce = InForcePanel(self.look, self)
 
     def doings(self) -> Doings:
@@ -61,10 +61,7 @@ class MdiPage(Page):
         self.letters.raise_()
 
     def _touched(self, key: str) -> None:
-        if key == "Esc":
-            self.host.press(key)
-        else:
-            self.typed(key)
+        self.typed(key)
 
     def typed(self, key: str) -> bool:
         """At rest, text; while a line is under way the letters are the keys they are everywhere."""
