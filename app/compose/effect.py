@@ -11,9 +11,9 @@ from core.interpreter.setup import ToolOffset
 from core.machine.model import Machine
 
 if TYPE_CHECKING:
+    from app.desk.latest import Watch
     from app.desk.offsets.effect import Draw
     from app.desk.picture import Picture, Timed
-    from app.desk.session import Watch
 
 
 def drawer(machine: Machine) -> Draw:

@@ -9,9 +9,10 @@ from app.compose.machine import setup_for
 from app.compose.offsets import Offsets
 from app.desk.desk import Desk
 from app.desk.keep import Keep
+from app.desk.latest import Watch
 from app.desk.mdi.mdi import MdiDesk, ProveLine
 from app.desk.mdi.typing import Typing
-from app.desk.session import Proved, Watch
+from app.desk.session import Proved
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot
 from core.interpreter.begin import Begin, Checkpoint

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from app.desk.desk import Desk
+from app.desk.latest import Watch
 from app.desk.searchto.search import SearchDesk
-from app.desk.session import Watch
 from core.executor.job import Job
 from core.interpreter.restart.approach import Choices
 from core.machine.model import Machine

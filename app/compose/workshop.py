@@ -13,7 +13,8 @@ from app.compose.machine import setup_for
 from app.compose.offsets import Offsets
 from app.compose.zero_offsets import Zero, stored_zero
 from app.desk.home import home
-from app.desk.session import Proved, Watch, Workshop
+from app.desk.latest import Watch
+from app.desk.session import Proved, Workshop
 from core.executor.job import Job, make_job
 from core.interpreter.modal import Modal
 from core.language.dialect import Dialect

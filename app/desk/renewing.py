@@ -7,7 +7,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from app.desk.session import AbandonedError, Loaded, Phase, Session, sentence
+from app.desk.latest import AbandonedError, sentence
+from app.desk.session import Loaded, Phase, Session
 from core.executor.commands import Renew
 from core.executor.snapshot import Snapshot
 

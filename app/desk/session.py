@@ -11,6 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.latest import AbandonedError, Watch, sentence
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
@@ -18,8 +19,6 @@ from core.language.source import Source
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture
-
-Watch = Callable[[float], None]
 
 
 def _same(job: Job) -> Job:
@@ -90,10 +89,6 @@ class Loaded:
     def busy(self) -> bool:
         """Whether the worker is still at it."""
         return self.phase in {Phase.READING, Phase.PROVING, Phase.DRAWING}
-
-
-class AbandonedError(Exception):
-    """The operator has chosen another program meanwhile."""
 
 
 @dataclass(slots=True)
@@ -191,10 +186,3 @@ def _keep_out_of_collections() -> None:
     thread, the executor too, for 40 ms with 200 000 blocks, again and again."""
     gc.collect(1)
     gc.freeze()
-
-
-def sentence(error: BaseException) -> str:
-    """What a failure on a worker is called on the screen."""
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror
-    return str(error) or type(error).__name__

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.latest import Watch
 from app.desk.picture import Picture, Sketch
 from app.desk.prompts import prompt, refusal
-from app.desk.session import Loaded, Phase, Proved, Session, Watch, Workshop
+from app.desk.session import Loaded, Phase, Proved, Session, Workshop
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State

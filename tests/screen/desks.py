@@ -13,9 +13,10 @@ from app.desk.desk import Desk
 from app.desk.editing.bench import Archive, Bench, NoArchive
 from app.desk.editing.editor import Editor
 from app.desk.keep import Keep, NothingKept
+from app.desk.latest import Watch
 from app.desk.offsets.effect import Effect
 from app.desk.picture import Picture, sketched
-from app.desk.session import Proved, Session, Watch, Workshop
+from app.desk.session import Proved, Session, Workshop
 from app.desk.shelf import Shelf
 from core.executor.job import Job
 from core.interpreter.dialects import Reading

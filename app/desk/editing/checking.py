@@ -9,7 +9,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from app.desk.session import AbandonedError, Watch, Workshop
+from app.desk.latest import AbandonedError, Watch
+from app.desk.session import Workshop
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from app.desk.files.rows import Program
-from app.desk.session import AbandonedError, Watch, Workshop
+from app.desk.latest import AbandonedError, Watch
+from app.desk.session import Workshop
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture

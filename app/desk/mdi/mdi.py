@@ -7,20 +7,16 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
 from app.desk import prompts
+from app.desk.latest import AbandonedError, Watch
 from app.desk.mdi.findings import never_set, prompt
 from app.desk.mdi.typing import Typing
-from app.desk.session import Proved, Watch
+from app.desk.session import Proved
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare, SpindleStop
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
 from core.language.diagnostics import Diagnostic, Severity
-
-
-class AbandonedError(Exception):
-    """Another line is being typed meanwhile."""
-
 
 ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.desk.session import AbandonedError, Watch
+from app.desk.latest import AbandonedError, Watch
 from core.executor.job import Job
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 

@@ -7,7 +7,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from app.desk.session import Proved, Watch
+from app.desk.latest import AbandonedError, Watch
+from app.desk.session import Proved
 from core.executor.job import Job
 from core.interpreter.restart.cut import Cut
 from core.interpreter.restart.found import BrokenOff, Found, NotGood
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from core.interpreter.restart.rebuild import Rebuild
 
 Answer = Found | NotGood | Cut | tuple[Job, Proved]
-
-
-class AbandonedError(Exception):
-    """Another line has been chosen meanwhile."""
 
 
 @dataclass(slots=True)

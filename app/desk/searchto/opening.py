@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from app.desk.latest import Watch
 from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
 from app.desk.searchto.leaving import Leaving
 from app.desk.searchto.plan import Plan
 from app.desk.searchto.stage import Stage
-from app.desk.session import Loaded, Phase, Proved, Session, Watch
+from app.desk.session import Loaded, Phase, Proved, Session
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job

@@ -9,8 +9,9 @@ from pathlib import Path
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.desk.editing.bench import Bench
+from app.desk.latest import Watch
 from app.desk.picture import Picture, sketched
-from app.desk.session import Proved, Watch, Workshop
+from app.desk.session import Proved, Workshop
 from core.executor.job import Job
 from core.interpreter.dialects import Reading
 from core.interpreter.setup import ToolOffset

@@ -9,7 +9,8 @@ from dataclasses import replace
 import pytest
 
 from app.desk.editing.checking import Checker, by_line
-from app.desk.session import Proved, Watch
+from app.desk.latest import Watch
+from app.desk.session import Proved
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.desk.editing.shop import GOOD, workshop

@@ -9,9 +9,9 @@ import pytest
 
 from app.compose.effect import drawer
 from app.compose.machine import setup_for
+from app.desk.latest import Watch
 from app.desk.offsets.effect import Effect, Tables
 from app.desk.picture import Picture
-from app.desk.session import Watch
 from core.executor.job import Job, make_job
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
