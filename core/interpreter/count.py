@@ -12,11 +12,8 @@ from core.interpreter.program import Program
 from core.interpreter.statement import Statement
 from core.interpreter.steps import LongSteps, Steps
 from core.interpreter.structure import call_target
+from core.interpreter.told import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES
 from core.language.diagnostics import Diagnostic
-
-MOST_BLOCKS = 5_000_000
-MOST_LINES = 10_000_000
-DEEPEST_CALL = 16
 
 # Blocks of the shortest cycle of each code; what there is more of them is counted while running.
 _LEAST_OF_CYCLE = {33: 4, 34: 4, 74: 4, 75: 4, 78: 3, 81: 2, 83: 2}

@@ -5,24 +5,21 @@ from __future__ import annotations
 from copy import copy
 
 from core.interpreter.begin import FlowPlace, Run
-from core.interpreter.count import DEEPEST_CALL
 from core.interpreter.log import refusal
-from core.interpreter.program import Program
 from core.interpreter.statement import Statement
-from core.interpreter.structure import call_target
+from core.interpreter.structure import Structure, call_target
+from core.interpreter.told import DEEPEST_CALL
 from core.language.diagnostics import ProgramError
 
 
 class Flow:
     """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, structure: Structure) -> None:
         self.at = 0
-        self.end = self._run_end = (
-            program.structure.main_end
-        )  # the latter of the subroutine under way, if any
+        self.end = self._run_end = structure.main_end  # the latter of the subroutine under way, if any
         self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
-        self._structure = program.structure
+        self._structure = structure
         self._loops: list[list[int]] = []  # index of LS, passes left
         self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
 

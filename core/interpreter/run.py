@@ -11,7 +11,7 @@ from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.begin import Checkpoint
 from core.interpreter.blocks import Block
 from core.interpreter.coarse import looks_ahead
-from core.interpreter.count import MOST_BLOCKS, MOST_LINES, takes_call, terminal
+from core.interpreter.count import takes_call, terminal
 from core.interpreter.execute import execute
 from core.interpreter.flow import Flow
 from core.interpreter.log import Log
@@ -28,7 +28,7 @@ from core.interpreter.shaper import Shaper
 from core.interpreter.spindle import rpm_at
 from core.interpreter.state import State
 from core.interpreter.statement import PLANE, UNREADABLE, Statement, Step
-from core.interpreter.told import Told
+from core.interpreter.told import MOST_BLOCKS, MOST_LINES, Told
 from core.interpreter.tools import ToolUse, warn_of_idle_shifts
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import lex_line
@@ -54,7 +54,7 @@ class Interpreter(Told):
         self._state = State(setup, self._log)
         self._shaper = Shaper(self._state)
         self._tools = ToolUse()
-        self._flow = Flow(program)
+        self._flow = Flow(program.structure)
         self._ahead: Ahead | None = None
         self._first, self._refused = check_opening(self._state, program)
         if setup.begin is not None:

@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from core.interpreter.count import MOST_BLOCKS, MOST_LINES
 from core.interpreter.log import Log, refusal
 from core.interpreter.modal import Modal
 from core.language.diagnostics import Diagnostic
+
+MOST_BLOCKS = 5_000_000
+MOST_LINES = 10_000_000
+"""More of either is made by no program that anybody means to run."""
+
+DEEPEST_CALL = 16
+"""Subroutines that may call each other in a chain."""
 
 
 class Standing(Protocol):

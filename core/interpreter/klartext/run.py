@@ -8,7 +8,6 @@ from core.geometry.frames import Vector
 from core.geometry.kinematics import Kinematics
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.blocks import Block
-from core.interpreter.count import MOST_BLOCKS, MOST_LINES
 from core.interpreter.klartext import functions, words
 from core.interpreter.klartext.flow import Flow
 from core.interpreter.klartext.moves import move
@@ -19,7 +18,7 @@ from core.interpreter.klartext.state import SLIDES, State
 from core.interpreter.klartext.tools import ToolUse, tool_call
 from core.interpreter.log import Log
 from core.interpreter.setup import Setup
-from core.interpreter.told import Told
+from core.interpreter.told import MOST_BLOCKS, MOST_LINES, Told
 from core.language.diagnostics import ProgramError
 from core.language.klartext.nodes import (
     Assign,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.count import DEEPEST_CALL
 from core.interpreter.sinumerik.statement import Statement
+from core.interpreter.told import DEEPEST_CALL
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.faults import refused
 from core.language.sinumerik.lexer import lex_line

@@ -8,7 +8,6 @@ from functools import cached_property
 
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.blocks import Block
-from core.interpreter.count import MOST_BLOCKS, MOST_LINES
 from core.interpreter.log import Log
 from core.interpreter.setup import Setup
 from core.interpreter.sinumerik.arcs import arc
@@ -21,7 +20,7 @@ from core.interpreter.sinumerik.offsets import leave_offsets, programmed_offset
 from core.interpreter.sinumerik.spindle import dwell, spindle_words
 from core.interpreter.sinumerik.state import State
 from core.interpreter.sinumerik.statement import Statement, statement
-from core.interpreter.told import Told
+from core.interpreter.told import MOST_BLOCKS, MOST_LINES, Told
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.faults import refused
 from core.language.sinumerik.sections import HEADER
