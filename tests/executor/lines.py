@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from app.compose.machine import control_limits
 from app.compose.proof import proof_of
+from app.desk.searchto.leaving import now_of
 from core.executor.commands import CycleStart, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Starts, State
 from core.interpreter.begin import Begin, Checkpoint
+from core.interpreter.restart.approach import Choices, begin_at
+from core.interpreter.restart.found import Found
+from core.interpreter.restart.rebuild import Rebuild
 from core.interpreter.setup import Setup, ToolOffset
 from core.language.source import Source
 from core.proving.prove import prove
@@ -55,3 +60,15 @@ def mdi(rig: Rig, *lines: str) -> None:
     for line in lines:
         press(rig, line)
         rig.until(State.IDLE)
+
+
+def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int = 0) -> Job | None:
+    """The job that goes on from a line of the loaded program at the machine as it stands; None: it cannot."""
+    whole = rig.executor._conductor.standing.job
+    assert whole is not None
+    now = now_of(rig.shot, whole)
+    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line, number, now.broken)
+    if not isinstance(found, Found):
+        return None
+    begin = begin_at(found, now, choices or Choices())
+    return make_job(whole.source, replace(whole.setup, start=rig.shot.demand, begin=begin), whole)

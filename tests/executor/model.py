@@ -17,6 +17,7 @@ from typing import Any
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
+from app.compose.proof import proof_of
 from core.executor.announced import READ
 from core.executor.commands import (
     Command,
@@ -29,6 +30,7 @@ from core.executor.commands import (
     Jog,
     JogStep,
     JogStop,
+    Prepare,
     Reset,
     SetSwitch,
     SpindleLimit,
@@ -39,11 +41,13 @@ from core.executor.commands import (
 from core.executor.executor import Executor
 from core.executor.feed import Pass
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED
 from core.interpreter.blocks import Block, Kind
 from core.interpreter.setup import Setup, ToolOffset
 from core.ports import DriverError
+from core.proving.prove import prove
+from tests.executor.lines import line_job, restart_job
 from tests.executor.rig import TICK, Rig
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset(x=1.0, z=-2.0)}
@@ -58,11 +62,17 @@ PROGRAMS = (
     "G90G94F300\nM05\nM19\nC90\nG01C180F600\nC180\nM05\nM30\n",
     "G90G94F300\nM03S800\nG04F.2\nM04S800\nG01X.2F10\nM05\nM13\nM12\nM02\n",
     "G90G94F300\nG96S200M03\nX1Z.1\nG94G01X.2F20\nG97\nM30\n",
+    "G90G94F300\nM03S900\nX.5Z.1\nLS3\nG91G01X-.05F10\nZ-.1\nG00Z.1\nLF\nG90X.5\nM05\nM30\n",
+    "G90G94F300\nM03S1200\nM08\nX.5Z.1\nG01Z-3.F15\nX.6\nM09\nM05\nM30\n",
 )
+LINES = ("X.2", "Z.2", "G01X.1F20", "M03S500", "M05", "G04F.3", "G91X.05", "G90", "T1", "M08", "M09", "M30")
 SAFE = "G90G94F300\nX.05\nX0\nM30\n"
+STARTS_FROM = {State.IDLE, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP}
 MOVES = ACTIVE | {State.JOG, State.HOME}
 SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
 LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
+RUNS_OUT = 12.0  # s; the spindle's own ramp from full speed, bogged or not
+POWER_SEEN = 0.2  # s until drives that are off are told
 STILL = 0.02  # mm in a tick; servo noise and the last of a lag are less
 ON_PATH = 0.005  # mm
 FINE = 0.002  # s between two looks at the setpoints
@@ -137,7 +147,7 @@ class Machine(Rig):
         self.blind = False  # an encoder may tell what is not so
         self.jog_asked = 0.0
         self.left = -1e9  # when the last state in which slides move was left
-        self.fed_badly = 0.0
+        self.fed_badly = self.stopped = self.powerless = 0.0
         self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
         self.before = self.shot
         self.executor.tick()
@@ -214,7 +224,8 @@ class Machine(Rig):
         self._feeds_as_commanded(new)
         self._known(new)
         self._on_the_path(new)
-        self._stopped_is_off(new)
+        self._stopped_is_off(new, dt)
+        self._power_is_seen(old, new, dt)
         self._jog_ends(new)
         if not self.unexpected:
             assert all(alarm.code != "internal" for alarm in new.alarms), new.alarms
@@ -225,6 +236,7 @@ class Machine(Rig):
         begins = old.state not in ACTIVE or (old.state is State.HOLDING and new.state is not State.HOLDING)
         if new.state in ACTIVE and begins:
             assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
+            assert old.state in STARTS_FROM, f"a cycle was started from {old.state}"
         if new.state is State.JOG and old.state is not State.JOG:
             assert self.jogged, f"{old.state} became a jog and nobody asked for one"
         if new.state is State.HOME and old.state is not State.HOME:
@@ -270,10 +282,21 @@ class Machine(Rig):
             true = self.sim.machine.true_position()
             assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
 
-    def _stopped_is_off(self, new: Snapshot) -> None:
-        """An alarm and the E-stop leave no command to the spindle, whatever it did."""
-        if new.state in {State.FAULT, State.ESTOP} and not self.unexpected:
+    def _stopped_is_off(self, new: Snapshot, dt: float) -> None:
+        """An alarm and the E-stop leave no command to the spindle, and it comes to rest, whatever it did."""
+        off = new.state in {State.FAULT, State.ESTOP} and not self.unexpected
+        self.stopped = self.stopped + dt if off else 0.0
+        if off:
             assert new.rpm_command == 0.0, f"{new.rpm_command} rpm in {new.state}"
+        if self.stopped > RUNS_OUT:
+            assert abs(self.sim.machine.spindle_rpm()) < 1.0, f"it turns in {new.state}"
+
+    def _power_is_seen(self, old: Snapshot, new: Snapshot, dt: float) -> None:
+        """Drives that are off end every state in which something may move or be started."""
+        on = self.true_ports.axes.sample().enabled
+        dark = not on and new.state not in {State.DISABLED, State.FAULT, State.ESTOP}
+        self.powerless = self.powerless + dt if dark and old.state is new.state else 0.0
+        assert self.powerless <= max(POWER_SEEN, dt), f"{new.state} without power for {self.powerless:.2f} s"
 
     def _jog_ends(self, new: Snapshot) -> None:
         """Nothing is jogged for longer than its lease, its step and the braking take."""
@@ -469,6 +492,42 @@ class ExecutorModel(RuleBasedStateMachine):
         (self.hands.set_feed_pot if which == "feed" else self.hands.set_spindle_pot)(fraction)
         self.machine.tick()
 
+    @rule(line=st.sampled_from(LINES), starts=st.booleans())
+    def writes_a_line_of_mdi(self, line: str, starts: bool) -> None:
+        """A line typed and proved as the screen does it, started or left standing; then MDI is left."""
+        machine = self.machine
+        if machine.state is not State.IDLE or not all(machine.shot.homed):
+            return
+        self._count("mdi")
+        job = line_job(machine, line)
+        report = prove(job.source, job.setup, machine.machine)
+        if report.errors:
+            return
+        machine.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+        machine.run(0.4)
+        if starts:
+            self._start(lambda: machine.executor.post(CycleStart()))
+            machine.run(1.5)
+        machine.post(Prepare(Starts.PROGRAM))
+
+    @rule(line=st.integers(1, 9))
+    def restarts(self, line: int) -> None:
+        """SEARCHTO: the state rebuilt to a line, the way there proved, and both palms."""
+        machine = self.machine
+        if machine.state is not State.IDLE or machine.shot.alarms or not all(machine.shot.homed):
+            return
+        self._count("restart")
+        job = restart_job(machine, line)
+        if job is None:
+            return
+        report = prove(job.source, job.setup, machine.machine)
+        if report.errors:
+            return
+        machine.post(Prepare(Starts.RESTART, job, proof_of(job, report)))
+        machine.run(0.4)
+        self._start(lambda: machine.executor.post(CycleStart()))
+        machine.run(1.0)
+
     @rule(program=st.integers(0, len(PROGRAMS) - 1))
     def loads(self, program: int) -> None:
         self._count("load")
@@ -621,12 +680,7 @@ class ExecutorModel(RuleBasedStateMachine):
         machine.tick()
         if old not in ACTIVE and machine.state is old and old in CYCLE | {State.IDLE, State.DISABLED}:
             said = len(machine.said("refused")) > refused or len(machine.said("start")) > starts
-            assert said or recent or machine.shot.start_refused or self._silent(), (
-                f"{old}: a start says nothing"
-            )
-
-    def _silent(self) -> bool:
-        return True
+            assert said or recent or machine.shot.start_refused, f"{old}: a start says nothing"
 
     def _post(self, command: Command, *, moves: bool = False) -> None:
         self._count(type(command).__name__)

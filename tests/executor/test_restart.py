@@ -7,16 +7,16 @@ from dataclasses import replace
 import pytest
 
 from app.compose.proof import proof_of
-from app.desk.searchto.leaving import leaving_of, now_of
+from app.desk.searchto.leaving import leaving_of
 from app.desk.searchto.search import WAY_OUT
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.restart.approach import Choices, begin_at
-from core.interpreter.restart.found import Found
+from core.interpreter.restart.approach import Choices
 from core.interpreter.restart.rebuild import Rebuild
 from core.language.source import Source
 from core.proving.prove import prove
+from tests.executor import lines
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig
 
@@ -27,15 +27,10 @@ PART = (
 
 
 def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int = 0) -> Job:
-    """The job that goes on from a line of the loaded program at the machine as it stands."""
-    whole = rig.executor._conductor.standing.job
-    assert whole is not None
-    broken = now_of(rig.shot, whole).broken
-    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line, number, broken)
-    assert isinstance(found, Found)
-    at = rig.shot.demand
-    begin = begin_at(found, now_of(rig.shot, whole), choices or Choices())
-    return make_job(whole.source, replace(whole.setup, start=at, begin=begin), whole)
+    """As an operator would have it: the line can be begun at."""
+    job = lines.restart_job(rig, line, choices, number)
+    assert job is not None
+    return job
 
 
 def prepare(rig: Rig, job: Job) -> None:

@@ -15,8 +15,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QObject, QPoint, QRectF, Qt, Signal, Slot
-from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, Qt, Signal, Slot
+from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent, QWindow
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
 
@@ -88,6 +88,12 @@ class Eyes(QObject):
 
     # --- threads of their own --------------------------------------------------------------------------
 
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Counts clicks as they come to the window."""
+        if event.type() is QEvent.Type.MouseButtonRelease and isinstance(watched, QWindow):
+            _CLICKED[0] += 1
+        return False
+
     def watch(self) -> None:
         """Tell what the machine does, also while the screen is frozen."""
         before: Told = {}
@@ -131,6 +137,7 @@ class Eyes(QObject):
             "prompt": frame.prompt.text,
             "forgotten": _FORGOTTEN[0],
             "keys": _RELEASED[0],
+            "clicks": _CLICKED[0],
             "theme": window.look.palette.name,
             "active": window.isActiveWindow(),
             "minimised": window.isMinimized(),
@@ -220,6 +227,7 @@ def _desk() -> Desk | None:
 
 _WINDOW: list[MainWindow] = []
 _RELEASED = [0]  # keys that have come up
+_CLICKED = [0]  # buttons of the mouse that have come up
 _FORGOTTEN = [0]  # presses that the screen has said to have forgotten
 
 
@@ -255,6 +263,7 @@ def main() -> int:
     painted = Painted()
     painted.attend()
     eyes = Eyes(painted)
+    app.installEventFilter(eyes)
     made = MainWindow.__init__
 
     def making(window: MainWindow, *what: Any) -> None:

@@ -216,16 +216,16 @@ class Operator:
             seen = self.screen.get("keys", 0) if not self.once else 0
             self.server.down(*held, key)
             self.server.up(key, *reversed(held))
-            self._arrives(seen)
+            self._arrives("keys", seen)
             if self.once or self._forgotten() == before:
                 return
             before = self._forgotten()
 
-    def _arrives(self, seen: int) -> None:
+    def _arrives(self, what: str, seen: int) -> None:
         """What was pressed has come to the process, unless the window manager has kept it."""
         if not self.once:
             tries = iter(range(50))
-            self.until(lambda: self.screen.get("keys", 0) > seen or next(tries, None) is None)
+            self.until(lambda: self.screen.get(what, 0) > seen or next(tries, None) is None)
 
     def _forgotten(self) -> int:
         return 0 if self.once else int(self.screen.get("forgotten", 0))
@@ -282,10 +282,17 @@ class Operator:
         self.server.point(*self.find(text, on))
 
     def clicks(self, text: str, on: str = "") -> None:
-        """The left button of the mouse on a text."""
+        """The left button of the mouse on a text; again where the screen has forgotten it behind a stall."""
         self.points(text, on)
-        self.server.button("left", down=True)
-        self.server.button("left", down=False)
+        before = self._forgotten()
+        while True:
+            seen = self.screen.get("clicks", 0) if not self.once else 0
+            self.server.button("left", down=True)
+            self.server.button("left", down=False)
+            self._arrives("clicks", seen)
+            if self.once or self._forgotten() == before:
+                return
+            before = self._forgotten()
 
     def touches(self, *texts: str, on: str = "") -> None:
         """As many fingers, each on a text; they come up together (inside Qt: XTEST has no touch)."""
