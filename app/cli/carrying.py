@@ -8,8 +8,8 @@ from concurrent.futures import TimeoutError as NotYetError
 from typing import TypeVar
 
 from app.cli.progress import Progress
-from app.desk.files.changes import FileError
-from app.desk.transfer.service import Carrying
+from app.programs.file_changes import FileError
+from app.transfer.serial_line import Carrying
 from core.ports import DriverError
 
 T = TypeVar("T")

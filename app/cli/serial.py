@@ -11,7 +11,7 @@ from app.cli.errors import EXIT_ERRORS, EXIT_OK, CommandError
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
-    from app.desk.transfer.service import Received
+    from app.transfer.serial_line import Received
     from core.machine.hardware.model import DncModel
     from core.machine.model import Machine
 
@@ -163,9 +163,9 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 
 
 def _store(args: argparse.Namespace, received: Received) -> int:
-    from app.desk.files.changes import FileError
     from app.desk.home import home
-    from app.desk.transfer.storing import free_name, stored
+    from app.programs.file_changes import FileError
+    from app.transfer.received_program import free_name, stored
 
     out = Path(args.out) if args.out else None
     folder = out.parent if out else home() / "programs"

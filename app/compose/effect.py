@@ -12,8 +12,8 @@ from core.machine.model import Machine
 
 if TYPE_CHECKING:
     from app.desk.latest import Watch
-    from app.desk.offsets.effect import Draw
     from app.desk.picture import Picture, Timed
+    from app.offsets.effect import Draw
 
 
 def drawer(machine: Machine) -> Draw:

@@ -7,10 +7,9 @@ from collections import deque
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from app.desk.files.record import tell_cut_off
 from app.desk.home import home
-from app.desk.offsets.book import OffsetBook
-from app.desk.zero_offsets.book import ZeroBook
+from app.offsets.offset_book import OffsetBook, ZeroBook
+from app.programs.run_record import tell_cut_off
 from core.executor.interrupted import Interrupted, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source

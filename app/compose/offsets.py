@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
 from app.desk.home import home
-from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.force import secondary_offsets, tool_offsets
+from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.interpreter.setup import SecondaryOffset, ToolOffset
 from core.store.rows import SecondaryRow, ToolRow
 

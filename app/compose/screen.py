@@ -24,15 +24,15 @@ from app.compose.workshop import samples, workshop
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
 from app.desk.alarms import KEPT, KINDS
 from app.desk.desk import Desk
-from app.desk.editing.bench import Bench, NoArchive
-from app.desk.editing.editor import Editor
 from app.desk.home import home
 from app.desk.keep import NothingKept
-from app.desk.offsets.effect import Effect
 from app.desk.program_file import ProgramFile
 from app.desk.session import Session, Workshop
 from app.desk.shelf import Shelf
 from app.desk.words import tr
+from app.editor.editor import Editor
+from app.editor.versions import Bench, NoArchive
+from app.offsets.effect import Effect
 from core.executor.executor import Executor
 from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Event, Snapshot

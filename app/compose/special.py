@@ -7,28 +7,28 @@ from pathlib import Path
 
 from app.compose.transfer import PLAIN, SerialLines, proving
 from app.desk.desk import Desk
-from app.desk.editing.worker import Worker
-from app.desk.files.chooser import Chooser
-from app.desk.files.files import FilesDesk
-from app.desk.files.preview import Preview
-from app.desk.files.record import RunRecord
-from app.desk.files.traffic import Traffic
 from app.desk.home import home
 from app.desk.keep import Keep
 from app.desk.session import Workshop
 from app.desk.settings import SettingsBook
-from app.desk.special.counter import PartCounter
-from app.desk.special.drives import DrivesSection
-from app.desk.special.events import EventsSection
-from app.desk.special.keeping import KeepingSection
-from app.desk.special.machine_file import MachineFileSection
-from app.desk.special.parts import PartsSection
-from app.desk.special.preferences import PreferencesSection
-from app.desk.special.sheet import Section
-from app.desk.special.signals import SignalsSection
-from app.desk.special.special import SpecialDesk
-from app.desk.special.speed import SpeedSection
-from app.desk.transfer.section import TransferSection
+from app.desk.worker import Worker
+from app.programs.folder_chooser import Chooser
+from app.programs.import_export import Traffic
+from app.programs.preview import Preview
+from app.programs.program_list import FilesDesk
+from app.programs.run_record import RunRecord
+from app.special.backup import KeepingSection
+from app.special.drive_status import DrivesSection
+from app.special.event_log import EventsSection
+from app.special.inputs_outputs import SignalsSection
+from app.special.machine_file_acceptance import MachineFileSection
+from app.special.part_count import PartCounter
+from app.special.parts_counter import PartsSection
+from app.special.preferences import PreferencesSection
+from app.special.section import Section
+from app.special.special_functions import SpecialDesk
+from app.special.spindle_limit import SpeedSection
+from app.transfer.serial_transfer import TransferSection
 from core.machine.model import Machine
 
 MakeSection = Callable[[Desk, Machine, Keep, Worker], Section]

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from app.compose.serial_line import open_wire, serial_ports
-from app.desk.files.changes import FileError
 from app.desk.session import Workshop
-from app.desk.transfer.service import Received
+from app.programs.file_changes import FileError
+from app.transfer.serial_line import Received
 from core.language.source import Source, SourceError, load_source
 from core.machine.hardware.model import DncModel
 from core.ports import Clock, DriverError
@@ -26,7 +26,7 @@ Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time 
 
 
 class SerialLines:
-    """``app.desk.transfer.service.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
+    """``app.transfer.serial_line.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
 
     def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
         self._check, self._ending, self._clock = check, ending, clock or RealClock()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 from app.compose.offsets import OF_A_FILE
 from app.desk.home import home
-from app.desk.zero_offsets.book import ZeroBook
+from app.offsets.offset_book import ZeroBook
 from core.interpreter.setup import ZeroOffset
 from core.store.zero import ZeroRow
 

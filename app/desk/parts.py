@@ -11,30 +11,29 @@ from app.desk import prompts
 from app.desk.alarms import StopLog
 from app.desk.answers import YES, Answers
 from app.desk.changes import FileChanges
-from app.desk.files.record import RunRecord
 from app.desk.hands import StationHands
-from app.desk.offsets.book import NONE_KEPT, OffsetBook
 from app.desk.pulse import Pulse
 from app.desk.readout import Readout
 from app.desk.rebuilding import Rebuilding
 from app.desk.session import Phase, Session
 from app.desk.settings import SettingsBook
 from app.desk.shelf import Shelf
-from app.desk.special.counter import PartCounter
 from app.desk.station import StationPanel
-from app.desk.zero_offsets.book import NONE_KEPT as NO_ZERO
-from app.desk.zero_offsets.book import ZeroBook
+from app.offsets.offset_book import NO_ZEROS_KEPT as NO_ZERO
+from app.offsets.offset_book import NONE_KEPT, OffsetBook, ZeroBook
+from app.programs.run_record import RunRecord
+from app.special.part_count import PartCounter
 from core.executor.commands import Command
 from core.executor.snapshot import Event, Snapshot, State
 from core.store.errors import StoreError
 
 if TYPE_CHECKING:
-    from app.desk.editing.editor import Editor
-    from app.desk.files.files import FilesDesk
     from app.desk.mdi.mdi import MdiDesk
-    from app.desk.offsets.effect import Effect
     from app.desk.searchto.search import SearchDesk
-    from app.desk.special.special import SpecialDesk
+    from app.editor.editor import Editor
+    from app.offsets.effect import Effect
+    from app.programs.program_list import FilesDesk
+    from app.special.special_functions import SpecialDesk
     from core.machine.model import Machine
 
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.force import secondary_offsets, tool_offsets
 from app.desk.prompts import UNDER_WAY
 from app.desk.renewing import Renewing
 from app.desk.session import Phase, Session
 from app.desk.words import tr
-from app.desk.zero_offsets.book import ZeroBook
+from app.offsets.offset_book import OffsetBook, ZeroBook, secondary_offsets, tool_offsets
 from core.executor.commands import Command, UseOffsets
 from core.executor.job import outdated
 from core.executor.snapshot import Snapshot, State

@@ -25,7 +25,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
-from app.screen.eventtime import EventTimes
+from app.screen.event_times import EventTimes
 from app.screen.held_keys import XServer, x_server
 
 Key = Qt.Key

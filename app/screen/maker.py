@@ -19,25 +19,25 @@ def _menu(host: Host, parent: QWidget) -> Page:
 
 
 def _seccmp(host: Host, parent: QWidget) -> Page:
-    from app.screen.offsets.seccmp import SeccmpPage
+    from app.offsets.secondary_offsets_view import SeccmpPage
 
     return SeccmpPage(host, parent)
 
 
 def _tools(host: Host, parent: QWidget) -> Page:
-    from app.screen.offsets.tools import ToolsPage
+    from app.offsets.tool_offsets_view import ToolsPage
 
     return ToolsPage(host, parent)
 
 
 def _zero(host: Host, parent: QWidget) -> Page:
-    from app.screen.zero_offsets.page import ZeroPage
+    from app.offsets.zero_offsets_view import ZeroPage
 
     return ZeroPage(host, parent)
 
 
 def _editor(host: Host, parent: QWidget) -> Page:
-    from app.screen.editor.page import EditorPage
+    from app.editor.editor_view import EditorPage
 
     editor = host.desk.editor
     if editor is None:
@@ -46,7 +46,7 @@ def _editor(host: Host, parent: QWidget) -> Page:
 
 
 def _programs(host: Host, parent: QWidget) -> Page:
-    from app.screen.files.page import FilesPage
+    from app.programs.programs_view import FilesPage
 
     model = host.desk.files
     if model is None:
@@ -55,7 +55,7 @@ def _programs(host: Host, parent: QWidget) -> Page:
 
 
 def _special(host: Host, parent: QWidget) -> Page:
-    from app.screen.special.page import SpecialPage
+    from app.special.special_view import SpecialPage
 
     model = host.desk.special
     if model is None:

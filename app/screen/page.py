@@ -14,13 +14,13 @@ from app.desk.prompts import MOVING, NONE_NAMED
 from app.desk.session import Loaded
 from app.desk.swivel.telling import plane_words, running
 from app.desk.view import View
+from app.programs.file_prompt_view import FilePrompt
 from app.screen.bars import CommentLine
-from app.screen.fileprompt import FilePrompt
 from app.screen.layout import Rect, work_parts
-from app.screen.listing import Listing
 from app.screen.pages import Doings, Host, Page
 from app.screen.path.aspects import tip_of
 from app.screen.pathview import PathView
+from app.screen.program_listing import Listing
 from app.screen.swivel.view import SwivelView
 from core.executor.snapshot import Snapshot, State
 

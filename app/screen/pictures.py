@@ -43,7 +43,7 @@ class Stage:
         from app.cli.offset_file import read_offsets
         from app.compose.screen import desk_and_executor, step_clock
         from app.compose.workshop import samples
-        from app.desk.offsets.book import OffsetBook
+        from app.offsets.offset_book import OffsetBook
         from core.store.store import Store
 
         self.clock = step_clock()

@@ -113,7 +113,7 @@ def press(window: MainWindow, keys: str) -> None:
 
 
 def _to_line(window: MainWindow, line: int) -> None:
-    from app.screen.editor.page import EditorPage
+    from app.editor.editor_view import EditorPage
 
     page = window.frame.page if window.frame is not None else None
     if line and isinstance(page, EditorPage):

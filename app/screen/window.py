@@ -20,7 +20,7 @@ from app.desk.desk import BY_SCREEN, Desk
 from app.desk.pages import AUTOMATIC
 from app.desk.prompts import MOVING, UNDER_WAY
 from app.desk.words import tr
-from app.screen.eventtime import EventTimes
+from app.screen.event_times import EventTimes
 from app.screen.fingers import FingerPanel
 from app.screen.frame import Frame
 from app.screen.keyboard import Keyboard, key_of, letter_of

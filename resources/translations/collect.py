@@ -24,7 +24,8 @@ LANGUAGES = ("es",)
 COMPOSING = "app/compose"
 COMPOSED = ("journal.py", "offsets.py", "mdi.py", "screen.py", "special.py", "searchto.py", "simulated.py")
 ROOMS = (
-    *("app/desk", "app/screen", "core/alarms", "core/executor", "core/store", "core/interpreter"),
+    *("app/desk", "app/screen", "app/editor", "app/offsets", "app/programs", "app/special", "app/transfer"),
+    *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.

@@ -379,672 +379,672 @@
       <translation>LIBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/bench.py" />
+      <location filename="app/editor/versions.py" />
       <source>no version %1 of %2 is kept here</source>
       <translation>no se guarda la versión %1 de %2</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/checking.py" />
+      <location filename="app/editor/live_proof.py" />
       <source>PROVING FAILED: %1</source>
       <translation>FALLÓ LA COMPROBACIÓN: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/document.py" />
+      <location filename="app/editor/document.py" />
       <source>%1 CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK</source>
       <translation>%1 NO PUEDE NOMBRAR UN PROGRAMA: LETRAS, NÚMEROS, PUNTO, GUION Y ESPACIO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/document.py" />
+      <location filename="app/editor/document.py" />
       <source>%1 IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF %2</source>
       <translation>%1 NO ES TERMINACIÓN DE PROGRAMA: NINGUNA, O UNA DE %2</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/document.py" />
+      <location filename="app/editor/document.py" />
       <source>%1 WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT</source>
       <translation>%1 QUEDARÍA OCULTO: USE UN NOMBRE QUE EMPIECE CON LETRA O NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/document.py" />
+      <location filename="app/editor/document.py" />
       <source>%1 has over %2 lines: too long for this editor; split it elsewhere</source>
       <translation>%1 tiene más de %2 líneas: demasiado para este editor; divídalo en otra parte</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/document.py" />
+      <location filename="app/editor/document.py" />
       <source>NO NAME WAS TYPED: A PROGRAM NEEDS ONE</source>
       <translation>NO SE ESCRIBIÓ NOMBRE: UN PROGRAMA NECESITA UNO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/drafts.py" />
+      <location filename="app/editor/drafts.py" />
       <source>typed and not saved</source>
       <translation>escrito y no guardado</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/editor.py" />
+      <location filename="app/editor/editor.py" />
       <source>%1 IS SAVED</source>
       <translation>%1 QUEDÓ GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/editor.py" />
+      <location filename="app/editor/editor.py" />
       <source>%1; ESC</source>
       <translation>%1; ESC</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/files.py" />
+      <location filename="app/programs/whole_file.py" />
       <source>%1 CANNOT BE READ: %2</source>
       <translation>NO SE PUEDE LEER %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/files.py" />
+      <location filename="app/programs/whole_file.py" />
       <source>%1 CANNOT BE WRITTEN: %2</source>
       <translation>NO SE PUEDE ESCRIBIR %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/files.py" />
+      <location filename="app/programs/whole_file.py" />
       <source>NOT SAVED: %1</source>
       <translation>NO SE GUARDÓ: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/files.py" />
+      <location filename="app/programs/whole_file.py" />
       <source>NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP</source>
       <translation>NO SE GUARDÓ: EL TEXTO TIENE SIGNOS QUE NINGÚN ARCHIVO DE PROGRAMA PUEDE GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/history.py" />
+      <location filename="app/editor/versions.py" />
       <source>COMPARING</source>
       <translation>COMPARANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/history.py" />
+      <location filename="app/editor/versions.py" />
       <source>NO VERSION IS KEPT OF THIS PROGRAM YET</source>
       <translation>TODAVÍA NO SE GUARDA NINGUNA VERSIÓN DE ESTE PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/history.py" />
+      <location filename="app/editor/versions.py" />
       <source>READING</source>
       <translation>LEYENDO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/history.py" />
+      <location filename="app/editor/versions.py" />
       <source>THE SAME AS IN THE EDITOR</source>
       <translation>IGUAL QUE EN EL EDITOR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/saving.py" />
+      <location filename="app/editor/document.py" />
       <source>as it was before editing</source>
       <translation>como estaba antes de editar</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/saving.py" />
+      <location filename="app/editor/document.py" />
       <source>changed by another program</source>
       <translation>cambiado por otro programa</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/saving.py" />
+      <location filename="app/editor/document.py" />
       <source>saved in the editor</source>
       <translation>guardado en el editor</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/search.py" />
+      <location filename="app/editor/find_replace.py" />
       <source>%1 FOUND</source>
       <translation>%1 ENCONTRADOS</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/search.py" />
+      <location filename="app/editor/find_replace.py" />
       <source>%1, %2 MORE INSIDE LONGER WORDS</source>
       <translation>%1, %2 MÁS DENTRO DE PALABRAS MÁS LARGAS</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/search.py" />
+      <location filename="app/editor/find_replace.py" />
       <source>%1, PARTS OF WORDS TOO</source>
       <translation>%1, TAMBIÉN PARTES DE PALABRAS</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/search.py" />
+      <location filename="app/editor/find_replace.py" />
       <source>NOT FOUND</source>
       <translation>NO SE ENCONTRÓ</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE EDITING</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>A SAMPLE IS NOT CHANGED: UNDER WHAT NAME SHALL IT BE SAVED?</source>
       <translation>UNA MUESTRA NO SE CAMBIA: ¿CON QUÉ NOMBRE SE GUARDA?</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>AN EMPTY PROGRAM IS NOT SAVED: WRITE SOMETHING, OR LEAVE WITH F10</source>
       <translation>UN PROGRAMA VACÍO NO SE GUARDA: ESCRIBA ALGO, O SALGA CON F10</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>ARROWS MARK A VERSION, RETURN PUTS IT INTO THE EDITOR; ESC: BACK</source>
       <translation>LAS FLECHAS MARCAN UNA VERSIÓN, RETURN LA PONE EN EL EDITOR; ESC: REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
       <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
       <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
       <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
       <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
       <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>RETURN: NEXT   SHIFT+RETURN: THE ONE BEFORE   TAB: THE OTHER FIELD   ESC: BACK</source>
       <translation>RETURN: SIGUIENTE   SHIFT+RETURN: ANTERIOR   TAB: EL OTRO CAMPO   ESC: REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
       <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
       <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
       <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
       <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>THERE IS NO PATH TO LOOK AT YET: WRITE A MOVE</source>
       <translation>AÚN NO HAY TRAYECTORIA QUE VER: ESCRIBA UN MOVIMIENTO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
       <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>VERSION {} IS IN THE EDITOR; SAVE TO KEEP IT, UNDO TO TAKE IT BACK</source>
       <translation>LA VERSIÓN {} ESTÁ EN EL EDITOR; GUARDE PARA CONSERVARLA, DESHAGA PARA QUITARLA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
       <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>no history is kept here</source>
       <translation>aquí no se guarda historial</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
       <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
       <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
       <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>{} IS THERE ALREADY: TAKE ANOTHER NAME</source>
       <translation>{} YA EXISTE: USE OTRO NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/editing/words.py" />
+      <location filename="app/editor/messages.py" />
       <source>{} WAS CHANGED BY ANOTHER PROGRAM MEANWHILE: F6 REPLACES IT (IT STAYS IN HISTORY), ESC GOES ON</source>
       <translation>OTRO PROGRAMA CAMBIÓ {} MIENTRAS TANTO: F6 LO REEMPLAZA (QUEDA EN LA HISTORIA), ESC SIGUE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 CANNOT BE DELETED: %2</source>
       <translation>NO SE PUEDE BORRAR %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 CANNOT BE RENAMED: %2</source>
       <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 IS ITS NAME ALREADY</source>
       <translation>%1 YA ES SU NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 IS NOT THERE ANY MORE</source>
       <translation>%1 YA NO ESTÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 IS THERE ALREADY; TAKE ANOTHER NAME</source>
       <translation>%1 YA EXISTE; USE OTRO NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>%1 WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT</source>
       <translation>%1 QUEDARÍA OCULTO; USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: %1</source>
       <translation>NO SE BORRÓ, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>NOTHING IS ENTERED; TYPE A NAME</source>
       <translation>NO SE ESCRIBIÓ NADA; ESCRIBA UN NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changes.py" />
+      <location filename="app/programs/file_changes.py" />
       <source>RENAMED, BUT ITS VERSIONS STAY UNDER %1: %2</source>
       <translation>CAMBIÓ DE NOMBRE, PERO SUS VERSIONES QUEDAN EN %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)</source>
       <translation>LAS MUESTRAS NO SE TOCAN: CÓPIELA PRIMERO (F4)</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>ITS NAME IS {name} NOW</source>
       <translation>AHORA SE LLAMA {name}</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>NAME OF THE COPY?</source>
       <translation>¿NOMBRE DE LA COPIA?</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>NEW NAME?</source>
       <translation>¿NOMBRE NUEVO?</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>NO PROGRAM IS MARKED</source>
       <translation>NO HAY PROGRAMA MARCADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
       <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>STILL AT IT: WAIT UNTIL IT IS DONE</source>
       <translation>TODAVÍA TRABAJANDO: ESPERE A QUE TERMINE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
       <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST</source>
       <translation>{name} ESTÁ INTERRUMPIDO: PRIMERO TERMÍNELO O ABANDÓNELO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>{name} IS THERE NOW</source>
       <translation>YA ESTÁ {name}</translation>
     </message>
     <message>
-      <location filename="app/desk/files/changing.py" />
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>{name} IS UNDER WAY: LET IT END FIRST</source>
       <translation>{name} ESTÁ EN CURSO: DEJE QUE TERMINE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/chooser.py" />
+      <location filename="app/programs/folder_chooser.py" />
       <source>THIS CONTROL</source>
       <translation>ESTE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>COPY</source>
       <translation>COPIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>DELETE</source>
       <translation>BORRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>EXPORT</source>
       <translation>EXPORTAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>IMPORT</source>
       <translation>IMPORTAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>NAME</source>
       <translation>NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>RENAME</source>
       <translation>NOMBRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS</source>
       <translation>RETURN CARGA EL PROGRAMA MARCADO CUANDO NO HAYA OTRO EN CURSO; H RETIENE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>SORT</source>
       <translation>ORDENAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
       <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/files/files.py" />
+      <location filename="app/programs/program_list.py" />
       <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
       <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/preview.py" />
+      <location filename="app/programs/preview.py" />
       <source>TOO LARGE FOR A PREVIEW</source>
       <translation>DEMASIADO GRANDE PARA LA VISTA PREVIA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>%1 ERRORS: %2</source>
       <translation>%1 ERRORES: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>: the control ended in the middle of its last run</source>
       <translation>: el control terminó en medio de su última corrida</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>ALARM %1</source>
       <translation>ALARMA %1</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>COMPLETE</source>
       <translation>COMPLETO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>CUT OFF</source>
       <translation>CORTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>E-STOP</source>
       <translation>PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>GIVEN UP</source>
       <translation>ABANDONADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>NOT COUNTED</source>
       <translation>NO CONTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>PROVED</source>
       <translation>COMPROBADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/record.py" />
+      <location filename="app/programs/run_record.py" />
       <source>UNREADABLE</source>
       <translation>ILEGIBLE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/rows.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>DATE</source>
       <translation>FECHA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/rows.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>LAST RUN</source>
       <translation>ÚLTIMA CORRIDA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/rows.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>PARTS</source>
       <translation>PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/desk/files/rows.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>SIZE</source>
       <translation>TAMAÑO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>%1 GB</source>
       <translation>%1 GB</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>%1 OF %2 PROGRAMS</source>
       <translation>%1 DE %2 PROGRAMAS</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>%1 PROGRAMS</source>
       <translation>%1 PROGRAMAS</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>BEST</source>
       <translation>MEJOR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>BEST CYCLE</source>
       <translation>MEJOR CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>CHANGED</source>
       <translation>CAMBIADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>FIND</source>
       <translation>BUSCAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>FOLDER</source>
       <translation>CARPETA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>LAST CYCLE</source>
       <translation>ÚLTIMO CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>LAST PROOF</source>
       <translation>ÚLTIMA PRUEBA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>NEVER PROVED</source>
       <translation>NUNCA COMPROBADO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>OWN PROGRAM</source>
       <translation>PROGRAMA PROPIO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>PLACES</source>
       <translation>LUGARES</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>PLANNED</source>
       <translation>PREVISTO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>PROGRAM</source>
       <translation>PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>PROGRAMS  ·  %1  ·  BY %2</source>
       <translation>PROGRAMAS  ·  %1  ·  POR %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>SAMPLE</source>
       <translation>MUESTRA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/shown.py" />
+      <location filename="app/programs/program_rows.py" />
       <source>WHERE</source>
       <translation>DÓNDE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>ALL</source>
       <translation>TODO</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>ALL HERE</source>
       <translation>TODO ACÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>COPYING: LEAVE THE STICK WHERE IT IS</source>
       <translation>COPIANDO: NO SAQUE LA MEMORIA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>EXPORT %1</source>
       <translation>EXPORTAR %1</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS</source>
       <translation>F4 EXPORTA A LA CARPETA ABIERTA; RETURN ABRE CARPETAS</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>LOOK</source>
       <translation>BUSCAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>NO PROGRAM IS IN THIS FOLDER</source>
       <translation>NO HAY PROGRAMAS EN ESTA CARPETA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>ONE HERE</source>
       <translation>UNO ACÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT</source>
       <translation>ABRA PRIMERO UN LUGAR: LAS FLECHAS LO MARCAN, RETURN LO ABRE</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK</source>
       <translation>RETURN ABRE UN LUGAR O CARPETA, Y SOBRE UN PROGRAMA LO IMPORTA; F5 IMPORTA TODO; ESC REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK</source>
       <translation>RETURN ABRE UN LUGAR O CARPETA; F4 COPIA AHÍ EL PROGRAMA MARCADO, F5 TODOS; ESC REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE</source>
       <translation>{count} COPIADOS, RELEÍDOS Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>{count} IMPORTED AND PROVED WITHOUT AN ERROR</source>
       <translation>{count} IMPORTADOS Y COMPROBADOS SIN ERROR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>{count} IMPORTED; NOT ALL PROVE: {found}</source>
       <translation>{count} IMPORTADOS; NO TODOS PASAN LA COMPROBACIÓN: {found}</translation>
     </message>
     <message>
-      <location filename="app/desk/files/traffic.py" />
+      <location filename="app/programs/import_export.py" />
       <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
       <translation>{names}: YA EXISTE CON OTRO TEXTO. OPRIMA Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>%1 CANNOT BE BROUGHT TO THE DISK: %2</source>
       <translation>%1 NO SE PUEDE LLEVAR AL DISCO: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>%1 DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK</source>
       <translation>%1 NO SE LEE COMO SE ESCRIBIÓ: USE OTRA MEMORIA</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>%1 IS LARGER THAN ANY PROGRAM (%2 MB)</source>
       <translation>%1 ES MÁS GRANDE QUE CUALQUIER PROGRAMA (%2 MB)</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>%1 IS NO PROGRAM: %2</source>
       <translation>%1 NO ES UN PROGRAMA: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>%1 IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: %2</source>
       <translation>%1 NO SE REEMPLAZA, PORQUE SU TEXTO NO SE PUEDE GUARDAR: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/files/transfer.py" />
+      <location filename="app/programs/import_export.py" />
       <source>replaced by an import</source>
       <translation>reemplazado por una importación</translation>
     </message>
@@ -1724,337 +1724,337 @@
       <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>; IT COUNTS FROM THE NEXT CYCLE START</source>
       <translation>; CUENTA DESDE EL PRÓXIMO INICIO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>; IT COUNTS FROM THE NEXT PART</source>
       <translation>; CUENTA DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE</source>
       <translation>HAY UN PROGRAMA EN MARCHA: SÓLO EL DESGASTE Y LAS CORRECCIONES DE F9 PUEDEN CAMBIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED</source>
       <translation>HAY PIEZAS EN MARCHA: UNA CORRECCIÓN CUENTA DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
       <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/allowed.py" />
+      <location filename="app/offsets/offset_changes.py" />
       <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
       <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/book.py" />
+      <location filename="app/offsets/offset_book.py" />
       <source>C: all offsets cleared</source>
       <translation>C: todas las compensaciones a cero</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/book.py" />
+      <location filename="app/offsets/offset_book.py" />
       <source>NO OFFSETS ARE KEPT HERE</source>
       <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/cells.py" />
+      <location filename="app/offsets/tool_cells.py" />
       <source>NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE</source>
       <translation>AHORA {axis}: T{number} QUEDA PUESTA CUANDO ESTÉN LAS DOS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/cells.py" />
+      <location filename="app/offsets/tool_cells.py" />
       <source>T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE</source>
       <translation>T{number} NUNCA SE PUSO: ESCRIBA PRIMERO X Y Z, O TÓQUELA EN LA PÁGINA MANUAL</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/cells.py" />
+      <location filename="app/offsets/tool_cells.py" />
       <source>chosen as master</source>
       <translation>elegida como maestra</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/cells.py" />
+      <location filename="app/offsets/tool_cells.py" />
       <source>entered by hand</source>
       <translation>escrito a mano</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/cells.py" />
+      <location filename="app/offsets/tool_cells.py" />
       <source>no master</source>
       <translation>sin maestra</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
       <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>D{number} IS AS IT WAS</source>
       <translation>D{number} QUEDA COMO ESTABA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE</source>
       <translation>TODO VALOR ACEPTA OPERACIONES, COMO .5-.002; RETURN SOLO CONSERVA EL VALOR</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON</source>
       <translation>F5 O ESC DEJA LA HISTORIA; RE PÁG Y AV PÁG SIGUEN VIENDO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
       <translation>OPRIMA Y PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>Press C to clear all offsets</source>
       <translation>Oprima C para borrar todas las compensaciones</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/desk.py" />
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>Press Esc to exit offset adjustment screen</source>
       <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/dialogue.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>D{number:g} does not exist; offsets are D1…32</source>
       <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/dialogue.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>FINISH D{number} FIRST, OR PRESS ESC</source>
       <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/dialogue.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
       <translation>EL CONTROL HA CAMBIADO SU UNIDAD: NO SE CAMBIÓ NADA, INTRODÚZCALO OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>MASTER</source>
       <translation>MAESTRA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>NOSE RADIUS</source>
       <translation>RADIO PUNTA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>REMARK</source>
       <translation>NOTA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>TIP</source>
       <translation>PUNTA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>WEAR X</source>
       <translation>DESGASTE X</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>WEAR Z</source>
       <translation>DESGASTE Z</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>X</source>
       <translation>X</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>Z</source>
       <translation>Z</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>{field} takes no sum; press Return to set it</source>
       <translation>{field} no acepta sumas; oprima Return para ponerlo</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>{field} takes {range}</source>
       <translation>{field} acepta {range}</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/entry.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>{field} would become {value} {unit}; it may be {low}…{high}</source>
       <translation>{field} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/figures.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>WEAR</source>
       <translation>DESGASTE</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/figures.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>not set</source>
       <translation>sin poner</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE</source>
       <translation>LAS FLECHAS ELIGEN CELDA; ESCRIBA UN VALOR O UNA SUMA; RETURN LO PONE, F2 LO SUMA A LO QUE HAY</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN</source>
       <translation>NINGUNA HERRAMIENTA ES LA MAESTRA: ELIJA UNA EN SU COLUMNA CON RETURN</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
       <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>PRESS RETURN TO WRITE A REMARK</source>
       <translation>OPRIMA RETURN PARA ESCRIBIR UNA NOTA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK</source>
       <translation>ESCRIBA LA NOTA; RETURN LA GUARDA, ESC LA DEJA COMO ESTABA; LAS TECLAS F SIGUEN FUNCIONANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2</source>
       <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y OPRIMA F2</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>T{number} IS NOT SET: X AND Z BELONG TOGETHER</source>
       <translation>T{number} NO SE PUSO: X Y Z VAN JUNTAS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets.py" />
       <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
       <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/kept.py" />
+      <location filename="app/offsets/offset_book.py" />
       <source>OFFSETS CANNOT BE KEPT: %1</source>
       <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/kept.py" />
+      <location filename="app/offsets/offset_book.py" />
       <source>STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN</source>
       <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/ledger.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>SAVED</source>
       <translation>GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/ledger.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>{count} OFFSETS</source>
       <translation>{count} COMPENSACIONES</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/ledger.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>{count} offsets changed: F5 shows them</source>
       <translation>cambiaron {count} compensaciones: F5 las muestra</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/ledger.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>{names} SAVED</source>
       <translation>{names} GUARDADAS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/ledger.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>{names} TAKEN BACK</source>
       <translation>{names} RETIRADAS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/rules.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>Offset Number?</source>
       <translation>¿Número de compensación?</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/rules.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>R?</source>
       <translation>¿R?</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/rules.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>X DIAMETER CORRECTION?</source>
       <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/rules.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>Z CORRECTION?</source>
       <translation>¿CORRECCIÓN Z?</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/rules.py" />
+      <location filename="app/offsets/secondary_dialogue.py" />
       <source>{name} would become {value} {unit}; it may be {low}…{high}</source>
       <translation>{name} quedaría en {value} {unit}; puede ser {low}…{high}</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>DRAWING THE PATH BEFORE AND AFTER</source>
       <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH</source>
       <translation>CARGUE PRIMERO UN PROGRAMA: EL EFECTO SE VE SOBRE SU TRAYECTORIA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
       <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>THE EFFECT CANNOT BE DRAWN: {why}</source>
       <translation>EL EFECTO NO SE PUEDE DIBUJAR: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE</source>
       <translation>LAS TRAYECTORIAS DIFIEREN EN CLASE; F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE</source>
       <translation>ESTE CAMBIO NO HACE NADA EN EL PROGRAMA CARGADO; F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE</source>
       <translation>HASTA {far} DE DIFERENCIA, EN EL CÍRCULO; F6 SE ACERCA, Z AMPLÍA, ESC MUESTRA LA TABLA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/shown.py" />
+      <location filename="app/offsets/effect_shown.py" />
       <source>UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE</source>
       <translation>HASTA {far} DE DIFERENCIA; Z AMPLÍA, F6 MUESTRA LA TABLA</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/telling.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>no</source>
       <translation>no</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/telling.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>none</source>
       <translation>ninguna</translation>
     </message>
     <message>
-      <location filename="app/desk/offsets/telling.py" />
+      <location filename="app/offsets/offset_history.py" />
       <source>yes</source>
       <translation>sí</translation>
     </message>
@@ -2689,692 +2689,692 @@
       <translation>COMO EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/counter.py" />
+      <location filename="app/special/part_count.py" />
       <source>TARGET REACHED: {count} OF {target} PARTS</source>
       <translation>META ALCANZADA: {count} DE {target} PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/counter.py" />
+      <location filename="app/special/part_count.py" />
       <source>THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF</source>
       <translation>LA ÚLTIMA PIEZA DE LA META: SE APAGÓ REPETIR CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>ACTUAL</source>
       <translation>REAL</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>ALLOWED</source>
       <translation>PERMITIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>AXIS</source>
       <translation>EJE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>DEMAND</source>
       <translation>CONSIGNA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>DRIVE STATUS</source>
       <translation>ESTADO DE SERVOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>DRIVE STATUS  ·  %1  ·  %2</source>
       <translation>ESTADO DE SERVOS  ·  %1  ·  %2</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>F7 LISTS THE ALARMS WITH CAUSE AND REMEDY; ESC GOES BACK TO THE LIST</source>
       <translation>F7 MUESTRA LAS ALARMAS CON CAUSA Y REMEDIO; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>FAULT</source>
       <translation>FALLA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>FOLLOWING</source>
       <translation>SEGUIMIENTO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>HOME</source>
       <translation>REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>Largest following error since the start: %1</source>
       <translation>Mayor error de seguimiento desde el arranque: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>ON</source>
       <translation>ENCENDIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>POWER</source>
       <translation>POTENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>Setpoint queue ran low: %1 times</source>
       <translation>La cola de consignas quedó corta: %1 veces</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>X IS A RADIUS FROM HOME</source>
       <translation>X ES RADIO DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/drives.py" />
+      <location filename="app/special/drive_status.py" />
       <source>power, home, following error, faults</source>
       <translation>potencia, referencia, error, fallas</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>%1 EVENTS</source>
       <translation>%1 EVENTOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>ALARMS</source>
       <translation>ALARMAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>EVENT LOG</source>
       <translation>BITÁCORA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>EVENT LOG  ·  %1  ·  %2</source>
       <translation>BITÁCORA  ·  %1  ·  %2</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK</source>
       <translation>F4 BUSCA, F5 MUESTRA OTRA CLASE; RE PÁG Y AV PÁG SIGUEN; ESC REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>FILTER</source>
       <translation>FILTRO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>KIND</source>
       <translation>CLASE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>LINE</source>
       <translation>LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>OPERATOR</source>
       <translation>OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>RUNS</source>
       <translation>CORRIDAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>SEARCH</source>
       <translation>BUSCAR</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>SEARCH FOR?</source>
       <translation>¿QUÉ BUSCAR?</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>THE LAST %1 EVENTS</source>
       <translation>LOS ÚLTIMOS %1 EVENTOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY</source>
       <translation>ESCRIBA QUÉ BUSCAR; RETURN LO CONSERVA, ESC LO QUITA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>WHAT</source>
       <translation>QUÉ</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>WHEN</source>
       <translation>CUÁNDO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/events.py" />
+      <location filename="app/special/event_log.py" />
       <source>what happened when; search</source>
       <translation>qué pasó y cuándo; buscar</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>%1 KB</source>
       <translation>%1 KB</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED</source>
       <translation>HAY UN PROGRAMA EN CURSO: NO SE RESTAURA NADA ANTES DE QUE TERMINE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>BACKUP AND RESTORE</source>
       <translation>RESPALDO Y RESTAURACIÓN</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>BACKUP TO HERE</source>
       <translation>RESPALDAR AQUÍ</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED</source>
       <translation>EL RESPALDO {name} ESTÁ COMPLETO Y EN EL DISCO: YA PUEDE SACAR LA MEMORIA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>Backing up …</source>
       <translation>Respaldando …</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
       <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>RESTORE</source>
       <translation>RESTAURAR</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}</source>
       <translation>RESTAURADO; LO QUE HABÍA ANTES SE GUARDA COMO {name}</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>RETURN DOES</source>
       <translation>RETURN HACE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
       <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>Restoring …</source>
       <translation>Restaurando …</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>What a restore replaces is kept beside it.</source>
       <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/keeping.py" />
+      <location filename="app/special/backup.py" />
       <source>offsets, versions, counts, settings, log</source>
       <translation>compensaciones, versiones, ajustes</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF</source>
       <translation>UN ARCHIVO DE MÁQUINA CAMBIADO SE ACEPTA CON LOS SERVOS APAGADOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>ACCEPT</source>
       <translation>ACEPTAR</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>ACCEPTED: THE DRIVES CAN BE SWITCHED ON</source>
       <translation>ACEPTADO: SE PUEDEN ENCENDER LOS SERVOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST</source>
       <translation>LAS FLECHAS RECORREN LOS CAMBIOS, F2 LOS ACEPTA TODOS; ESC VUELVE A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>F2 accepts; the drives stay off until then.</source>
       <translation>F2 acepta; hasta entonces los servos siguen apagados.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>It is as it was accepted.</source>
       <translation>Está como fue aceptado.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>MACHINE FILE</source>
       <translation>ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>MACHINE FILE  ·  %1</source>
       <translation>ARCHIVO DE MÁQUINA  ·  %1</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
       <translation>OPRIMA Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/machine_file.py" />
+      <location filename="app/special/machine_file_acceptance.py" />
       <source>what has changed in it</source>
       <translation>lo que ha cambiado en él</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>%1 is no number of parts; type a whole number from 0 to %2</source>
       <translation>%1 no es un número de piezas; escriba un entero de 0 a %2</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
       <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>In the cycle of the last part Cycle Repeat is switched off. 0 takes the target away.</source>
       <translation>En el ciclo de la última pieza se apaga la repetición de ciclo. 0 quita el objetivo.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.</source>
       <translation>SIN CONT: prueba en vacío, no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>NO PROGRAM</source>
       <translation>SIN PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>NO TARGET</source>
       <translation>SIN META</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>ONE LESS</source>
       <translation>MENOS 1</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>ONE MORE</source>
       <translation>MÁS 1</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>PARTS COUNTER</source>
       <translation>CONTADOR DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>PARTS MADE</source>
       <translation>PIEZAS HECHAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>PARTS TO GO</source>
       <translation>PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
       <translation>OPRIMA Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
       <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>RESET</source>
       <translation>RESET</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>STOP AT</source>
       <translation>PARAR EN</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>STOP AT HOW MANY PARTS?</source>
       <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>THE COUNT IS AT NOUGHT</source>
       <translation>LA CUENTA ESTÁ EN CERO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>TIME FOR THE PARTS TO GO</source>
       <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST</source>
       <translation>ESCRIBA CUÁNTAS PIEZAS Y OPRIMA RETURN; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/parts.py" />
+      <location filename="app/special/parts_counter.py" />
       <source>parts made, stop at a number, times</source>
       <translation>piezas hechas, meta, tiempos</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST</source>
       <translation>LAS FLECHAS MARCAN, RETURN PASA A LA SIGUIENTE OPCIÓN; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>COLOURS</source>
       <translation>COLORES</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>DARK</source>
       <translation>OSCURO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>ENGLISH</source>
       <translation>ENGLISH</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>ESPAÑOL</source>
       <translation>ESPAÑOL</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>HIDDEN</source>
       <translation>OCULTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>LANGUAGE</source>
       <translation>IDIOMA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>LARGE FIGURES SHOW</source>
       <translation>LAS CIFRAS GRANDES MUESTRAN</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>LIGHT</source>
       <translation>CLARO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>OPERATOR STATION ON THE SCREEN</source>
       <translation>ESTACIÓN DEL OPERADOR EN LA PANTALLA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)</source>
       <translation>SUELTE EL PARO DE EMERGENCIA DE LA ESTACIÓN ANTES DE OCULTARLA (U)</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>SCREEN</source>
       <translation>PANTALLA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>SHOWN</source>
       <translation>VISIBLE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>THIS MACHINE HAS AN OPERATOR STATION OF ITS OWN: NONE IS SHOWN</source>
       <translation>ESTA MÁQUINA TIENE SU PROPIA ESTACIÓN DE OPERADOR: NO SE MUESTRA NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>The control is in %1 now.</source>
       <translation>El control está ahora en %1.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>UNITS OF THE FIGURES</source>
       <translation>UNIDADES DE LAS CIFRAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>Units change the figures that are shown; what is typed is always in the control's unit.</source>
       <translation>Las unidades cambian las cifras que se muestran; lo que se escribe va en la unidad del control.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/preferences.py" />
+      <location filename="app/special/preferences.py" />
       <source>units, language, colours, station</source>
       <translation>unidades, idioma, colores, estación</translation>
     </message>
     <message>
-      <location filename="app/desk/special/sheet.py" />
+      <location filename="app/special/section.py" />
       <source>ESC GOES BACK TO THE LIST</source>
       <translation>ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>ALARM</source>
       <translation>ALARMA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>ASKED BY</source>
       <translation>LA LEE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>AXES HOMED</source>
       <translation>EJES REFERENCIADOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>CYCLE START</source>
       <translation>INICIO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>DRIVES ON</source>
       <translation>SERVOS ACTIVOS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS</source>
       <translation>F4 MUESTRA LA LISTA SIGUIENTE; ESC REGRESA A LA LISTA DE FUNCIONES</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>FEED HOLD</source>
       <translation>RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>GUARD</source>
       <translation>GUARDA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>INPUTS</source>
       <translation>ENTRADAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>INPUTS AND OUTPUTS</source>
       <translation>ENTRADAS Y SALIDAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>LAMP</source>
       <translation>LÁMPARA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>LAMPS</source>
       <translation>LÁMPARAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>MACHINE LAMPS</source>
       <translation>LÁMPARAS DE LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM</source>
       <translation>SÓLO SE PUEDEN CAMBIAR LAS SALIDAS; F4 LAS MUESTRA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>OUTPUTS</source>
       <translation>SALIDAS</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES</source>
       <translation>LAS SALIDAS SÓLO SE CAMBIAN A MANO SIN PROGRAMA EN CURSO Y SIN QUE NADA SE MUEVA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
       <translation>OPRIMA Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
       <translation>OPRIMA Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
       <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>SWITCHED BY</source>
       <translation>LA CAMBIA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>TERMINAL</source>
       <translation>TERMINAL</translation>
     </message>
     <message>
-      <location filename="app/desk/special/signals.py" />
+      <location filename="app/special/inputs_outputs.py" />
       <source>live state, outputs by hand, lamps</source>
       <translation>estado, salidas a mano, lámparas</translation>
     </message>
     <message>
-      <location filename="app/desk/special/special.py" />
+      <location filename="app/special/special_functions.py" />
       <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
       <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>%1 rpm is not between %2 and %3 rpm, which this spindle can turn</source>
       <translation>%1 rpm no está entre %2 y %3 rpm, que es lo que gira este husillo</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>COMMANDED NOW</source>
       <translation>ORDENADA AHORA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>It acts at once, also while a program runs.</source>
       <translation>Actúa de inmediato, también con un programa en marcha.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>LIMIT IN FORCE</source>
       <translation>TOPE VIGENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>MACHINE'S OWN MAXIMUM</source>
       <translation>MÁXIMO PROPIO DE LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>MAXIMUM SPINDLE SPEED</source>
       <translation>VELOCIDAD MÁXIMA DEL HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>MAXIMUM SPINDLE SPEED?</source>
       <translation>¿VELOCIDAD MÁXIMA DEL HUSILLO?</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>MEASURED NOW</source>
       <translation>MEDIDA AHORA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>NO LIMIT</source>
       <translation>SIN TOPE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>NO LIMIT IS IN FORCE</source>
       <translation>NO HAY TOPE VIGENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>NONE</source>
       <translation>NINGUNO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
       <translation>OPRIMA Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>Programs that ask for more turn at the limit.</source>
       <translation>Los programas que piden más giran al tope.</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART</source>
       <translation>HUSILLO LIMITADO A {rpm} RPM HASTA REINICIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST</source>
       <translation>ESCRIBA UNA VELOCIDAD Y OPRIMA RETURN; ACEPTA OPERACIONES; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/special/speed.py" />
+      <location filename="app/special/spindle_limit.py" />
       <source>a limit until restart</source>
       <translation>un tope hasta reiniciar</translation>
     </message>
@@ -3404,282 +3404,282 @@
       <translation>PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>BITS, PARITY, STOP BITS</source>
       <translation>BITS, PARIDAD, BITS DE PARADA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>CR LF</source>
       <translation>CR LF</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>DC CODES</source>
       <translation>CÓDIGOS DC</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>FLOW CONTROL</source>
       <translation>CONTROL DE FLUJO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>FRAME</source>
       <translation>MARCO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>LEADER OF NULS</source>
       <translation>CABECERA DE NULOS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>LINE END</source>
       <translation>FIN DE LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>NO</source>
       <translation>NO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>PORT</source>
       <translation>PUERTO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>WAIT FOR DC1 TO SEND</source>
       <translation>ESPERAR DC1 PARA ENVIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/form.py" />
+      <location filename="app/transfer/serial_settings.py" />
       <source>YES</source>
       <translation>SÍ</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST</source>
       <translation>HAY UN PROGRAMA EN CURSO: RETURN LO GUARDA CON ESE NOMBRE; OTRO SE ESCRIBE EN REPOSO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP</source>
       <translation>HAY UNA TRANSFERENCIA EN CURSO: ESPERE A QUE TERMINE, O F6 LA ABANDONA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>A WHOLE PROGRAM HAS COME: {lines} LINES</source>
       <translation>HA LLEGADO UN PROGRAMA COMPLETO: {lines} LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE</source>
       <translation>LAS FLECHAS MARCAN UN AJUSTE, RETURN LO CAMBIA; F4 ENVÍA EL PROGRAMA CARGADO, F5 RECIBE UNO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>CANCEL</source>
       <translation>CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>DISCARD</source>
       <translation>DESECHAR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN</source>
       <translation>F6 ABANDONA LA TRANSFERENCIA; CONTINÚA MIENTRAS SE VEN OTRAS PÁGINAS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE</source>
       <translation>NO HAY PUERTO: RETURN EN LA PRIMERA LÍNEA ELIGE UNO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)</source>
       <translation>NO HAY PROGRAMA CARGADO: ELIJA ANTES EL QUE SE ENVÍA (F2)</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>NOTHING IS KEPT: {why}</source>
       <translation>NO SE GUARDA NADA: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>PORTS</source>
       <translation>PUERTOS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
       <translation>OPRIMA Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>RECEIVE</source>
       <translation>RECIBIR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY</source>
       <translation>RETURN LO GUARDA COMO PROGRAMA NUEVO Y NO ARRANCA NADA; F6 LO DESECHA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SEND</source>
       <translation>ENVIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED</source>
       <translation>GUARDADO COMO PROGRAMA NUEVO: {name}. NO SE HA ARRANCADO NADA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>THE RECEIVED PROGRAM IS THROWN AWAY</source>
       <translation>EL PROGRAMA RECIBIDO SE HA DESECHADO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>programs over the serial line</source>
       <translation>programas por la línea serie</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/section.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>{name} IS SENT: {count} BYTES</source>
       <translation>{name} ENVIADO: {count} BYTES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>7 BITS, EVEN PARITY, FOUND OUT</source>
       <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>AS SET</source>
       <translation>COMO SE AJUSTÓ</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>BYTES</source>
       <translation>BYTES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>CALLS ITSELF</source>
       <translation>SE LLAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>CHARACTERS</source>
       <translation>CARACTERES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>DONE</source>
       <translation>HECHO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>F4 sends: {program}</source>
       <translation>F4 envía: {program}</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>FOR DC1 FROM THE OTHER SIDE</source>
       <translation>DC1 DEL OTRO LADO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>FOR THE FIRST %</source>
       <translation>EL PRIMER %</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>FOR THE OTHER SIDE TO SEND</source>
       <translation>QUE EL OTRO LADO ENVÍE</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>HELD BY THE OTHER SIDE (XOFF)</source>
       <translation>DETENIDA POR EL OTRO LADO (XOFF)</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>It replaces nothing and starts nothing.</source>
       <translation>No reemplaza ni arranca nada.</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>LINES</source>
       <translation>LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>NAME OF THE NEW PROGRAM?</source>
       <translation>¿NOMBRE DEL PROGRAMA NUEVO?</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>NO ERROR</source>
       <translation>SIN ERRORES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>RECEIVING</source>
       <translation>RECIBIENDO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SENDING</source>
       <translation>ENVIANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SETTING</source>
       <translation>AJUSTE</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SHA-256</source>
       <translation>SHA-256</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>SKIPPED BEFORE IT</source>
       <translation>OMITIDOS ANTES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>VALUE</source>
       <translation>VALOR</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>WAITS</source>
       <translation>ESPERA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>WHOLE</source>
       <translation>COMPLETA</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>{count} ERRORS</source>
       <translation>{count} ERRORES</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/sheets.py" />
+      <location filename="app/transfer/serial_transfer.py" />
       <source>{count} LINES</source>
       <translation>{count} LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/desk/transfer/storing.py" />
+      <location filename="app/transfer/received_program.py" />
       <source>RECEIVED</source>
       <translation>RECIBIDO</translation>
     </message>
@@ -3704,72 +3704,72 @@
       <translation>ESPERANDO: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/book.py" />
+      <location filename="app/offsets/offset_book.py" />
       <source>NO ZERO OFFSETS ARE KEPT HERE</source>
       <translation>AQUÍ NO SE GUARDAN CEROS DE PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY</source>
       <translation>HAY UN PROGRAMA EN CURSO: G54 A G59 SÓLO CAMBIAN ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>C, DEGREES?</source>
       <translation>¿C, GRADOS?</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>C: all cleared</source>
       <translation>C: todo borrado</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>G{code} IS AS IT WAS</source>
       <translation>G{code} QUEDA COMO ESTABA</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
       <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>THIS MACHINE HAS NO AXIS {axis}</source>
       <translation>ESTA MÁQUINA NO TIENE EJE {axis}</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
       <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>X RADIUS, MM?</source>
       <translation>¿RADIO X, MM?</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>Z, MM?</source>
       <translation>¿Z, MM?</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>reads {value}</source>
       <translation>lee {value}</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/desk.py" />
+      <location filename="app/offsets/zero_offsets.py" />
       <source>{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST</source>
       <translation>{axis} NO CONOCE SU POSICIÓN: REFERÉNCIELO PRIMERO</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/figures.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>degrees</source>
       <translation>grados</translation>
     </message>
     <message>
-      <location filename="app/desk/zero_offsets/figures.py" />
+      <location filename="app/offsets/offset_values.py" />
       <source>mm</source>
       <translation>mm</translation>
     </message>
@@ -3834,247 +3834,247 @@
       <translation>GIRE</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/asking.py" />
+      <location filename="app/editor/question_view.py" />
       <source>A NUMBER FROM 1 TO %1</source>
       <translation>UN NÚMERO DE 1 A %1</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/asking.py" />
+      <location filename="app/editor/question_view.py" />
       <source>GO TO LINE</source>
       <translation>IR A LA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/asking.py" />
+      <location filename="app/editor/question_view.py" />
       <source>REPLACE BY</source>
       <translation>CAMBIAR POR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/asking.py" />
+      <location filename="app/editor/question_view.py" />
       <source>SAVE AS</source>
       <translation>GUARDAR COMO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>BACK</source>
       <translation>ATRÁS</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>BEFORE</source>
       <translation>ANTERIOR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>CREATE</source>
       <translation>CREAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>DOWN</source>
       <translation>ABAJO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>FARTHER</source>
       <translation>ALEJAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>FIT</source>
       <translation>TODO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>GO</source>
       <translation>IR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>GO TO</source>
       <translation>IR A</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>HISTORY</source>
       <translation>HISTORIA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>HOLD</source>
       <translation>RETENER</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>LEAVE</source>
       <translation>SALIR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>MENU</source>
       <translation>MENÚ</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>NEARER</source>
       <translation>ACERCAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>NEWER</source>
       <translation>MÁS NVA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>NEXT</source>
       <translation>SIGUE</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>NEXT ERR</source>
       <translation>SIG ERR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>NO SAVE</source>
       <translation>NO GUARD</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>OLDER</source>
       <translation>MÁS ANT</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>REDO</source>
       <translation>REHACER</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>REPLACE</source>
       <translation>CAMBIAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>SAVE</source>
       <translation>GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>TO LINE</source>
       <translation>A LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>UNDO</source>
       <translation>DESHACER</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>UP</source>
       <translation>ARRIBA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>VIEW</source>
       <translation>VISTA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/doings.py" />
+      <location filename="app/editor/editor_keys_view.py" />
       <source>go to</source>
       <translation>ir a</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/draft.py" />
+      <location filename="app/editor/text_view.py" />
       <source>SAMPLE, CHANGED</source>
       <translation>MUESTRA, CAMBIADA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/drawn.py" />
+      <location filename="app/editor/edited_path_view.py" />
       <source>PATH TO THE CURSOR</source>
       <translation>TRAYECTORIA HASTA EL CURSOR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/drawn.py" />
+      <location filename="app/editor/edited_path_view.py" />
       <source>THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE</source>
       <translation>LA CRUZ NO ESTÁ SOBRE NINGUNA LÍNEA DE LA TRAYECTORIA: UNA FLECHA LA LLEVA A UNA</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/finder.py" />
+      <location filename="app/editor/question_view.py" />
       <source>%1 REPLACED</source>
       <translation>%1 CAMBIADOS</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/findings.py" />
+      <location filename="app/editor/findings_view.py" />
       <source>ERROR</source>
       <translation>ERROR</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/findings.py" />
+      <location filename="app/editor/findings_view.py" />
       <source>FILE</source>
       <translation>ARCHIVO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/findings.py" />
+      <location filename="app/editor/findings_view.py" />
       <source>FINDINGS  ·  %1  ·  %2</source>
       <translation>HALLAZGOS  ·  %1  ·  %2</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/findings.py" />
+      <location filename="app/editor/findings_view.py" />
       <source>PROVED  ·  %1 BLOCKS  ·  CYCLE %2</source>
       <translation>COMPROBADO  ·  %1 BLOQUES  ·  CICLO %2</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/findings.py" />
+      <location filename="app/editor/findings_view.py" />
       <source>WARNING</source>
       <translation>AVISO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/heading.py" />
+      <location filename="app/editor/heading_view.py" />
       <source>KEYBOARD</source>
       <translation>TECLADO</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/page.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>NOTHING WAS FOUND THAT IS WRONG</source>
       <translation>NO SE HALLÓ NADA MAL</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/parts.py" />
+      <location filename="app/editor/editor_view.py" />
       <source>LINE %1 OF %2  ·  %3</source>
       <translation>LÍNEA %1 DE %2  ·  %3</translation>
     </message>
     <message>
-      <location filename="app/screen/editor/versions.py" />
+      <location filename="app/editor/versions_view.py" />
       <source>%1 bytes</source>
       <translation>%1 bytes</translation>
     </message>
     <message>
-      <location filename="app/screen/fileprompt.py" />
+      <location filename="app/programs/file_prompt_view.py" />
       <source>%1 programs</source>
       <translation>%1 programas</translation>
     </message>
     <message>
-      <location filename="app/screen/fileprompt.py" />
+      <location filename="app/programs/file_prompt_view.py" />
       <source>RETURN takes the marked program   ESC keeps the present one   F2 shows the list</source>
       <translation>RETURN toma el programa marcado   ESC conserva el actual   F2 muestra la lista</translation>
     </message>
     <message>
-      <location filename="app/screen/files/page.py" />
+      <location filename="app/programs/programs_view.py" />
       <source>DRAWING …</source>
       <translation>DIBUJANDO …</translation>
     </message>
     <message>
-      <location filename="app/screen/files/page.py" />
+      <location filename="app/programs/programs_view.py" />
       <source>PREVIEW</source>
       <translation>VISTA PREVIA</translation>
     </message>
     <message>
-      <location filename="app/screen/files/record.py" />
+      <location filename="app/programs/programs_view.py" />
       <source>RECORD</source>
       <translation>REGISTRO</translation>
     </message>
@@ -4249,37 +4249,37 @@
       <translation>no hay catálogo turndesk_%1.qm en %2</translation>
     </message>
     <message>
-      <location filename="app/screen/letters.py" />
+      <location filename="app/screen/letter_keys.py" />
       <source>DEL</source>
       <translation>BORRAR</translation>
     </message>
     <message>
-      <location filename="app/screen/letters.py" />
+      <location filename="app/screen/letter_keys.py" />
       <source>RETURN</source>
       <translation>RETURN</translation>
     </message>
     <message>
-      <location filename="app/screen/letters.py" />
+      <location filename="app/screen/letter_keys.py" />
       <source>SPACE</source>
       <translation>ESPACIO</translation>
     </message>
     <message>
-      <location filename="app/screen/listing.py" />
+      <location filename="app/screen/program_listing.py" />
       <source>%1  ·  HOME FOLLOWS AGAIN</source>
       <translation>%1  ·  INICIO VUELVE A SEGUIR</translation>
     </message>
     <message>
-      <location filename="app/screen/listing.py" />
+      <location filename="app/screen/program_listing.py" />
       <source>BLOCK</source>
       <translation>BLOQUE</translation>
     </message>
     <message>
-      <location filename="app/screen/listing.py" />
+      <location filename="app/screen/program_listing.py" />
       <source>No program.</source>
       <translation>Sin programa.</translation>
     </message>
     <message>
-      <location filename="app/screen/listing.py" />
+      <location filename="app/screen/program_listing.py" />
       <source>PROGRAM  ·  %1 LINES</source>
       <translation>PROGRAMA  ·  %1 LÍNEAS</translation>
     </message>
@@ -4324,47 +4324,47 @@
       <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/grid.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>X AND Z FROM THE MASTER T{number}</source>
       <translation>X Y Z DESDE LA MAESTRA T{number}</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/history.py" />
+      <location filename="app/offsets/offset_history_view.py" />
       <source>HISTORY  ·  NEWEST ON TOP</source>
       <translation>HISTORIA  ·  LO NUEVO ARRIBA</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/history.py" />
+      <location filename="app/offsets/offset_history_view.py" />
       <source>No offset was changed yet.</source>
       <translation>Todavía no se cambia ninguna compensación.</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/seccmp.py" />
+      <location filename="app/offsets/secondary_offsets_view.py" />
       <source>EFFECT</source>
       <translation>EFECTO</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/seccmp.py" />
+      <location filename="app/offsets/secondary_offsets_view.py" />
       <source>Secondary offset number:</source>
       <translation>Número de compensación secundaria:</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/table.py" />
+      <location filename="app/offsets/secondary_offsets_view.py" />
       <source>ALL 32 OFFSETS</source>
       <translation>LAS 32 COMPENSACIONES</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/table.py" />
+      <location filename="app/offsets/secondary_offsets_view.py" />
       <source>SECONDARY OFFSETS  ·  X STORED AS A RADIUS</source>
       <translation>COMPENSACIONES SECUNDARIAS  ·  X SE GUARDA COMO RADIO</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/tools.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>ADD</source>
       <translation>SUMAR</translation>
     </message>
     <message>
-      <location filename="app/screen/offsets/tools.py" />
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>F2 adds what is typed; F3 shows X and Z from the master; Esc leaves</source>
       <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
     </message>
@@ -4634,17 +4634,17 @@
       <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>
     <message>
-      <location filename="app/screen/zero_offsets/page.py" />
+      <location filename="app/offsets/zero_offsets_view.py" />
       <source>F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit</source>
       <translation>F2: donde está la máquina lee lo que se escribe        C: borra G54 a G59        Esc: sale</translation>
     </message>
     <message>
-      <location filename="app/screen/zero_offsets/page.py" />
+      <location filename="app/offsets/zero_offsets_view.py" />
       <source>HERE</source>
       <translation>AQUÍ</translation>
     </message>
     <message>
-      <location filename="app/screen/zero_offsets/table.py" />
+      <location filename="app/offsets/zero_offsets_view.py" />
       <source>SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES</source>
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QApplication
 from app.cli.offset_file import read_offsets
 from app.compose.screen import build_desk
 from app.compose.workshop import samples
-from app.screen.editor.page import EditorPage
+from app.editor.editor_view import EditorPage
 from app.screen.look import Look, dress, load_fonts
 from app.screen.theme import DARK
 from app.screen.window import MainWindow

@@ -10,9 +10,9 @@ import pytest
 
 from app.desk import interrupted
 from app.desk.desk import Desk
-from app.desk.files.changing import RENAME
 from app.desk.session import Loaded
 from app.desk.settings import Units
+from app.programs.copy_rename_delete import RENAME
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.dialect import Dialect

@@ -15,7 +15,7 @@ from app.compose.journal import Journal
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.keep import NothingKept
-from app.desk.special.machine_file import MachineFileSection
+from app.special.machine_file_acceptance import MachineFileSection
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.machine.load import load_machine

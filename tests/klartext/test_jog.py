@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.desk.jogging.directions import directions_of
 from app.desk.jogging.speeds import Speeds
-from app.desk.offsets.figures import Mode
+from app.offsets.offset_values import Mode
 from core.machine.load import load_machine, shipped_machine
 
 MILL, LATHE = shipped_machine("ac-table-mill"), load_machine()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.desk import pages
-from app.desk.editing.editor import Stage
-from app.screen.editor.page import EditorPage
+from app.editor.editor import Stage
+from app.editor.editor_view import EditorPage
 from core.executor.snapshot import State
 from tests.screen.day import NEAR, Day, Key
 

@@ -10,14 +10,14 @@ from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.compose.special import furnish
 from app.desk.desk import Desk
-from app.desk.editing.bench import Archive, Bench, NoArchive
-from app.desk.editing.editor import Editor
 from app.desk.keep import Keep, NothingKept
 from app.desk.latest import Watch
-from app.desk.offsets.effect import Effect
 from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Session, Workshop
 from app.desk.shelf import Shelf
+from app.editor.editor import Editor
+from app.editor.versions import Archive, Bench, NoArchive
+from app.offsets.effect import Effect
 from core.executor.job import Job
 from core.interpreter.dialects import Reading
 from core.interpreter.setup import SecondaryOffset, ToolOffset

@@ -11,8 +11,8 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.desk import pages
-from app.desk.editing import words
-from app.screen.editor.page import EditorPage
+from app.editor import messages
+from app.editor.editor_view import EditorPage
 from core.executor.snapshot import State
 from tests.screen.chapters import drives_on
 from tests.screen.day import Day, Key, begun
@@ -153,7 +153,7 @@ def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
     day.key(Key.Key_End, modifier=CTRL)
     day.type("(END)")
     day.key(Key.Key_Escape)
-    assert day.prompt == words.UNSAVED
+    assert day.prompt == messages.UNSAVED
     for _ in range(3):
         day.key(Key.Key_Escape)
         assert day.page == pages.EDITOR

@@ -14,8 +14,8 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.desk import pages
-from app.desk.files.media import Stick, sticks
-from app.screen.files.page import FilesPage
+from app.programs.folder_chooser import Stick, sticks
+from app.programs.programs_view import FilesPage
 from app.screen.look import Look
 from app.screen.theme import DARK
 from app.screen.window import MainWindow

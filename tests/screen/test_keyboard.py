@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
 from app.desk import pages
-from app.screen.eventtime import FRAMES, STALL, EventTimes
+from app.screen.event_times import FRAMES, STALL, EventTimes
 from app.screen.window import MainWindow
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QTranslator
 from PySide6.QtGui import QRawFont
 
+import app
 from app.desk.words import tr
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
@@ -150,8 +152,9 @@ def test_an_unknown_language_has_no_catalogue() -> None:
 
 
 def test_key_labels_fit(spanish: Hands) -> None:
-    for module in ("mdi", "jog", "searchto", "editor", "files", "special", "offsets", "zero_offsets"):
-        import_module(f"app.screen.{module}.page")
+    house = Path(app.__file__).parent
+    for path in (*house.glob("*/*_view.py"), *house.glob("screen/*/page.py")):
+        import_module(".".join(("app", *path.relative_to(house).with_suffix("").parts)))
     labels = {label for page in _pages(Page) for label in getattr(page, "LABELS", ())}
     for key in (Key.Key_F10, Key.Key_F1, Key.Key_F6, Key.Key_F9):
         spanish.key(key)

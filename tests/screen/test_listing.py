@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtGui import QPixmap
 from pytestqt.qtbot import QtBot
 
-from app.screen.listing import Listing
 from app.screen.look import Look
+from app.screen.program_listing import Listing
 from app.screen.theme import DARK
 
 

@@ -8,7 +8,7 @@ from itertools import chain
 import pytest
 
 from app.desk import pages
-from app.screen.letters import LINES
+from app.screen.letter_keys import LINES
 from app.screen.look import Look
 from app.screen.mdi.page import MdiPage
 from app.screen.pictures import Stage

@@ -13,8 +13,8 @@ from pytestqt.qtbot import QtBot
 from app.cli.offset_file import read_offsets
 from app.compose.screen import desk_and_executor, step_clock
 from app.compose.workshop import samples
-from app.desk.offsets.book import OffsetBook
-from app.screen.editor.page import EditorPage
+from app.editor.editor_view import EditorPage
+from app.offsets.offset_book import OffsetBook
 from app.screen.look import Look
 from app.screen.page import AutomaticPage
 from app.screen.theme import DARK

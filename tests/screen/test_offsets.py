@@ -11,11 +11,11 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.desk import pages
-from app.desk.offsets.book import OffsetBook
 from app.desk.session import Phase
+from app.offsets.offset_book import OffsetBook
+from app.offsets.secondary_offsets_view import SeccmpPage
+from app.offsets.tool_offsets_view import ToolsPage
 from app.screen.layout import FINGER
-from app.screen.offsets.seccmp import SeccmpPage
-from app.screen.offsets.tools import ToolsPage
 from app.screen.panel import Panel
 from core.executor.commands import FeedHold, LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State

@@ -11,12 +11,12 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.desk import pages
-from app.desk.special.keeping import BARRED
-from app.desk.special.signals import NOT_NOW
 from app.screen.look import Look
-from app.screen.special.page import SpecialPage
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
+from app.special.backup import BARRED
+from app.special.inputs_outputs import NOT_NOW
+from app.special.special_view import SpecialPage
 from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on

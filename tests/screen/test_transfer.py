@@ -11,12 +11,12 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.desk.transfer.section import TransferSection
-from app.desk.transfer.service import Received
 from app.screen.look import Look
-from app.screen.special.page import SpecialPage
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
+from app.special.special_view import SpecialPage
+from app.transfer.serial_line import Received
+from app.transfer.serial_transfer import TransferSection
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from core.machine.hardware.model import DncModel

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from app.desk import pages
-from app.desk.zero_offsets.book import ZeroBook
-from app.screen.zero_offsets.page import ZeroPage
+from app.offsets.offset_book import ZeroBook
+from app.offsets.zero_offsets_view import ZeroPage
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.zero import ZeroRow

@@ -6,12 +6,11 @@ from typing import Protocol
 
 from app.desk.arithmetic import EntryError
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
-from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.cells import ToolCells
-from app.desk.offsets.entry import marked, shown_value, value_typed, word
-from app.desk.offsets.figures import Mode, not_set
-from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_history import Ledger
+from app.offsets.offset_values import Mode, marked, not_set, shown_value, value_typed, word
+from app.offsets.tool_cells import ToolCells
 from core.executor.snapshot import Snapshot
 from core.store.rows import ToolRow
 

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.desk.jogging.speeds import CONTINUOUS, Speeds
-from app.desk.offsets.figures import Mode
 from app.desk.words import tr
+from app.offsets.offset_values import Mode
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.desk.formats import MM_PER_INCH
-from app.desk.offsets.figures import Mode
+from app.offsets.offset_values import Mode
 from core.machine.model import Machine
 
 INCH_STEPS, MM_STEPS, DEGREE_STEPS = (

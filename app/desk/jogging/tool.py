@@ -9,13 +9,13 @@ from app.desk.desk import Desk
 from app.desk.jogging import touch
 from app.desk.jogging.asked import TOOL, note
 from app.desk.jogging.touch import TOUCHES, TouchOff
-from app.desk.offsets import allowed
-from app.desk.offsets.book import OffsetBook
-from app.desk.offsets.cells import ToolCells
-from app.desk.offsets.dialogue import CHARACTERS
-from app.desk.offsets.entry import TOOL_FIELDS
-from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
+from app.offsets import offset_changes
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_history import Ledger
+from app.offsets.offset_values import TOOL_FIELDS
+from app.offsets.secondary_dialogue import CHARACTERS
+from app.offsets.tool_cells import ToolCells
 from core.executor.snapshot import Snapshot
 from core.store.fields import Sort
 from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
@@ -91,7 +91,9 @@ class ToolSetting:
             self.touching.open(what, snapshot)
 
     def _barred(self, what: str, snapshot: Snapshot) -> str:
-        why = self.book.locked or allowed.refusal(snapshot, correction=what in allowed.CORRECTIONS)
+        why = self.book.locked or offset_changes.refusal(
+            snapshot, correction=what in offset_changes.CORRECTIONS
+        )
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
         if what in TOUCHES:
@@ -181,7 +183,7 @@ class ToolSetting:
     def undo(self) -> None:
         """Take the last change of the tools back."""
         self.close()
-        self.ledger.undo(self.book.locked or allowed.refusal(self.desk.snapshot(), correction=False))
+        self.ledger.undo(self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=False))
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""

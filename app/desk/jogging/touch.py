@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.offsets.cells import NewTool
-from app.desk.offsets.entry import TOOL_FIELDS, word
-from app.desk.offsets.figures import Mode, to_mm
-from app.desk.offsets.ledger import Ledger
 from app.desk.words import tr
+from app.offsets.offset_history import Ledger
+from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
+from app.offsets.tool_cells import NewTool
 from core.executor.snapshot import Snapshot, State
 from core.store.toolset import Touch
 

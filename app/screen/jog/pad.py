@@ -13,8 +13,8 @@ from app.desk.jogging.desk import JogDesk
 from app.desk.jogging.directions import Direction
 from app.desk.jogging.home import Known
 from app.desk.jogging.speeds import CONTINUOUS, rapid_word, speed_words, step_words
-from app.desk.offsets.figures import Mode
 from app.desk.words import tr
+from app.offsets.offset_values import Mode
 from app.screen.fingers import Control, FingerPanel
 from app.screen.jog.dial import Dial
 from app.screen.jog.signs import draw_arrow, draw_middle

@@ -13,10 +13,9 @@ from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.desk.words import tr
+from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.jog.pad import JogPad
 from app.screen.jog.toolpanel import ToolPanel
-from app.screen.offsets.asked import Asked, AskedPanel
-from app.screen.offsets.keypad import KeyPad
 from app.screen.pages import Doings, Host, Page
 from core.executor.snapshot import Snapshot
 from core.machine.model import Machine

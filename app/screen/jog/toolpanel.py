@@ -14,12 +14,11 @@ from app.desk.jogging import asked
 from app.desk.jogging.asked import TOOL
 from app.desk.jogging.desk import JogDesk
 from app.desk.jogging.touch import TOUCH_X, TOUCH_Z
-from app.desk.offsets.entry import marked, shown_value, word
-from app.desk.offsets.figures import Mode, not_set, signed
 from app.desk.words import tr
+from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.offsets.tip import draw_tip
 from app.screen.panel import Panel
+from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
 
 # Field, and the key that asks for it.

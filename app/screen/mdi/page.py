@@ -10,7 +10,7 @@ from app.desk.inforce import rows_of
 from app.desk.mdi.mdi import MdiDesk
 from app.desk.session import Loaded
 from app.desk.view import View
-from app.screen.letters import LINES, LetterPad
+from app.screen.letter_keys import LINES, LetterPad
 from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel

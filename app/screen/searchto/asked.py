@@ -7,8 +7,8 @@ from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.words import tr
+from app.screen.entry_panel import draw_entry
 from app.screen.look import LEFT, Look, put
-from app.screen.offsets.asked import draw_entry
 from app.screen.panel import Panel
 
 

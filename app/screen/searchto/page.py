@@ -15,10 +15,10 @@ from app.desk.searchto.stage import Stage
 from app.desk.session import Loaded
 from app.desk.view import View
 from app.desk.words import tr
-from app.screen.listing import Listing
 from app.screen.pages import Doings, Host, Page
 from app.screen.path.aspects import Tip, tip_of
 from app.screen.pathview import PathView
+from app.screen.program_listing import Listing
 from app.screen.searchto.asked import AskedPanel
 from app.screen.searchto.beside import PASS_AFTER, PASS_BEFORE, Near, StatePanel, StateShown
 from app.screen.searchto.starts import StartsPanel

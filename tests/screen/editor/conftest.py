@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.screen.look import Look
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
-from tests.desk.editing.shop import Memory
+from tests.editor.shop import Memory
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.editor.writer import Writer
 from tests.screen.fake import FakeMachine

@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 
 from app.desk import pages
 from app.screen.layout import FINGER
-from app.screen.letters import PROGRAMS
+from app.screen.letter_keys import PROGRAMS
 from app.screen.panel import Panel
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key

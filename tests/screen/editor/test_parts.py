@@ -13,15 +13,15 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.compose.screen import desk_and_executor, step_clock
-from app.desk.editing.editor import Stage
-from app.desk.editing.entering import enter
-from app.screen.editor.layout import editor_places
-from app.screen.editor.textfield import TextField
-from app.screen.editor.versions import local_time
+from app.editor.editor import Stage
+from app.editor.entering import enter
+from app.editor.heading_view import editor_places
+from app.editor.text_view import TextField
+from app.editor.versions_view import local_time
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
 from core.language.dialect import Dialect
-from tests.desk.editing.shop import GOOD
+from tests.editor.shop import GOOD
 
 
 @pytest.fixture

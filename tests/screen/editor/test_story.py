@@ -9,13 +9,13 @@ import pytest
 from PySide6.QtCore import Qt
 
 from app.desk import pages
-from app.desk.editing import words
-from app.desk.editing.editor import Stage
 from app.desk.session import Phase
+from app.editor import messages
+from app.editor.editor import Stage
 from core.executor.commands import CycleStart, FeedHold, LoadJob
 from core.executor.snapshot import State
 from core.language.diagnostics import Severity
-from tests.desk.editing.shop import GOOD, Memory
+from tests.editor.shop import GOOD, Memory
 from tests.screen.desks import SAMPLES
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -57,7 +57,7 @@ def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == words.CREATE)
+    writer.sees(lambda: writer.prompt() == messages.CREATE)
     writer.key(Key.Key_Escape)
     writer.sees(lambda: writer.front == pages.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
@@ -70,7 +70,7 @@ def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == words.CREATE)
+    writer.sees(lambda: writer.prompt() == messages.CREATE)
     assert not writer.editor.field.isVisible()
     assert writer.editor.head.heading.name == "first"
     writer.key(Key.Key_F1)
@@ -90,7 +90,7 @@ def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
 
 def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) -> None:
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == words.NO_PROGRAM)
+    writer.sees(lambda: writer.prompt() == messages.NO_PROGRAM)
     assert writer.front == pages.AUTOMATIC
 
 
@@ -100,12 +100,12 @@ def test_refused_while_a_program_is_under_way(writer: Writer, state: State) -> N
     writer.machine.now = replace(writer.machine.now, state=state)
     writer.machine.blocks = ()
     writer.key(Key.Key_F3)
-    assert writer.prompt() == words.UNDER_WAY
+    assert writer.prompt() == messages.UNDER_WAY
     assert writer.front == pages.AUTOMATIC
 
 
 @pytest.mark.parametrize(
-    ("command", "measured", "why"), [(900, 0, words.SPINDLE_ON), (0, 80, words.COASTING)]
+    ("command", "measured", "why"), [(900, 0, messages.SPINDLE_ON), (0, 80, messages.COASTING)]
 )
 def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured: int, why: str) -> None:
     writer.load("pin")
@@ -127,7 +127,7 @@ def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: 
     assert writer.editor.head.heading.mark == "SAMPLE"
     writer.type("(MINE)")
     writer.key(Key.Key_F2)
-    writer.sees(lambda: writer.prompt() == words.SAMPLE)
+    writer.sees(lambda: writer.prompt() == messages.SAMPLE)
     writer.sees(writer.editor.ask.first.hasFocus)
     writer.type("mine")
     writer.key(Key.Key_Return)
@@ -228,9 +228,9 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     writer.new("gone")
     writer.write("X1")
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.ABANDON)
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == words.ABANDON)  # never the key that asked
+    writer.sees(lambda: writer.prompt() == messages.ABANDON)  # never the key that asked
     writer.key(Key.Key_F6)
     writer.sees(lambda: writer.front == pages.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
@@ -240,18 +240,18 @@ def test_typing_takes_the_question_back(writer: Writer) -> None:
     writer.new("kept")
     writer.write("X1")
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.ABANDON)
     writer.type("Z1")
-    writer.sees(lambda: writer.prompt() != words.ABANDON)
+    writer.sees(lambda: writer.prompt() != messages.ABANDON)
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == words.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.ABANDON)
     assert writer.text() == "X1Z1"
 
 
 def test_esc_holds_what_a_station_has_started(writer: Writer) -> None:
     writer.edit("pin")
     writer.machine.now = replace(writer.machine.now, state=State.RUN)
-    writer.sees(lambda: writer.prompt() == words.RUNS_OLD)
+    writer.sees(lambda: writer.prompt() == messages.RUNS_OLD)
     writer.key(Key.Key_Escape)
     assert FeedHold() in writer.machine.posted
 
@@ -268,7 +268,7 @@ def test_closing_the_window_saves_first(writer: Writer, tmp_path: Path) -> None:
 def test_an_empty_program_is_not_saved(writer: Writer) -> None:
     writer.new("empty")
     writer.key(Key.Key_F2)
-    writer.sees(lambda: writer.prompt() == words.EMPTY)
+    writer.sees(lambda: writer.prompt() == messages.EMPTY)
     writer.key(Key.Key_F3)  # an untouched new file is forgotten
     writer.sees(lambda: writer.front == pages.AUTOMATIC)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.desk import pages
-from app.screen.editor.page import EditorPage
+from app.editor.editor_view import EditorPage
 from tests.screen.hands import Hands, Key
 
 

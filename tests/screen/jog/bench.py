@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QApplication
 from app.compose.offsets import offsets_of
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
-from app.desk.offsets.book import OffsetBook
+from app.offsets.offset_book import OffsetBook
 from app.screen.frame import Frame
 from app.screen.jog.page import JogPage
 from app.screen.look import Look

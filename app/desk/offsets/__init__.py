@@ -1,1 +1,0 @@
-"""Tool and secondary offsets as the operator enters them; no Qt."""

@@ -1,1 +1,0 @@
-"""Programs over the serial line: models without Qt."""

@@ -1,1 +1,0 @@
-"""G54 to G59 as the operator enters them; no Qt."""

@@ -1,0 +1,153 @@
+"""The program that is edited: where it lies, what it held when it was opened, what it may be called."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.desk.shelf import ENDINGS
+from app.editor.versions import Archive
+from app.programs.whole_file import present, write_whole
+from core.language.source import SourceError, load_source
+from core.store.errors import StoreError
+from core.store.programs import check_name
+
+USUAL_ENDING = ".nc"
+MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them
+_DOS = "\r\n"
+
+
+class TooLongError(ValueError):
+    """A text that the field would hold up the screen with; the sentence says so."""
+
+
+class NameRefusedError(ValueError):
+    """A name that no program can have; the sentence says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """``text`` has bare line feeds, as an editor does; ``line_end`` is what the file has.
+
+    ``protected``: a sample, which may be saved under another name only. ``fresh``: not on the disk yet.
+    """
+
+    path: Path
+    text: str = ""
+    line_end: str = "\n"
+    protected: bool = False
+    fresh: bool = False
+
+    @property
+    def name(self) -> str:
+        """What the screen and the store call it."""
+        return self.path.name
+
+    def encoded(self, text: str) -> bytes:
+        """``text`` as it goes to the disk, with the line ends that the file has."""
+        return ended(text).replace("\n", self.line_end).encode("utf-8", "replace")
+
+
+def ended(text: str) -> str:
+    """The text with its last line ended, as it is saved and proved: nobody need press Return for that."""
+    return text if text.endswith("\n") or not text else text + "\n"
+
+
+def opened(path: Path, samples: Path) -> Document:
+    """The document of a file. Raises SourceError when it is no program text, TooLongError when too much."""
+    text = _text(path)
+    if text.count("\n") >= MOST_LINES:
+        raise TooLongError(
+            f"{path.name} has over {MOST_LINES} lines: too long for this editor; split it elsewhere"
+        )
+    line_end = _DOS if _DOS in text else "\n"
+    protected = path.resolve().is_relative_to(samples.resolve())
+    return Document(path, text.replace(_DOS, "\n").replace("\r", "\n"), line_end, protected)
+
+
+def _text(path: Path) -> str:
+    """An empty file is no program to run, but one to write."""
+    try:
+        return load_source(path).text
+    except SourceError as error:
+        if error.diagnostic.code == "file-empty":
+            return ""
+        raise
+
+
+def created(folder: Path, typed: str) -> Document:
+    """A new and empty document of this name. Raises NameRefusedError with a sentence."""
+    return Document(folder / program_name(typed), fresh=True)
+
+
+def program_name(typed: str) -> str:
+    """The file name that was meant: a name without an ending gets the usual one."""
+    name = typed.strip()
+    if not name:
+        raise NameRefusedError("NO NAME WAS TYPED: A PROGRAM NEEDS ONE")
+    if name.startswith("."):
+        raise NameRefusedError(f"{name} WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT")
+    try:
+        check_name(name)
+    except StoreError as error:
+        raise NameRefusedError(
+            f"{name} CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK"
+        ) from error
+    ending = Path(name).suffix
+    if ending.lower() not in ENDINGS:
+        allowed = " ".join(sorted(ENDINGS - {""}))
+        raise NameRefusedError(f"{ending} IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF {allowed}")
+    return name if ending else name + USUAL_ENDING
+
+
+# --- Saving: the file first, then the version; what stood there before is in the history too.
+
+
+CHANGED = "changed by another program"
+
+
+def save_document(document: Document, text: str, archive: Archive, replacing: bool) -> str:
+    """Write ``text`` into the file of ``document`` and keep it as a version.
+
+    Answers why no version could be kept, empty when all went well, or ``CHANGED`` when the file is not any
+    more what was opened (nothing is written then, unless ``replacing``). Raises SavingError.
+    """
+    there = present(document.path)
+    foreign = there is not None and not _is_opened(document, there)
+    if foreign and not replacing:
+        return CHANGED
+    trouble = ""
+    if there is not None:
+        trouble = _kept(archive, document.name, there, "as it was before editing")
+        if trouble and foreign:
+            return CHANGED  # what somebody else wrote is not replaced before it is safe
+    data = document.encoded(text)
+    write_whole(document.path, data)
+    return _kept(archive, document.name, data, "saved in the editor") or trouble
+
+
+def _is_opened(document: Document, data: bytes) -> bool:
+    """Whether the file still holds what was opened or last saved."""
+    if document.fresh:
+        return False
+    return data == document.encoded(document.text) or _decodes_to(document, data)
+
+
+def _decodes_to(document: Document, data: bytes) -> bool:
+    """Files from DOS: other characters, a byte order mark, the old sign for the end of a file."""
+    for code in ("utf-8-sig", "cp437", "latin-1"):
+        try:
+            text = data.decode(code)
+        except UnicodeDecodeError:
+            continue
+        if text.rstrip("\x1a").replace("\r\n", "\n").replace("\r", "\n") == document.text:
+            return True
+    return False
+
+
+def _kept(archive: Archive, name: str, data: bytes, why: str) -> str:
+    try:
+        archive.keep_version(name, data, why)
+    except StoreError as error:
+        return str(error)
+    return ""

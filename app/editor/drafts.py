@@ -1,0 +1,105 @@
+"""What is typed and not saved: kept until the editor is left, for a control that ends before that."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.worker import Worker
+from app.editor import messages
+from app.editor.document import Document
+from app.editor.versions import Archive
+from core.store.errors import StoreError
+
+WHY = "typed and not saved"
+
+
+@dataclass(slots=True)
+class Drafts:
+    """A file for each text, written on a worker: the last of what was typed since it last came round."""
+
+    folder: Path
+    archive: Archive
+    trouble: str = ""  # why the last could not be kept
+    _wanted: dict[str, str | None] = field(default_factory=dict)  # None: it is not needed any more
+    _worker: Worker = field(default_factory=Worker)
+
+    def look(self, document: Document, text: str) -> None:
+        """This is in the editor now."""
+        self._wanted[document.name] = None if text == document.text else text
+        self._go_on()
+
+    def forget(self, document: Document) -> None:
+        """It is saved, or given up."""
+        self._wanted[document.name] = None
+        self._go_on()
+
+    def recover(self, document: Document, say: Callable[[str], None]) -> None:
+        """A draft that was left for it goes into the history, before anything is written for it now."""
+        self._worker.ask(lambda: self._recovered(document), say, say)
+
+    def _recovered(self, document: Document) -> str:
+        place = self._place(document.name)
+        try:
+            text = place.read_text("utf-8")
+            if text == document.text:
+                place.unlink(missing_ok=True)
+                return ""
+            if self.archive.keep_version(document.name, document.encoded(text), WHY):
+                place.unlink(missing_ok=True)
+                return messages.DRAFT
+            why = messages.NO_STORE
+        except (FileNotFoundError, NotADirectoryError):
+            return ""  # none was left
+        except (OSError, UnicodeDecodeError, StoreError) as error:
+            why = str(error)
+        aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
+        return messages.DRAFT_STAYS.format(aside, why)
+
+    def poll(self) -> None:
+        """Once a frame."""
+        self._worker.poll()
+        self._go_on()
+
+    def settle(self, timeout: float) -> None:
+        """Wait until all is written; for scripts and tests, never for the screen."""
+        self._worker.settle(timeout)
+        self._go_on()
+        self._worker.settle(timeout)
+
+    def close(self) -> None:
+        """Write what is left and end the worker."""
+        self._worker.close()
+        for name in list(self._wanted):
+            self._write(name, self._wanted.pop(name))
+
+    def _go_on(self) -> None:
+        if self._worker.busy or not self._wanted:
+            return
+        name, text = next(iter(self._wanted.items()))
+        del self._wanted[name]
+        self._worker.ask(lambda: self._write(name, text), self._written, self._written)
+
+    def _written(self, trouble: str) -> None:
+        self.trouble = trouble
+        self._go_on()
+
+    def _write(self, name: str, text: str | None) -> str:
+        """Whole or not at all; what failed, in words."""
+        place = self._place(name)
+        try:
+            if text is None:
+                place.unlink(missing_ok=True)
+                return ""
+            self.folder.mkdir(parents=True, exist_ok=True)
+            beside = place.with_name(f".{place.name}")
+            beside.write_text(text, "utf-8", "replace", "\n")
+            os.replace(beside, place)
+        except OSError as error:
+            return messages.NO_DRAFT.format(error.strerror)
+        return ""
+
+    def _place(self, name: str) -> Path:
+        return self.folder / f"{name}.draft"

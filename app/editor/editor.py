@@ -1,0 +1,272 @@
+"""The editor: opening, creating, saving and leaving, with every version kept. No Qt, never waits.
+
+What the operator asks for begins at once and ends in a later ``poll``, once a frame; the text itself lies in
+the text field of the page, which hands it over with each request.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from pathlib import Path
+
+from app.desk.worker import Worker
+from app.editor import messages
+from app.editor.document import CHANGED, Document, NameRefusedError, created, ended, opened, save_document
+from app.editor.drafts import Drafts
+from app.editor.live_proof import Checker
+from app.editor.versions import Bench
+
+
+class Stage(StrEnum):
+    """Where the editor is."""
+
+    CLOSED = "closed"
+    OFFERED = "offered"  # a new file: F1 creates it, Esc aborts
+    READING = "reading"
+    OPEN = "open"
+    NAMING = "naming"  # saving waits for a name
+    SAVING = "saving"
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """Which program was left, whether it was saved meanwhile with changes, and whether it is to be run."""
+
+    path: Path
+    changed: bool
+    to_desk: bool
+
+
+def _nowhere(_left: Left) -> None:
+    """Nobody wants to know what was saved."""
+
+
+@dataclass(slots=True)
+class Editor:
+    """One document at a time. ``left`` hears of the program that was left in good order."""
+
+    bench: Bench
+    left: Callable[[Left], None] = _nowhere
+    stage: Stage = Stage.CLOSED
+    document: Document | None = None
+    notice: str = ""
+    text_number: int = 0  # counts texts put into the field from here: opened, created, restored
+    text: str = ""  # the last of them
+    wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
+    restored: bool = False  # it takes the place of what was typed, as one step that can be undone
+    block_delete: bool = False
+    checker: Checker = field(init=False)
+    drafts: Drafts = field(init=False)
+    worker: Worker = field(default_factory=Worker)
+    _offered: str = ""
+    _leaving: bool = False
+    _to_desk: bool = False
+    _changed: bool = False  # something of it was saved since it was opened
+    asked: Callable[[str], None] | None = None  # what F6 does now: never what the key does that asked
+    _unnamed: str = ""  # text whose saving waits for a name
+
+    def __post_init__(self) -> None:
+        self.checker = Checker(self.bench.workshop)
+        self.drafts = Drafts(self.bench.programs / ".drafts", self.bench.archive)
+
+    def poll(self) -> None:
+        """Once a frame: take up what the worker has finished."""
+        self.worker.poll()
+        self.drafts.poll()
+        if self.drafts.trouble and not self.notice:
+            self.notice = self.drafts.trouble
+
+    def close(self) -> None:
+        """End the workers."""
+        self.checker.close()
+        self.worker.close()
+        self.drafts.close()
+
+    # --- coming in -----------------------------------------------------------------------------------
+
+    def open(self, path: Path, block_delete: bool = False) -> None:
+        """Read a program into the editor."""
+        self.clear()
+        self.block_delete = block_delete
+        self.stage = Stage.READING
+        self.worker.ask(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
+
+    def offer(self, typed: str) -> None:
+        """A name that no program has: ask whether it shall be a new one."""
+        self.clear()
+        self.stage, self._offered = Stage.OFFERED, typed
+        self.notice = messages.CREATE
+
+    def create(self) -> None:
+        """F1: yes, a new file."""
+        if self.stage is not Stage.OFFERED:
+            return
+        try:
+            document = created(self.bench.programs, self._offered)
+        except NameRefusedError as error:
+            self.notice = f"{error}; ESC"
+            return
+        if document.path.exists():
+            self.notice = messages.THERE_ALREADY.format(document.name)
+            return
+        self.clear()
+        self._opened(document)
+
+    def abort(self) -> None:
+        """Esc: back to where one came from."""
+        if self.stage is Stage.OFFERED:
+            self.clear()
+            self._shut()
+
+    def _opened(self, document: Document) -> None:
+        self.document, self.stage, self._changed = document, Stage.OPEN, False
+        self._put(document.text)
+        self.drafts.recover(document, self._recovered)
+
+    def _recovered(self, said: str) -> None:
+        self.notice = said or self.notice
+
+    def _not_opened(self, why: str) -> None:
+        self._shut()
+        self.notice = why
+
+    def _put(self, text: str, *, restored: bool = False) -> None:
+        self.text, self.restored = text, restored
+        self.text_number += 1
+
+    # --- writing -------------------------------------------------------------------------------------
+
+    @property
+    def name(self) -> str:
+        """What is edited, or offered as a new file."""
+        return self.document.name if self.document else self._offered
+
+    def changed(self, text: str) -> None:
+        """This is in the field now: have it proved."""
+        self.checker.submit(self.name, ended(text), self.block_delete)
+        if self.document is not None:
+            self.drafts.look(self.document, text)
+
+    def is_dirty(self, text: str) -> bool:
+        """Whether leaving now would have something to save."""
+        document = self.document
+        return document is not None and text != document.text
+
+    def restore(self, text: str, number: int) -> None:
+        """An older version takes the place of the text, as one step that can be undone."""
+        self._put(text, restored=True)
+        self.notice = messages.RESTORED.format(number)
+
+    def clear(self) -> None:
+        """Take answer and questions back."""
+        self.notice, self.asked = "", None
+
+    # --- saving and leaving --------------------------------------------------------------------------
+
+    def save(self, text: str, *, leave: bool = False, replacing: bool = False) -> None:
+        """Write the file and keep the version; then, if asked for, leave."""
+        document = self.document
+        if document is None or self.stage is not Stage.OPEN:
+            return
+        self.clear()
+        self._leaving = leave
+        if not text.strip():
+            self.notice = messages.EMPTY
+        elif document.protected:
+            self.stage, self.notice, self._unnamed = Stage.NAMING, messages.SAMPLE, text
+        else:
+            self._write(document, text, replacing=replacing)
+
+    def take_name(self, typed: str) -> bool:
+        """The name under which a sample is saved; False when it is refused."""
+        document = self.document
+        if document is None or self.stage is not Stage.NAMING:
+            return False
+        try:
+            path = created(self.bench.programs, typed).path
+        except NameRefusedError as error:
+            self.notice = str(error)
+            return False
+        if path.exists():
+            self.notice = messages.THERE_ALREADY.format(path.name)
+            return False
+        self.clear()
+        self._write(replace(document, path=path, protected=False, fresh=True), self._unnamed)
+        return True
+
+    def keep_no_name(self) -> None:
+        """Esc at the question for a name: go on editing."""
+        if self.stage is Stage.NAMING:
+            self.clear()
+            self.stage, self._leaving = Stage.OPEN, False
+
+    def leave(self, text: str, *, to_desk: bool = False) -> None:
+        """Save what has changed, then go; an untouched new file is forgotten.
+
+        ``to_desk``: it was left to be the program of the desk. Who has only looked changes nothing there.
+        """
+        document, self._to_desk = self.document, to_desk
+        if document is None or self.stage is not Stage.OPEN:
+            return
+        if document.fresh and not text.strip():
+            self._shut()
+        elif self.is_dirty(text) or document.fresh:
+            self.save(text, leave=True)
+        else:
+            self._go(document)
+
+    def abandon(self, text: str) -> None:
+        """Leave without saving; asked when there is something to lose, and done by another key."""
+        if self.stage is not Stage.OPEN:
+            return
+        if self.is_dirty(text):
+            self.notice, self.asked = messages.ABANDON, lambda _text: self._shut()
+            return
+        self._shut()
+
+    def answer(self, text: str) -> None:
+        """F6: yes to what is asked of the text that stands in the field."""
+        asked = self.asked
+        self.clear()
+        if asked is not None and self.stage is Stage.OPEN:
+            asked(text)
+
+    def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
+        self.stage = Stage.SAVING
+        self.worker.ask(
+            lambda: save_document(document, text, self.bench.archive, replacing),
+            lambda trouble: self._saved(document, text, trouble),
+            self._not_saved,
+        )
+
+    def _saved(self, document: Document, text: str, trouble: str) -> None:
+        if trouble == CHANGED:
+            leave = self._leaving
+            self._not_saved(messages.CHANGED_OUTSIDE.format(document.name))
+            self.asked = lambda now: self.save(now, leave=leave, replacing=True)
+            return
+        for each in (document, self.document or document):  # under its new name, and its old one
+            self.drafts.forget(each)
+        self.document, self.stage = replace(document, text=text, fresh=False), Stage.OPEN
+        self._changed = True
+        self.notice = messages.NOT_KEPT.format(trouble) if trouble else ""
+        if self._leaving:
+            self._go(self.document)
+        elif not trouble:
+            self.notice = f"{document.name} IS SAVED"
+
+    def _not_saved(self, why: str) -> None:
+        self.stage, self.notice, self._leaving = Stage.OPEN, why, False
+
+    def _go(self, document: Document) -> None:
+        self._shut()
+        self.left(Left(document.path, self._changed, self._to_desk))
+
+    def _shut(self) -> None:
+        if self.document is not None:
+            self.drafts.forget(self.document)
+        self.stage, self.document, self._leaving = Stage.CLOSED, None, False
+        self._offered = ""
+        self.asked = None

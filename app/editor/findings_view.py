@@ -1,0 +1,103 @@
+"""The list of what proving has found, each with what to do about it; pressing one goes to its line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import formats
+from app.editor.live_proof import Findings
+from app.editor.text_view import LETTERS, TONES
+from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.panel import Panel
+from core.language.diagnostics import Diagnostic, Severity
+
+ROW = 5.2  # units: a fingertip, two lines of text
+
+
+class FindingList(Panel):
+    """Rows in the order of lines; the row of the cursor's line is marked and kept in sight."""
+
+    def __init__(self, look: Look, go_to: Callable[[int, int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._go_to = go_to
+        self.findings = Findings()
+        self._line = 0
+        self._top = 0
+
+    def show_findings(self, findings: Findings, line: int) -> None:
+        """What was found, and the cursor's line."""
+        if findings is self.findings and line == self._line:
+            return
+        if findings is not self.findings or line != self._line:
+            here = next((n for n, d in enumerate(findings.diagnostics) if d.line == line), None)
+            if here is not None and not self._top <= here < self._top + self._rows:
+                self._top = here
+        self.findings, self._line = findings, line
+        self._top = max(0, min(self._top, len(findings.diagnostics) - self._rows))
+        self.update()
+
+    @property
+    def words(self) -> str:
+        """What the title line of the list says."""
+        found = self.findings
+        if found.trouble:
+            return found.trouble
+        if not found.number:
+            return "PROVING"
+        if not found.diagnostics:
+            time = formats.duration(found.cycle_time)
+            return f"PROVED  ·  {found.blocks} BLOCKS  ·  CYCLE {time}"
+        return f"FINDINGS  ·  {_many(found.errors, 'ERROR')}  ·  {_many(found.warnings, 'WARNING')}"
+
+    def following(self, line: int) -> Diagnostic | None:
+        """The next error after a line, round the end; without errors the next of what else was found."""
+        placed = [d for d in self.findings.diagnostics if d.line]
+        found = [d for d in placed if d.severity is Severity.ERROR] or placed
+        return next((d for d in found if d.line > line), found[0] if found else None)
+
+    @property
+    def _rows(self) -> int:
+        return max(1, int((self.height() - 3.0 * self.look.u) / (ROW * self.look.u)))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """One row a notch."""
+        most = max(0, len(self.findings.diagnostics) - self._rows)
+        self._top = max(0, min(most, self._top - round(event.angleDelta().y() / 120)))
+        self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        u = self.look.u
+        self.frame(painter, self.words)
+        shown = self.findings.diagnostics[self._top : self._top + self._rows]
+        for place, found in enumerate(shown):
+            self._row(
+                painter, QRectF(0.6 * u, (2.3 + place * ROW) * u, self.width() - 1.2 * u, ROW * u), found
+            )
+
+    def _row(self, painter: QPainter, box: QRectF, found: Diagnostic) -> None:
+        look, u = self.look, self.look.u
+        if found.line == self._line:
+            painter.fillRect(box, look.colour("here"))
+        patch = QRectF(box.x() + 0.4 * u, box.y() + 0.9 * u, 3.2 * u, 3.2 * u)
+        painter.fillRect(patch, look.colour(TONES[found.severity]))
+        painter.setPen(look.colour("on_state"))
+        painter.setFont(look.font(2.0, bold=True))
+        put(painter, patch, CENTRE, LETTERS[found.severity])
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.font(1.8, bold=True))
+        put(painter, QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height()), LEFT, str(found.line or "FILE"))
+        room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
+        painter.setFont(look.font(1.8))
+        put(painter, room, LEFT, found.text)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6))
+        put(painter, room.translated(0, room.height()), LEFT, found.hint)
+        self.place(box, lambda: self._go_to(found.line, found.column))
+
+
+def _many(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}S"

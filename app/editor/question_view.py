@@ -1,0 +1,211 @@
+"""The line that asks: what to find and by what to replace it, where to go, what name to save under."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QRectF, Qt
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QLineEdit, QWidget
+
+from app.desk.arithmetic import line_of
+from app.editor.editor_keys_view import Mode
+from app.editor.find_replace import Search, following, preceding
+from app.editor.text_view import TextField
+from app.screen.look import LEFT, RIGHT, Look, put
+from app.screen.panel import Panel
+
+if TYPE_CHECKING:
+    from app.editor.editor_view import EditorPage
+
+LABEL = 15.0  # units before a field
+ANSWER = 34.0  # units for what is said of the entry
+
+
+class AskLine(Panel):
+    """One or two fields with their labels, and at the right what is to be said of the entry."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, keys: QObject, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.first, self.second = QLineEdit(self), QLineEdit(self)
+        self._labels: tuple[str, ...] = ("",)
+        self.answer = ""
+        for edit in (self.first, self.second):
+            edit.setMaxLength(250)
+            edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
+            edit.installEventFilter(keys)
+        self.hide()
+
+    def ask(self, *labels: str, entry: str | None = None) -> None:
+        """Come up with the keyboard; what was entered last time is marked to be typed over."""
+        self._labels = labels
+        self.answer = ""
+        if entry is not None:
+            self.first.setText(entry)
+        self.second.setVisible(len(labels) > 1)
+        self.show()
+        self._place()
+        self.first.setFocus()
+        self.first.selectAll()
+        self.update()
+
+    def say(self, answer: str) -> None:
+        """What is to be said of the entry."""
+        if answer != self.answer:
+            self.answer = answer
+            self.update()
+
+    def other_field(self) -> None:
+        """The keyboard to the other field."""
+        if len(self._labels) > 1:
+            (self.second if self.first.hasFocus() else self.first).setFocus()
+
+    def dress(self) -> None:
+        """Font and colours of the fields."""
+        look, u, colours = self.look, self.look.u, self.look.palette
+        border = max(1, round(0.2 * u))
+        for edit in (self.first, self.second):
+            edit.setFont(look.font(2.3, bold=True))
+            edit.setStyleSheet(
+                f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
+                f" border: {border}px solid {colours.accent}; padding-left: {round(0.6 * u)}px;"
+                f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
+            )
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The fields share what the labels leave."""
+        self._place()
+        self.dress()
+
+    def _place(self) -> None:
+        u = self.look.u
+        for edit, box in zip((self.first, self.second), self._boxes(), strict=False):
+            edit.setGeometry(box.adjusted(LABEL * u, 0.8 * u, 0, -0.8 * u).toRect())
+
+    def _boxes(self) -> list[QRectF]:
+        u, count = self.look.u, len(self._labels)
+        wide = (self.width() - (ANSWER + 2) * u) / count
+        return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        for label, box in zip(self._labels, self._boxes(), strict=True):
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(label, 1.8, (LABEL - 1) * u, bold=True))
+            put(painter, QRectF(box.x(), 0, (LABEL - 1) * u, box.height()), LEFT, label)
+        painter.setPen(look.colour("text"))
+        room = QRectF(self.width() - (ANSWER + 1) * u, 0, ANSWER * u, self.height())
+        painter.setFont(look.fit(self.answer, 1.9, room.width(), bold=True))
+        put(painter, room, RIGHT, self.answer)
+
+
+# --- What the line that asks is for, and what Return in it does.
+
+
+class Asking:
+    """Find and replace, go to a line, and the name that a sample is saved under."""
+
+    def __init__(self, page: EditorPage) -> None:
+        self._page = page
+
+    def show(self, mode: Mode) -> None:
+        """The question of this mode; the line goes where there is none."""
+        page = self._page
+        if mode is Mode.FIND:
+            page.ask.ask("FIND", "REPLACE BY", entry=page.finder.start())
+            page.finder.look()
+        elif mode is Mode.GO_TO:
+            page.ask.ask("GO TO LINE", entry=str(page.field.line))
+        elif mode is Mode.NAME:
+            page.ask.ask("SAVE AS", entry=page.editor.name)
+        else:
+            page.ask.hide()
+
+    def take(self) -> None:
+        """Return in the line that asks."""
+        page, entry = self._page, self._page.ask.first.text()
+        if page.mode is Mode.FIND:
+            page.finder.step(1)
+        elif page.mode is Mode.GO_TO:
+            self._go_to(entry)
+        elif page.mode is Mode.NAME:
+            page.editor.take_name(entry)
+
+    def _go_to(self, entry: str) -> None:
+        page, number, last = self._page, line_of(entry), self._page.field.blockCount()
+        if number is None or number > last:
+            page.ask.say(f"A NUMBER FROM 1 TO {last}")
+            return
+        page.enter(Mode.TEXT)
+        page.go_to(number)
+
+
+# --- Find and replace in the text field, with the count of what is found.
+
+
+class Finder:
+    """Looks for what is typed into the line that asks; the cursor goes to the first from where it stands."""
+
+    def __init__(self, field: TextField, ask: AskLine) -> None:
+        self._field, self._ask = field, ask
+        self.whole = True
+        ask.first.textEdited.connect(lambda _text: self.look())
+
+    def start(self) -> str:
+        """What is looked for at first: what is marked, if it is part of one line, or the last time's."""
+        marked = self._field.textCursor().selectedText()
+        return marked if marked and "\u2029" not in marked else self._ask.first.text()
+
+    @property
+    def _search(self) -> Search:
+        return Search(self._ask.first.text(), self.whole)
+
+    def look(self) -> None:
+        """Count, and mark the first from the cursor on."""
+        if self._ask.isVisible():
+            cursor = self._field.textCursor()
+            self._show(following(self._places(), cursor.selectionStart()))
+
+    def step(self, way: int) -> None:
+        """To the next (1) or the one before (-1)."""
+        cursor, places = self._field.textCursor(), self._places()
+        if way > 0:
+            after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
+            self._show(following(places, after))
+        else:
+            self._show(preceding(places, cursor.selectionStart()))
+
+    def replace(self) -> None:
+        """Replace the marked one and go to the next."""
+        cursor, places = self._field.textCursor(), self._places()
+        start = cursor.selectionStart()
+        length = len(self._search.needle)
+        if cursor.hasSelection() and start in places and cursor.selectionEnd() - start == length:
+            by = self._ask.second.text()
+            self._field.replace_at((start,), length, by)
+            self._show(following(self._places(), start + len(by)))
+        else:
+            self.step(1)
+
+    def replace_all(self) -> None:
+        """Replace all of them, as one step that can be undone."""
+        places = self._places()
+        if places:
+            self._field.replace_at(places, len(self._search.needle), self._ask.second.text())
+        self._ask.say(f"{len(places)} REPLACED" if places else "NOT FOUND")
+
+    def other_width(self) -> None:
+        """Whole words and numbers only, or parts of them too."""
+        self.whole = not self.whole
+        self.look()
+
+    def _places(self) -> tuple[int, ...]:
+        return self._search.places(self._field.toPlainText())
+
+    def _show(self, place: int | None) -> None:
+        search = self._search
+        self._ask.say(search.words(self._field.toPlainText()) if search.needle else "")
+        if place is not None:
+            self._field.select(place, len(search.needle))

@@ -1,0 +1,298 @@
+"""The text with its margin: line numbers, a mark at each line that proving has found fault with, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import (
+    QFontMetricsF,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QTextBlock,
+    QTextCursor,
+    QTextFormat,
+)
+from PySide6.QtWidgets import QPlainTextEdit, QTextEdit, QWidget
+
+from app.editor.editor import Editor, Stage
+from app.editor.highlight_view import Highlighter
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.dialect import dialect_of
+
+SIZE = 2.3  # units: the text
+TONES = {Severity.ERROR: "alarm", Severity.WARNING: "pause", Severity.NOTE: "wait"}
+LETTERS = {Severity.ERROR: "E", Severity.WARNING: "W", Severity.NOTE: "N"}
+
+
+class TextField(QPlainTextEdit):
+    """Qt's text field; undo, selection and clipboard are its own. Function keys pass through to the page."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.look = look
+        self._found: Mapping[int, Diagnostic] = {}
+        self.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)
+        self.setTabChangesFocus(False)
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)  # a menu would hold up every other key
+        self.setAcceptDrops(False)
+        self.setUndoRedoEnabled(True)
+        self.margin = Margin(self)
+        self.highlighter = Highlighter(look, self.document())
+        self.updateRequest.connect(self._scrolled)
+        self.blockCountChanged.connect(lambda _count: self._make_room())
+        self.cursorPositionChanged.connect(self._mark_line)
+
+    @property
+    def line(self) -> int:
+        """The line of the cursor, from 1."""
+        return self.textCursor().blockNumber() + 1
+
+    def put_text(self, text: str, *, afresh: bool) -> None:
+        """Another text; ``afresh`` forgets what could be undone, else it is one step of that."""
+        if afresh:
+            self.setPlainText(text)
+            return
+        cursor = self.textCursor()
+        cursor.select(QTextCursor.SelectionType.Document)
+        cursor.insertText(text)
+        cursor.movePosition(QTextCursor.MoveOperation.Start)
+        self.setTextCursor(cursor)
+
+    def go_to(self, line: int, column: int = 0) -> None:
+        """The cursor to a line, into the middle of the window."""
+        block = self.document().findBlockByNumber(max(0, min(self.blockCount(), line) - 1))
+        cursor = QTextCursor(block)
+        cursor.setPosition(block.position() + max(0, min(column - 1, block.length() - 1)))
+        self.setTextCursor(cursor)
+        self.centerCursor()
+
+    def select(self, start: int, length: int) -> None:
+        """Mark a stretch of the text and show it."""
+        cursor = self.textCursor()
+        cursor.setPosition(start)
+        cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
+        self.setTextCursor(cursor)
+        self.ensureCursorVisible()
+
+    def replace_at(self, places: tuple[int, ...], length: int, by: str) -> None:
+        """Put ``by`` in the place of each stretch, all as one step that can be undone."""
+        cursor = QTextCursor(self.document())
+        cursor.beginEditBlock()
+        for start in reversed(places):
+            cursor.setPosition(start)
+            cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
+            cursor.insertText(by)
+        cursor.endEditBlock()
+
+    def show_findings(self, found: Mapping[int, Diagnostic]) -> None:
+        """What proving says, by line."""
+        if found != self._found:
+            self._found = found
+            self.margin.update()
+            self.viewport().update()
+
+    def finding_at(self, line: int) -> Diagnostic | None:
+        """What is said of a line."""
+        return self._found.get(line)
+
+    def dress(self) -> None:
+        """Font and colours."""
+        colours = self.look.palette
+        self.setFont(self.look.font(SIZE))
+        self.setStyleSheet(
+            f"QPlainTextEdit {{ background: {colours.panel}; color: {colours.text};"
+            f" border: {max(1, round(0.16 * self.look.u))}px solid {colours.frame};"
+            f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
+            f"QScrollBar:vertical {{ width: {round(3.4 * self.look.u)}px; }}"
+            f"QScrollBar:horizontal {{ height: {round(2.4 * self.look.u)}px; }}"
+        )
+        self.setCursorWidth(max(2, round(0.3 * self.look.u)))
+        self.setTabStopDistance(4 * QFontMetricsF(self.font()).horizontalAdvance("0"))
+        self.highlighter.dress()
+        self._make_room()
+        self._mark_line()
+
+    # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Keys that write stay here; function keys, Esc and the page's chords go on to the page."""
+        chord = event.modifiers() & Qt.KeyboardModifier.ControlModifier
+        page = event.key() in _PAGE or (bool(chord) and event.key() in _CHORDS)
+        if page:
+            event.ignore()
+        else:
+            super().keyPressEvent(event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """No marked text is dragged: a drag has the whole keyboard, the stop keys too, to its end."""
+        shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+        if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
+            self.setTextCursor(self.cursorForPosition(event.position().toPoint()))
+        super().mousePressEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """The margin keeps its place."""
+        super().resizeEvent(event)
+        room = self.contentsRect()
+        self.margin.setGeometry(room.left(), room.top(), self.margin.wide, room.height())
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """The text, and behind the lines that have one, the message."""
+        super().paintEvent(event)
+        if not self._found:
+            return
+        with QPainter(self.viewport()) as painter:
+            painter.setFont(self.look.font(1.7))
+            for block, box in self.shown():
+                found = self._found.get(block.blockNumber() + 1)
+                if found is not None:
+                    self._message(painter, block, box, found)
+
+    def _message(self, painter: QPainter, block: QTextBlock, box: QRectF, found: Diagnostic) -> None:
+        u = self.look.u
+        wide = QFontMetricsF(self.font()).horizontalAdvance(block.text().expandtabs(4))
+        room = QRectF(
+            box.x() + wide + 3 * u, box.y(), self.viewport().width() - box.x() - wide - 4 * u, box.height()
+        )
+        if room.width() > 12 * u:
+            painter.setPen(self.look.colour(TONES[found.severity]))
+            put(painter, room, LEFT, found.text)
+
+    def shown(self) -> list[tuple[QTextBlock, QRectF]]:
+        """The lines in the window and where they stand."""
+        rows = []
+        block = self.firstVisibleBlock()
+        box = self.blockBoundingGeometry(block).translated(self.contentOffset())
+        while block.isValid() and box.top() <= self.viewport().height():
+            rows.append((block, QRectF(box)))
+            block = block.next()
+            box.translate(0, box.height())
+        return rows
+
+    def _scrolled(self, _rect: object, _by: int) -> None:
+        self.margin.update()
+
+    def _make_room(self) -> None:
+        self.setViewportMargins(self.margin.wide, 0, 0, 0)
+        room = self.contentsRect()
+        self.margin.setGeometry(room.left(), room.top(), self.margin.wide, room.height())
+
+    def _mark_line(self) -> None:
+        mark = QTextEdit.ExtraSelection()
+        mark.format.setBackground(self.look.colour("here"))
+        mark.format.setProperty(QTextFormat.Property.FullWidthSelection, True)
+        mark.cursor = self.textCursor()
+        mark.cursor.clearSelection()
+        self.setExtraSelections([mark])
+        self.margin.update()
+
+
+class Margin(QWidget):
+    """Line numbers, and a filled patch with a letter where something was found."""
+
+    def __init__(self, field: TextField) -> None:
+        super().__init__(field)
+        self._field = field
+
+    @property
+    def wide(self) -> int:
+        """Pixels."""
+        digits = max(3, len(str(self._field.blockCount())))
+        return round((3.4 + 1.35 * digits) * self._field.look.u)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        """Only the lines that are seen."""
+        look, u, field = self._field.look, self._field.look.u, self._field
+        with QPainter(self) as painter:
+            painter.fillRect(self.rect(), look.colour("ground"))
+            for block, box in field.shown():
+                number = block.blockNumber() + 1
+                here = number == field.line
+                row = QRectF(0, box.y(), self.width(), box.height())
+                found = field.finding_at(number)
+                if found is not None:
+                    patch = row.adjusted(0.2 * u, 0.1 * u, -(row.width() - 2.2 * u), -0.1 * u)
+                    painter.fillRect(patch, look.colour(TONES[found.severity]))
+                    painter.setPen(look.colour("on_state"))
+                    painter.setFont(look.font(1.8, bold=True))
+                    put(painter, patch, CENTRE, LETTERS[found.severity])
+                painter.setPen(look.colour("text" if here else "soft"))
+                painter.setFont(look.font(1.8, bold=here))
+                put(painter, row.adjusted(2.4 * u, 0, -0.8 * u, 0), RIGHT, str(number))
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """A finger on a number goes to the line."""
+        for block, box in self._field.shown():
+            if box.top() <= event.position().y() < box.bottom():
+                self._field.go_to(block.blockNumber() + 1)
+                self._field.setFocus()
+
+
+_PAGE = frozenset({Qt.Key.Key_Escape, *(Qt.Key(Qt.Key.Key_F1 + n) for n in range(12))})
+_CHORDS = frozenset({Qt.Key.Key_S, Qt.Key.Key_F, Qt.Key.Key_H, Qt.Key.Key_G, Qt.Key.Key_M})
+
+# --- Between the text field and the editor: texts that come, texts that were typed, and whether they differ.
+
+
+class Draft:
+    """Looks at most once a frame at what has been typed, however fast that is."""
+
+    def __init__(self, field: TextField, editor: Editor) -> None:
+        self._field, self._editor = field, editor
+        self._taken = 0  # number of the text of the editor that stands in the field
+        self._stale = False  # the text has changed since it was given to the editor
+        self._taking = False  # a text is being put into the field from here
+        self._text = ""
+        field.textChanged.connect(self._changed)
+
+    def _changed(self) -> None:
+        self._stale = True
+        if not self._taking:
+            self._editor.clear()  # whoever goes on typing has read the answer, and no question stays open
+
+    def now(self) -> str:
+        """What stands in the field."""
+        return self._field.toPlainText()
+
+    def refresh(self) -> None:
+        """Once a frame: take a text that has come; have proved what was typed."""
+        editor, field = self._editor, self._field
+        self._colour()
+        if editor.text_number != self._taken:
+            self._taken = editor.text_number
+            self._taking = True
+            field.put_text(editor.text, afresh=not editor.restored)
+            self._taking = False
+            field.setFocus()
+            self._stale = True
+        if self._stale:
+            self._stale = False
+            self._text = self.now()
+            editor.changed(self._text)
+        field.setReadOnly(editor.stage is not Stage.OPEN)
+
+    def _colour(self) -> None:
+        """By the language that the name of the file tells; new colours are no new text."""
+        document = self._editor.document
+        if document is not None:
+            before, self._taking = self._stale, True
+            self._field.highlighter.speak(dialect_of(document.name))
+            self._taking, self._stale = False, before
+
+    @property
+    def mark(self) -> str:
+        """How the text stands to its file, in a word."""
+        document = self._editor.document
+        if document is None:
+            return ""
+        dirty = self._editor.is_dirty(self._text)
+        if document.protected:
+            return "SAMPLE, CHANGED" if dirty else "SAMPLE"
+        if document.fresh:
+            return "NEW"
+        return "CHANGED" if dirty else ""

@@ -1,0 +1,186 @@
+"""What the editor needs from the rest of the house."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from pathlib import Path
+from typing import Protocol
+
+from app.desk.session import Workshop
+from app.desk.worker import Worker
+from core.store.errors import StoreError
+from core.store.rows import VersionRow
+
+
+class Archive(Protocol):
+    """The versions of programs. Called on the editor's worker only; each raises StoreError."""
+
+    def versions(self, name: str) -> Sequence[VersionRow]:
+        """Every version of a program, newest first."""
+        ...
+
+    def text_of(self, name: str, version: int) -> bytes:
+        """One of them, as it was kept."""
+        ...
+
+    def keep_version(self, name: str, text: bytes, why: str) -> int:
+        """Keep another, and answer its number when it is on the disk; the same text again is no new one."""
+        ...
+
+
+class NoArchive:
+    """Where nothing is kept: scripts, and a desk whose store cannot be opened."""
+
+    def versions(self, _name: str) -> Sequence[VersionRow]:
+        """None."""
+        return ()
+
+    def text_of(self, name: str, version: int) -> bytes:
+        """There is none."""
+        raise StoreError(f"no version {version} of {name} is kept here")
+
+    def keep_version(self, _name: str, _text: bytes, _why: str) -> int:
+        """It is not kept."""
+        return 0
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """``workshop`` proves without keeping anything, ``programs`` is the operator's own folder."""
+
+    workshop: Workshop
+    archive: Archive
+    programs: Path
+    samples: Path
+
+
+# --- What has changed between two versions of a program, line by line.
+
+
+AROUND = 2  # unchanged lines shown about a change
+MOST_COMPARED = 20_000  # lines: above that only the first and last difference are looked for
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of a comparison. ``sign`` is + (new), - (old), blank (both) or … (lines left out)."""
+
+    sign: str
+    old: int  # line number in the old text, 0: it is not there
+    new: int
+    text: str
+
+
+def differences(old: str, new: str) -> tuple[Row, ...]:
+    """The rows from one text to another; empty when they are the same."""
+    if old == new:
+        return ()
+    before, after = old.splitlines(), new.splitlines()
+    rows: list[Row] = []
+    for group in _groups(before, after):
+        if rows or group[0][1] > 0:
+            rows.append(Row("…", 0, 0, ""))
+        for tag, i1, i2, j1, j2 in group:
+            rows += _rows(tag, (i1, i2), (j1, j2), before, after)
+    return tuple(rows)
+
+
+def _groups(before: Sequence[str], after: Sequence[str]) -> list[list[tuple[str, int, int, int, int]]]:
+    if len(before) + len(after) <= MOST_COMPARED:
+        matcher = SequenceMatcher(None, before, after, autojunk=len(before) > 1000)
+        return [list(group) for group in matcher.get_grouped_opcodes(AROUND)]
+    first = next((n for n, (a, b) in enumerate(zip(before, after, strict=False)) if a != b), None)
+    first = min(len(before), len(after)) if first is None else first
+    tail = 0
+    while tail < min(len(before), len(after)) - first and before[-1 - tail] == after[-1 - tail]:
+        tail += 1
+    return [[("replace", first, len(before) - tail, first, len(after) - tail)]]
+
+
+def _rows(
+    tag: str, old: tuple[int, int], new: tuple[int, int], before: Sequence[str], after: Sequence[str]
+) -> list[Row]:
+    if tag == "equal":
+        shift = new[0] - old[0]
+        return [Row(" ", n + 1, n + 1 + shift, before[n]) for n in range(*old)]
+    gone = [Row("-", n + 1, 0, before[n]) for n in range(*old)]
+    return gone + [Row("+", 0, n + 1, after[n]) for n in range(*new)]
+
+
+# --- The versions of the program that is edited, and what each would change.
+
+
+@dataclass(slots=True)
+class History:
+    """``rows`` are the versions, newest first; ``changes`` leads from the marked one to the text on hand."""
+
+    archive: Archive
+    worker: Worker
+    name: str = ""
+    now: str = ""
+    rows: tuple[VersionRow, ...] = ()
+    marked: int = 0
+    text: str | None = None  # of the marked version, once it is read
+    changes: tuple[Row, ...] = ()
+    trouble: str = ""
+    _asked: int = 0
+
+    def look(self, name: str, now: str) -> None:
+        """Open the history of a program; ``now`` is the text in the editor."""
+        self.name, self.now = name, now
+        self.rows, self.marked, self.text, self.changes, self.trouble = (), 0, None, (), ""
+        self.worker.ask(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
+
+    def mark(self, place: int) -> None:
+        """Mark another version and compare it."""
+        if not self.rows:
+            return
+        self.marked = max(0, min(len(self.rows) - 1, place))
+        self.text, self.changes, self.trouble = None, (), ""
+        self._asked += 1
+        asked, name, now = self._asked, self.name, self.now
+        number = self.rows[self.marked].number
+
+        def compare() -> tuple[int, str, tuple[Row, ...]]:
+            text = _lines(self.archive.text_of(name, number))
+            return asked, text, differences(text, now)
+
+        self.worker.ask(compare, self._compared, self._failed)
+
+    @property
+    def number(self) -> int:
+        """The number of the marked version, 0: there is none."""
+        return self.rows[self.marked].number if self.rows else 0
+
+    def words(self) -> str:
+        """What is to be said of the marked version."""
+        if self.trouble:
+            return self.trouble
+        if not self.rows:
+            return "READING" if self.worker.busy else "NO VERSION IS KEPT OF THIS PROGRAM YET"
+        if self.text is None:
+            return "COMPARING"
+        return "" if self.changes else "THE SAME AS IN THE EDITOR"
+
+    def _listed(self, rows: tuple[VersionRow, ...]) -> None:
+        self.rows = rows
+        self.mark(0)
+
+    def _compared(self, answer: tuple[int, str, tuple[Row, ...]]) -> None:
+        asked, text, changes = answer
+        if asked == self._asked:
+            self.text, self.changes = text, changes
+
+    def _failed(self, why: str) -> None:
+        self.trouble = why
+
+
+def _lines(data: bytes) -> str:
+    """A version's text as an editor shows it; bytes of old codes stay apart from each other."""
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return text.rstrip("\x1a").replace("\r\n", "\n").replace("\r", "\n")

@@ -1,0 +1,115 @@
+"""The history: versions at the left, at the right what leads from the marked one to the text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.editor.versions import History, Row
+from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.panel import Panel
+from core.store.rows import VersionRow
+
+ROW = 5.2  # units: a version, a fingertip high
+LINE = 2.9  # units: a line of the comparison
+LIST = 50.0  # units: the list of versions
+INKS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
+
+
+class VersionList(Panel):
+    """Redrawn when the history has another answer; marking one is the history's to do."""
+
+    title = "HISTORY"
+
+    def __init__(self, look: Look, history: History, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._history = history
+        self._shown: tuple[object, ...] = ()
+        self._top = 0  # first line of the comparison
+        self.hide()
+
+    def refresh(self) -> None:
+        """Once a frame."""
+        history = self._history
+        now = (history.rows, history.marked, history.changes, history.words())
+        if now != self._shown:
+            if now[:3] != self._shown[:3]:
+                self._top = 0
+            self._shown = now
+            self.update()
+
+    def look_at(self, lines: int) -> None:
+        """Look further down in the comparison."""
+        most = max(0, len(self._history.changes) - self.lines)
+        self._top = max(0, min(most, self._top + lines))
+        self.update()
+
+    @property
+    def lines(self) -> int:
+        """How many lines of the comparison fit."""
+        return max(1, int((self.height() - 8.0 * self.look.u) / (LINE * self.look.u)))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three lines a notch."""
+        self.look_at(-round(event.angleDelta().y() / 40))
+
+    def draw(self, painter: QPainter) -> None:
+        u, history = self.look.u, self._history
+        rows = max(1, int((self.height() - 4.0 * u) / (ROW * u)))
+        first = max(0, min(history.marked - rows // 2, len(history.rows) - rows))
+        for place, version in enumerate(history.rows[first : first + rows]):
+            box = QRectF(1.2 * u, (3.0 + place * ROW) * u, (LIST - 1.2) * u, ROW * u)
+            self._version(painter, box, version, first + place == history.marked)
+            self.place(box, self._marker(first + place))
+        self._comparison(painter)
+
+    def _version(self, painter: QPainter, box: QRectF, version: VersionRow, marked: bool) -> None:
+        look, u = self.look, self.look.u
+        if marked:
+            painter.fillRect(box, look.colour("lit"))
+        ink = "on_lit" if marked else "text"
+        upper = box.adjusted(u, 0.4 * u, -u, -box.height() / 2)
+        painter.setPen(look.colour(ink))
+        painter.setFont(look.font(2.0, bold=True))
+        put(painter, upper, LEFT, f"{version.number}")
+        painter.setFont(look.font(1.8))
+        put(painter, upper.adjusted(5 * u, 0, 0, 0), LEFT, local_time(version.saved))
+        painter.setPen(look.colour("on_lit" if marked else "soft"))
+        painter.setFont(look.font(1.6))
+        put(painter, upper, RIGHT, f"{version.size} bytes")
+        put(painter, upper.translated(5 * u, upper.height()), LEFT, version.why)
+
+    def _comparison(self, painter: QPainter) -> None:
+        look, u, history = self.look, self.look.u, self._history
+        room = QRectF((LIST + 2) * u, 2.8 * u, self.width() - (LIST + 3.4) * u, 3 * u)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.font(1.8, bold=True))
+        head = history.words() or f"FROM VERSION {history.number} TO THE TEXT IN THE EDITOR"
+        put(painter, room, LEFT, head)
+        row = QRectF(room.x(), 6.2 * u, room.width(), LINE * u)
+        for change in history.changes[self._top : self._top + self.lines]:
+            self._change(painter, row, change)
+            row.translate(0, LINE * u)
+
+    def _change(self, painter: QPainter, row: QRectF, change: Row) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6))
+        put(painter, QRectF(row.x(), row.y(), 5 * u, row.height()), RIGHT, str(change.old or ""))
+        put(painter, QRectF(row.x() + 5 * u, row.y(), 5 * u, row.height()), RIGHT, str(change.new or ""))
+        painter.setPen(look.colour(INKS[change.sign]))
+        painter.setFont(look.font(2.0, bold=change.sign in "+-"))
+        put(painter, QRectF(row.x() + 11.4 * u, row.y(), 2.4 * u, row.height()), LEFT, change.sign)
+        put_raw(painter, row.adjusted(14 * u, 0, 0, 0), LEFT, change.text.expandtabs(4))
+
+    def _marker(self, place: int) -> Callable[[], None]:
+        return lambda: self._history.mark(place)
+
+
+def local_time(saved: str) -> str:
+    """A UTC time of the store as the shop's clock shows it."""
+    return datetime.fromisoformat(saved).astimezone().strftime("%Y-%m-%d  %H:%M:%S")

@@ -1,0 +1,1 @@
+"""The pages TOOL OFFSETS, SECONDARY OFFSETS and ZERO OFFSETS: model and view."""

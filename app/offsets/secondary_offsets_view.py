@@ -1,0 +1,190 @@
+"""F9 SECCMP: 32 secondary offsets in the control's own words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.formats import length
+from app.desk.words import tr
+from app.offsets.offset_values import Mode, signed
+from app.offsets.offsets_view import OffsetPage
+from app.offsets.secondary_dialogue import CHARACTERS
+from app.offsets.secondary_offsets import SeccmpDesk
+from app.screen.entry_panel import Asked
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.pages import Host
+from app.screen.panel import Panel
+from core.store.rows import SecondaryRow
+
+# --- Thirty-two secondary offsets in two columns of sixteen; a finger has eight of them brought near first.
+
+
+ROWS = 16
+NEAR = 8  # offsets that are shown large: half a column
+BAR = 6.8  # units: a finger's height
+# Shares of a column: where the number, and each letter with its figure, end.
+_NUMBER, _X, _Z = 0.09, 0.42, 0.73
+
+
+class OffsetTable(Panel):
+    """The row being changed is filled, the last changed has a bar.
+
+    Sixteen rows leave a row a third of a finger's width, so that a finger on the table brings the eight
+    offsets around it near, and the next one chooses.
+    """
+
+    def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._choose = choose
+        self.offsets: Mapping[int, SecondaryRow] = {}
+        self._number = 0
+        self._marked: frozenset[int] = frozenset()
+        self._mode = Mode()
+        self.near = 0  # the first number of those that are shown large; 0: all are shown
+
+    def show_offsets(
+        self, offsets: Mapping[int, SecondaryRow], number: int, marked: Collection[int], mode: Mode
+    ) -> None:
+        """The table, the row that is being changed (0: none), those changed last, and the unit."""
+        if number:
+            self.bring_near(0)
+        shown = (offsets, number, frozenset(marked), mode)
+        if shown != (self.offsets, self._number, self._marked, self._mode):
+            self.offsets, self._number, self._marked, self._mode = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        unit = tr("MM") if self._mode.metric else tr("INCH")
+        self.frame(painter, f"{tr('SECONDARY OFFSETS  ·  X STORED AS A RADIUS')}  ·  {unit}")
+        room = self.inside().adjusted(-0.6 * self.look.u, 0, 0.6 * self.look.u, 0.4 * self.look.u)
+        if self.near:
+            self._draw_near(painter, room)
+        else:
+            self._draw_all(painter, room)
+
+    def bring_near(self, first: int) -> None:
+        """Show eight offsets from this one on large, 0: all of them."""
+        if first != self.near:
+            self.near = first
+            self.update()
+
+    def _draw_all(self, painter: QPainter, room: QRectF) -> None:
+        for number, box in enumerate(_boxes(room, ROWS, 2.0 * self.look.u), start=1):
+            self._row(painter, box, number, 1.0)
+        for at, box in enumerate(_boxes(room, ROWS // NEAR, 2.0 * self.look.u)):
+            self.place(box, partial(self.bring_near, at * NEAR + 1))
+
+    def _draw_near(self, painter: QPainter, room: QRectF) -> None:
+        look, u = self.look, self.look.u
+        bar = QRectF(room.x(), room.bottom() - BAR * u, room.width(), BAR * u)
+        rows = room.adjusted(0, 0, 0, -(BAR + 0.6) * u)
+        for number, box in enumerate(_boxes(rows, NEAR // 2, 0.8 * u), start=self.near):
+            spot = box.adjusted(0, 0, 0, -0.6 * u)
+            painter.fillRect(spot, look.colour("key"))
+            self._row(painter, spot, number, 1.25)
+            self.place(spot, partial(self._choose_near, number))
+        painter.fillRect(bar, look.colour("key"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.2, bold=True))
+        put(painter, bar, CENTRE, tr("ALL 32 OFFSETS"))
+        self.place(bar, partial(self.bring_near, 0))
+
+    def _choose_near(self, number: int) -> None:
+        self.bring_near(0)
+        self._choose(number)
+
+    def _row(self, painter: QPainter, box: QRectF, number: int, size: float) -> None:
+        """``size``: of the letters, 1 where all are shown."""
+        look, u = self.look, self.look.u
+        here = number == self._number
+        if here:
+            painter.fillRect(box, look.colour("here"))
+        if number in self._marked:
+            painter.fillRect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), look.colour("lit"))
+        offset = self.offsets.get(number)
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(1.9 * size, bold=True))
+        wide = box.width()
+        put(painter, QRectF(box.x(), box.y(), _NUMBER * wide - u, box.height()), RIGHT, str(number))
+        self._figures(painter, box, offset or SecondaryRow(), size, bold=here or offset is not None)
+
+    def _figures(self, painter: QPainter, box: QRectF, offset: SecondaryRow, size: float, bold: bool) -> None:
+        x, z, r = offset
+        metric, wide = self._mode.metric, box.width()
+        cells = (
+            ("X:", signed(x, metric), _NUMBER, _X),
+            ("Z:", signed(z, metric), _X, _Z),
+            ("R:", length(r, metric), _Z, 1.0),
+        )
+        u = self.look.u
+        for letter, figure, left, right in cells:
+            at = QRectF(box.x() + left * wide, box.y(), (right - left) * wide - 1.2 * u, box.height())
+            self._cell(painter, at, letter, figure, size, bold)
+
+    def _cell(self, painter: QPainter, at: QRectF, letter: str, figure: str, size: float, bold: bool) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.8 * size, bold=True))
+        put(painter, QRectF(at.x(), at.y(), 2.4 * size * u, at.height()), LEFT, letter)
+        painter.setPen(look.colour("text" if bold else "soft"))
+        room = at.adjusted(2.4 * size * u, 0, 0, 0)
+        painter.setFont(look.fit(figure, 2.0 * size, room.width(), bold=bold))
+        put(painter, room, RIGHT, figure)
+
+
+def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
+    """Two columns of so many rows, downwards first."""
+    high, wide = room.height() / rows, (room.width() - gap) / 2
+    return [
+        QRectF(room.x() + column * (wide + gap), room.y() + row * high, wide, high)
+        for column in range(2)
+        for row in range(rows)
+    ]
+
+
+class SeccmpPage(OffsetPage):
+    """F9, secondary offsets."""
+
+    NAME = pages.SECCMP
+    LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        self.model = SeccmpDesk(host.desk, host.desk.book)
+        super().__init__(host, parent, self.model)
+        self.table = OffsetTable(self.look, self.model.dialogue.choose, self)
+
+    def board(self) -> QWidget:
+        """The table of this page."""
+        return self.table
+
+    def takes(self, key: str) -> bool:
+        """Figures, signs, and C."""
+        return key in CHARACTERS or key == "C"
+
+    def escape(self) -> bool:
+        """Eight offsets that were brought near go back first."""
+        if self.table.near:
+            self.table.bring_near(0)
+            return True
+        return super().escape()
+
+    def leave(self) -> bool:
+        """The whole table stands here the next time."""
+        self.table.bring_near(0)
+        return super().leave()
+
+    def show_offsets(self) -> None:
+        """The table and the question as they are now."""
+        model, dialogue = self.model, self.model.dialogue
+        marked = {change.number for change in model.ledger.last}
+        self.table.show_offsets(model.book.secondary, dialogue.number, marked, dialogue.mode)
+        which = tr("Secondary offset number:")
+        if dialogue.number:
+            which = f"{which} {dialogue.number}"
+        self.asked.show_asked(Asked(which, dialogue.question, dialogue.text, model.old_to_new, model.foot))

@@ -1,0 +1,123 @@
+"""A chooser of folders by keys and fingers: places first, then folders and the programs in them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.shelf import ENDINGS
+
+# --- USB sticks and other removable media: where the system has mounted them, and how much room they have.
+
+
+ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
+
+
+@dataclass(frozen=True, slots=True)
+class Stick:
+    """One medium: its label and where it is mounted; ``free`` bytes."""
+
+    label: str
+    path: Path
+    free: int
+
+
+def sticks(
+    roots: Sequence[Path] = ROOTS, mounted: Callable[[Path], bool] = os.path.ismount
+) -> tuple[Stick, ...]:
+    """What is plugged in and mounted now, by label; a folder that is no mount is a medium that has gone."""
+    found = {path: Stick(path.name, path, _free(path)) for root in roots for path in _mounts(root, mounted)}
+    return tuple(sorted(found.values(), key=lambda stick: stick.label.lower()))
+
+
+def _mounts(root: Path, mounted: Callable[[Path], bool]) -> Iterator[Path]:
+    """Two levels: /media/STICK of some systems, /media/USER/STICK of others."""
+    for path in _folders(root):
+        if mounted(path):
+            yield path
+        else:
+            yield from (below for below in _folders(path) if mounted(below))
+
+
+def _folders(path: Path) -> list[Path]:
+    try:
+        return sorted(below for below in path.iterdir() if below.is_dir())
+    except OSError:
+        return []
+
+
+def _free(path: Path) -> int:
+    try:
+        return shutil.disk_usage(path).free
+    except OSError:
+        return 0
+
+
+UP = ".."
+MOST = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """One line: a place, a folder, the way up, or a program."""
+
+    name: str
+    path: Path
+    folder: bool
+    size: int = 0
+
+
+@dataclass(slots=True)
+class Chooser:
+    """``at`` is the folder that is looked into, None: the list of places. ``look`` takes its time."""
+
+    home: Path
+    plugged: Callable[[], Sequence[Stick]] = sticks
+    at: Path | None = None
+    top: Path | None = None  # the place it belongs to; the way up ends there
+    spots: tuple[Spot, ...] = ()
+    marked: int = 0
+    trouble: str = field(default="")
+
+    def look(self) -> tuple[Spot, ...]:
+        """What is there now; raises OSError when the folder cannot be read. On a worker."""
+        if self.at is None:
+            places = [Spot(stick.label, stick.path, True, stick.free) for stick in self.plugged()]
+            return (*places, Spot("THIS CONTROL", self.home, True))
+        return (Spot(UP, self.at.parent, True), *_inside(self.at))
+
+    def found(self, spots: tuple[Spot, ...]) -> None:
+        """Take what ``look`` has found."""
+        self.spots, self.trouble = spots, ""
+        self.marked = min(self.marked, max(0, len(spots) - 1))
+
+    def go(self, spot: Spot) -> None:
+        """Into a folder, or up; from the top of a place to the list of places."""
+        self.marked = 0
+        if spot.name == UP and self.at == self.top:
+            self.at = self.top = None
+        else:
+            if self.at is None:
+                self.top = spot.path
+            self.at = spot.path
+
+    @property
+    def here(self) -> Spot | None:
+        """The marked line."""
+        return self.spots[self.marked] if self.marked < len(self.spots) else None
+
+    @property
+    def programs(self) -> tuple[Path, ...]:
+        """The programs of the folder that is looked into."""
+        return tuple(spot.path for spot in self.spots if not spot.folder)
+
+
+def _inside(folder: Path) -> list[Spot]:
+    paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MOST]
+    seen = [path for path in paths if not path.name.startswith(".")]
+    folders = [Spot(path.name, path, True) for path in seen if path.is_dir()]
+    files = [path for path in seen if path.suffix.lower() in ENDINGS and path.is_file()]
+    return folders + [Spot(path.name, path, False, path.stat().st_size) for path in files]

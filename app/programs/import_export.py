@@ -1,0 +1,327 @@
+"""Import and export: the chooser is open, something is asked or under way, and what came of it is told."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Protocol
+
+from app.desk.keep import Keep
+from app.desk.words import tr
+from app.desk.worker import Worker
+from app.programs.file_changes import FileError, good_name, taken
+from app.programs.folder_chooser import Chooser
+from app.programs.program_rows import chooser_sheet
+from app.programs.whole_file import SavingError, present, write_whole
+from app.special.section import Key, Sheet
+from core.language.source import SourceError, load_source
+from core.store.errors import StoreError
+
+# --- Programs in and out by folder and USB stick. On a worker.
+
+
+LARGEST = 50_000_000  # bytes: no program is larger
+
+Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """What has come of it: names copied, names that stand there and differ, and what proving found."""
+
+    done: tuple[str, ...] = ()
+    standing: tuple[str, ...] = ()
+    found: tuple[str, ...] = ()
+
+
+def brought_in(sources: Sequence[Path], folder: Path, keep: Keep, check: Check, *, replace: bool) -> Moved:
+    """Programs into the operator's folder, each proved. Raises FileError.
+
+    Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
+    """
+    texts = {good_name(path.name, path): _program(path) for path in sources}
+    standing = _differing(texts, folder)
+    if standing and not replace:
+        return Moved(standing=standing)
+    found = []
+    for name, text in texts.items():
+        target = folder / (taken(folder, name) or name)
+        _keep_old(target, keep, text)
+        _save(target, text)
+        if trouble := check(target):
+            found.append(f"{target.name}: {trouble}")
+    return Moved(tuple(texts), (), tuple(found))
+
+
+def taken_out(sources: Sequence[Path], folder: Path, *, replace: bool) -> Moved:
+    """Programs to a folder or stick, whole and on the medium when this comes back. Raises FileError."""
+    texts = {path.name: _bytes(path) for path in sources}
+    standing = _differing(texts, folder)
+    if standing and not replace:
+        return Moved(standing=standing)
+    for name, text in texts.items():
+        _put(folder / (taken(folder, name) or name), text)
+    _settle(folder)
+    return Moved(tuple(texts))
+
+
+def _program(path: Path) -> bytes:
+    """The text, read as a program first: what is none does not come in."""
+    data = _bytes(path)
+    try:
+        load_source(path)
+    except SourceError as error:
+        raise FileError(f"{path.name} IS NO PROGRAM: {error}") from error
+    return data
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        if path.stat().st_size > LARGEST:
+            raise FileError(f"{path.name} IS LARGER THAN ANY PROGRAM ({LARGEST // 1_000_000} MB)")
+        return path.read_bytes()
+    except OSError as error:
+        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
+
+
+def _differing(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
+    """The names that stand in the folder with another text."""
+    found = []
+    for name, text in texts.items():
+        other = taken(folder, name)
+        if other and _bytes(folder / other) != text:
+            found.append(other)
+    return tuple(found)
+
+
+def _keep_old(target: Path, keep: Keep, text: bytes) -> None:
+    try:
+        old = present(target)
+        if old is not None and old != text:
+            keep.keep_text(target.name, old, "replaced by an import")
+    except (StoreError, SavingError) as error:
+        raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
+
+
+def _save(target: Path, text: bytes) -> None:
+    try:
+        write_whole(target, text)
+    except SavingError as error:
+        raise FileError(str(error)) from error
+
+
+def _put(target: Path, text: bytes) -> None:
+    """The old file or the new one, whole, at every moment; also where a stick is pulled out."""
+    try:
+        handle, name = tempfile.mkstemp(prefix=".", suffix=".part", dir=target.parent)
+        beside = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            if beside.read_bytes() != text:
+                raise FileError(f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK")
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+    except OSError as error:
+        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
+
+
+def _settle(folder: Path) -> None:
+    """Until the folder itself is on the medium."""
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+    except OSError as error:
+        raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
+    os.sync()
+
+
+BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
+PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
+
+
+class Speaker(Protocol):
+    """Who says what came of it."""
+
+    notice: str
+
+    def say(self, text: str) -> None: ...
+
+    def ask(self, question: str, yes: Callable[[], None]) -> None: ...
+
+    def clear(self) -> None: ...
+
+
+def _nobody() -> None:
+    """Nobody waits for it."""
+
+
+@dataclass(slots=True)
+class Traffic:
+    """``check`` proves a program that has come in; ``finished`` is told when the list is to be read again."""
+
+    desk: Speaker
+    own: Path
+    keep: Keep
+    worker: Worker
+    check: Check
+    chooser: Chooser
+    finished: Callable[[], None] = _nobody
+    open: bool = False
+    out: bool = False
+    all: tuple[Path, ...] = ()  # what the list shows
+    one: Path | None = None  # what is marked in it
+    _asked: tuple[Path, ...] = ()  # what is being carried
+    _at: Path = Path()  # and where
+
+    def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
+        """Open the chooser at the list of places."""
+        self.open, self.out, self.all, self.one = True, out, shown, marked
+        self._asked = ()
+        self.chooser.at = self.chooser.top = None
+        self.chooser.marked = 0
+        self._look()
+
+    def shut(self) -> None:
+        """Close the chooser."""
+        self.open, self._asked = False, ()
+
+    def _look(self) -> None:
+        self.worker.ask(self.chooser.look, self.chooser.found, self._unread)
+
+    def _unread(self, why: str) -> None:
+        self.desk.say(f"REFUSED: {why}")
+        self.chooser.at = self.chooser.top = None
+        self.worker.ask(self.chooser.look, self.chooser.found, self.desk.say)
+
+    def sheet(self) -> Sheet:
+        """The folder that is looked into."""
+        name = self.one.name if self.one else ""
+        return chooser_sheet(self.chooser, f"EXPORT {name}" if self.out else "IMPORT")
+
+    def keys(self) -> Mapping[str, Key]:
+        """One, all, look again."""
+        if self.out:
+            return {
+                "F2": Key("LOOK", self._look),
+                "F4": Key("ONE HERE", self._one_here),
+                "F5": Key("ALL HERE", lambda: self._send(self.all)),
+            }
+        return {"F2": Key("LOOK", self._look), "F5": Key("ALL", lambda: self._send(self.chooser.programs))}
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return opens a folder or takes a program."""
+        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
+        if key in steps:
+            self.choose(self.chooser.marked + steps[key])
+        elif key == "Enter":
+            self._enter()
+        else:
+            return False
+        return True
+
+    def choose(self, row: int) -> None:
+        """Mark a line; on the marked one a finger is Return."""
+        self._asked = ()
+        self.desk.clear()
+        self.chooser.marked = max(0, min(len(self.chooser.spots) - 1, row))
+
+    def touch(self, row: int) -> None:
+        """A finger on a line."""
+        if row == self.chooser.marked:
+            self._enter()
+        else:
+            self.choose(row)
+
+    def _enter(self) -> None:
+        spot = self.chooser.here
+        if spot is None:
+            return
+        if spot.folder:
+            self._asked = ()
+            self.desk.clear()
+            self.chooser.go(spot)
+            self._look()
+        elif self.out:
+            self.desk.say("F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS")
+        else:
+            self._send((spot.path,))
+
+    def _one_here(self) -> None:
+        if self.one is not None:
+            self._send((self.one,))
+
+    def escape(self) -> None:
+        """Up to the list of places, then away."""
+        if self.chooser.at is None:
+            self.shut()
+        else:
+            self.chooser.at = self.chooser.top = None
+            self._look()
+        self._asked = ()
+
+    def _send(self, paths: tuple[Path, ...]) -> None:
+        if self.worker.busy:
+            self.desk.say(BUSY)
+        elif self.chooser.at is None:
+            self.desk.say(PLACE_FIRST)
+        elif not paths:
+            self.desk.say("NO PROGRAM IS IN THIS FOLDER")
+        else:
+            self._carry(paths, self.chooser.at, replace=False)
+
+    def _carry(self, paths: tuple[Path, ...], at: Path, *, replace: bool) -> None:
+        if self.worker.busy:
+            self.desk.say(BUSY)
+            return
+        self._asked = paths
+        self._at = at
+        self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
+        if self.out:
+            self.worker.ask(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
+        else:
+            own, keep, check = self.own, self.keep, self.check
+            self.worker.ask(
+                lambda: brought_in(paths, own, keep, check, replace=replace), self._done, self._failed
+            )
+
+    def _done(self, moved: Moved) -> None:
+        if moved.standing:
+            names = ", ".join(moved.standing[:3]) + (" …" if len(moved.standing) > 3 else "")
+            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP")
+            again = partial(self._carry, self._asked, self._at, replace=True)
+            self.desk.ask(asked.format(names=names), again)
+            return
+        self._asked = ()
+        count = len(moved.done)
+        if self.out:
+            words = tr("{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE").format(
+                count=count
+            )
+        elif moved.found:
+            words = tr("{count} IMPORTED; NOT ALL PROVE: {found}").format(count=count, found=moved.found[0])
+        else:
+            words = tr("{count} IMPORTED AND PROVED WITHOUT AN ERROR").format(count=count)
+        self.desk.say(words)
+        self._look()
+        self.finished()
+
+    def _failed(self, why: str) -> None:
+        self._asked = ()
+        self.desk.say(f"REFUSED: {why}")
+
+    def prompt(self) -> str:
+        """What the keys do here."""
+        if self.out:
+            return "RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK"
+        return "RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK"

@@ -1,0 +1,200 @@
+"""The list of programs: find, sort, look, load, copy, rename, delete, import, export. No Qt, no waiting."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.keep import Keep
+from app.desk.session import Loaded
+from app.desk.worker import Worker
+from app.programs.copy_rename_delete import COPY, NONE, RENAME, Changer, FilesHost
+from app.programs.import_export import Traffic
+from app.programs.preview import Preview
+from app.programs.program_rows import ORDERS, Program, programs, sheet_of, sorted_by
+from app.special.section import Entry, Key, Sheet
+from core.executor.snapshot import State
+
+
+@dataclass(slots=True)
+class FilesDesk:
+    """``own`` is the operator's folder; ``loaded`` tells what is on the desk."""
+
+    desk: FilesHost
+    own: Path
+    keep: Keep
+    worker: Worker
+    preview: Preview
+    traffic: Traffic
+    loaded: Callable[[], Loaded]
+    order: str = "NAME"
+    marked: int = 0
+    find: Entry = field(default_factory=lambda: Entry(words=True))
+    all: tuple[Program, ...] = ()
+    shown: tuple[Program, ...] = ()
+    changer: Changer = field(init=False)
+    _after: str = ""  # the name to mark when the list has been read again
+
+    def __post_init__(self) -> None:
+        self.traffic.finished = self.look_again
+        self.changer = Changer(
+            self.desk, self.own, self.keep, self.worker, self.loaded, lambda: self.here, self._changed
+        )
+
+    @property
+    def question(self) -> str:
+        """What is asked about a name; empty: nothing."""
+        return self.changer.question
+
+    @property
+    def entry(self) -> Entry:
+        """The name that is being typed."""
+        return self.changer.entry
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    def opened(self) -> None:
+        """The page comes up: read the folders and the records."""
+        self._after = self.loaded().name
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Read the folders again; the answer comes with a later frame."""
+        self.worker.ask(lambda: programs(self.desk.shelf, self.own, self.keep), self._found, self._failed)
+
+    def look(self) -> None:
+        """Once a frame: take what the worker has found."""
+        self.worker.poll()
+
+    def _found(self, found: tuple[Program, ...]) -> None:
+        name = self._after or (self.here.name if self.here else "")
+        self._after, self.all = "", found
+        self._narrow(name)
+
+    def _failed(self, why: str) -> None:
+        self.desk.say(f"REFUSED: {why}")
+
+    def _narrow(self, keep: str = "") -> None:
+        part = self.find.text.strip().lower()
+        found = [program for program in self.all if part in program.name.lower()]
+        self.shown = sorted_by(self.order, found)
+        names = [program.name for program in self.shown]
+        self.marked = names.index(keep) if keep in names else 0
+
+    @property
+    def here(self) -> Program | None:
+        """The marked program."""
+        return self.shown[self.marked] if self.marked < len(self.shown) else None
+
+    def sheet(self) -> Sheet:
+        """The list, or the chooser of folders over it."""
+        return self.traffic.sheet() if self.traffic.open else sheet_of(self)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """Function keys of this moment."""
+        if self.traffic.open:
+            return self.traffic.keys()
+        return {
+            "F2": Key("SORT", self.sort),
+            "F4": Key("COPY", lambda: self.changer.ask(COPY)),
+            "F5": Key("RENAME", lambda: self.changer.ask(RENAME)),
+            "F6": Key("DELETE", self.changer.delete),
+            "F8": Key("IMPORT", lambda: self._transfer(out=False)),
+            "F9": Key("EXPORT", lambda: self._transfer(out=True)),
+        }
+
+    @property
+    def may_type(self) -> bool:
+        """Letters look for a name; while something is under way they keep their meaning, H above all."""
+        return self.desk.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text now."""
+        return not self.traffic.open and self.may_type and self.find.takes(key)
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return loads or answers, letters find."""
+        if self.traffic.open:
+            return self.traffic.typed(key)
+        steps = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}
+        if key in steps and not self.question:
+            self.choose(self.marked + steps[key])
+        elif key == "Enter":
+            self.changer.answer() if self.question else self.load()
+        elif self.may_type and (self.entry if self.question else self.find).type(key):
+            self.desk.clear()
+            if not self.question:
+                self._narrow(self.here.name if self.here else "")
+        else:
+            return False
+        return True
+
+    def choose(self, row: int) -> None:
+        """Mark a row."""
+        if not self.question and self.shown:
+            self.desk.clear()
+            self.marked = max(0, min(len(self.shown) - 1, row))
+
+    def escape(self) -> bool:
+        """One step back; False when the page may be left."""
+        if self.desk.notice:
+            self.desk.clear()
+        elif self.traffic.open:
+            self.traffic.escape()
+        elif self.question:
+            self.changer.question = ""
+        elif self.find.text:
+            self.find.text = ""
+            self._narrow(self.here.name if self.here else "")
+        else:
+            return False
+        return True
+
+    def leave(self) -> None:
+        """The page goes: nothing stays half asked."""
+        self.changer.question = self.find.text = ""
+        self.traffic.shut()
+        self.preview.of(None)
+        self._narrow(self.here.name if self.here else "")
+
+    def sort(self) -> None:
+        """By the next order."""
+        names = list(ORDERS)
+        self.order = names[(names.index(self.order) + 1) % len(names)]
+        self._narrow(self.here.name if self.here else "")
+
+    def load(self) -> bool:
+        """The marked program becomes that of the desk; True when it does."""
+        if self.here is None:
+            self.desk.say(NONE)
+            return False
+        return self.desk.may_choose() and self.desk.choose(str(self.here.path))
+
+    def _changed(self, name: str) -> None:
+        self._after = name
+        self.look_again()
+
+    def _transfer(self, *, out: bool) -> None:
+        if out and self.here is None:
+            self.desk.say(NONE)
+        else:
+            self.desk.clear()
+            self.traffic.begin(tuple(p.path for p in self.shown), self.here.path if self.here else None, out)
+
+    def prompt(self) -> str:
+        """What can be done now."""
+        if self.traffic.open:
+            return self.traffic.prompt()
+        if self.question:
+            return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
+        if not self.may_type:
+            return "RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS"
+        return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
+
+    def close(self) -> None:
+        """End the workers."""
+        self.worker.close()
+        self.preview.close()

@@ -1,0 +1,189 @@
+"""The list of programs at the left; picture and record of the marked one at the right."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.session import Loaded
+from app.desk.swivel.telling import at_line
+from app.desk.view import View
+from app.programs.copy_rename_delete import NONE
+from app.programs.program_list import FilesDesk
+from app.programs.program_rows import Program, details_of
+from app.screen.letter_keys import LetterPad
+from app.screen.look import LEFT, Look, put
+from app.screen.pages import Doings, Host
+from app.screen.panel import Panel
+from app.screen.pathview import PathView
+from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.swivel.view import SwivelView
+from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.desk.picture import Picture
+
+# --- What is known of the marked program: runs, parts, times, proof.
+
+
+LABEL = 11.0  # units
+
+
+class RecordPanel(Panel):
+    """Two columns: what, and its figure."""
+
+    title = "RECORD"
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._shown: tuple[Program | None, str] = (None, "")
+
+    def show_program(self, program: Program | None, trouble: str) -> None:
+        """Another program, or what is wrong with its picture."""
+        if (program, trouble) != self._shown:
+            self._shown = (program, trouble)
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        program, trouble = self._shown
+        rows = list(details_of(program)) if program is not None else []
+        if trouble:
+            rows.append(("PREVIEW", trouble))
+        room = self.inside()
+        high = min(3.0 * u, room.height() / max(1, len(rows)))
+        for number, (label, text) in enumerate(rows):
+            y = room.y() + number * high
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(label, 1.6, (LABEL - 0.6) * u, bold=True))
+            put(painter, QRectF(room.x(), y, (LABEL - 0.6) * u, high), LEFT, label)
+            value = QRectF(room.x() + LABEL * u, y, room.width() - LABEL * u, high)
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.fit(text, 1.9, value.width(), bold=True))
+            put(painter, value, LEFT, text)
+
+
+SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
+
+
+class PreviewPath(PathView):
+    """The path of a program that is only looked at."""
+
+    title = "PREVIEW"
+
+
+class PreviewSpace(SwivelView):
+    """The same for a mill: table, workpiece and path."""
+
+    title = "PREVIEW"
+
+
+class FilesPage(ListPage):
+    """The model decides; this shows it and hands the keys on."""
+
+    NAME = pages.PROGRAMS
+    model: FilesDesk
+
+    def __init__(self, host: Host, model: FilesDesk, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.table = SheetPanel(self.look, self._chosen, self)
+        self.path = PreviewPath(self.look, self)
+        self.space = PreviewSpace(self.look, self)
+        self._shown: Picture | None = None
+        self.record = RecordPanel(self.look, self)
+        self.letters = LetterPad(self.look, self._touched, self)
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the list or of the chooser."""
+        own = {"F3": "" if self.model.traffic.open else "EDIT"}
+        return self.labels_of(own, self.model.keys())
+
+    def doings(self) -> Doings:
+        """The keys of this moment."""
+        keys = self.model.keys()
+        own = {} if self.model.traffic.open else {"F3": self._edit}
+        return {**own, **{name: partial(self._do, name) for name in keys}}
+
+    def _do(self, name: str) -> None:
+        self.model.keys()[name].action()
+
+    def _edit(self) -> None:
+        """The marked program, and no other one; to look at it there does not load it."""
+        here = self.model.here
+        if here is None or self.desk.editor is None:
+            self.desk.say(NONE)
+            return
+        self.desk.editor.wanted = str(here.path)
+        self.host.go(pages.EDITOR)
+
+    def _chosen(self, row: int) -> None:
+        model = self.model
+        if model.traffic.open:
+            model.traffic.touch(row)
+        elif row == model.marked:
+            self.typed("Enter")
+        else:
+            model.choose(row)
+
+    def _touched(self, key: str) -> None:
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
+
+    def typed(self, key: str) -> bool:
+        """Return on a program loads it and leads to Automatic; everything else is the model's."""
+        model = self.model
+        if key == "Enter" and not model.traffic.open and not model.question:
+            if model.load():
+                self.host.go(pages.AUTOMATIC)
+            return True
+        return model.typed(key)
+
+    def has_field(self) -> bool:
+        """The name that is looked for or asked."""
+        return not self.model.traffic.open and self.model.may_type
+
+    def dress(self) -> None:
+        """The path is drawn anew."""
+        self.path.restart()
+
+    def refresh(self, _snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """List, picture and record of this moment."""
+        model = self.model
+        model.look()
+        self.table.show_sheet(model.sheet())
+        here = model.here
+        self._show_picture(model.preview.of(here))
+        self.letters.setVisible(bool(model.question or model.find.text) and not model.traffic.open)
+        self.record.show_program(here, "DRAWING …" if model.preview.busy else model.preview.trouble)
+
+    def _show_picture(self, picture: Picture | None) -> None:
+        scene = picture.scene if picture is not None else None
+        if picture is not self._shown:
+            self._shown = picture
+            self.space.show_scene(scene)
+            self.space.setVisible(scene is not None)
+            self.path.show_picture(picture if scene is None else None)
+        if scene is None:
+            self.path.advance()
+        else:
+            self.space.show_instant(at_line(scene, 0), "")
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """List beside picture over record."""
+        u = self.look.u
+        gap = max(4, round(0.7 * u))
+        left, low = round(SHARE * self.width()), round(RECORD * u)
+        right = self.width() - left - gap
+        self.table.setGeometry(0, 0, left, self.height())
+        for part in (self.path, self.space):
+            part.setGeometry(left + gap, 0, right, self.height() - low - gap)
+        self.record.setGeometry(left + gap, self.height() - low, right, low)
+        self.letters.setGeometry(self.record.geometry())
+        self.letters.raise_()

@@ -1,1 +1,0 @@
-"""The F3 editor on the screen."""

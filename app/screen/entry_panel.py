@@ -1,0 +1,131 @@
+"""The dialogue under the table: which offset, what is asked, what was typed, and old → new."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QFontMetricsF, QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.screen.look import CENTRE, LEFT, Look, put, put_raw
+from app.screen.panel import Panel
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """The words of one moment."""
+
+    which: str = ""
+    question: str = ""
+    text: str = ""
+    change: str = ""
+    foot: str = ""
+
+
+class AskedPanel(Panel):
+    """Redrawn when one of its words has changed."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.asked = Asked()
+
+    def show_asked(self, asked: Asked) -> None:
+        """The model's words of now."""
+        if asked != self.asked:
+            self.asked = asked
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u, asked = self.look, self.look.u, self.asked
+        room = self.area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(asked.which, 1.9, 27 * u))
+        put(painter, QRectF(room.x(), room.y(), 27 * u, 3.2 * u), LEFT, asked.which)
+        left = 28 * u if asked.which else 0.0
+        change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.fit(asked.change, 2.0, change.width(), bold=True))
+        put(painter, change, LEFT, asked.change)
+        self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.fit(asked.foot, 1.8, room.width()))
+        put(painter, QRectF(room.x(), room.bottom() - 3.0 * u, room.width(), 3.0 * u), LEFT, asked.foot)
+
+    def _ask(self, painter: QPainter, row: QRectF) -> None:
+        look, u, asked = self.look, self.look.u, self.asked
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(asked.question, 2.4, 36 * u, bold=True))
+        put(painter, QRectF(row.x(), row.y(), 36 * u, row.height()), LEFT, asked.question)
+        if not asked.question:
+            return
+        box = row.adjusted(37 * u, 0.2 * u, 0, -0.2 * u)
+        painter.setPen(look.pen("accent", 0.2))
+        painter.setBrush(look.colour("ground"))
+        painter.drawRect(box)
+        draw_entry(painter, look, box.adjusted(u, 0, -u, 0), asked.text)
+
+
+def draw_entry(painter: QPainter, look: Look, inside: QRectF, text: str, *, cursor: bool = True) -> None:
+    """What is typed, and the bar behind it."""
+    u = look.u
+    font = look.fit(text, 2.8, inside.width() - u, bold=True)
+    painter.setFont(font)
+    painter.setPen(look.colour("text"))
+    put_raw(painter, inside, LEFT, text)
+    if cursor:
+        at = inside.x() + min(QFontMetricsF(font).horizontalAdvance(text), inside.width() - u) + 0.3 * u
+        painter.fillRect(QRectF(at, inside.center().y() - 1.5 * u, 0.3 * u, 3.0 * u), look.colour("accent"))
+
+
+# --- A pad of large keys, so that an offset can be entered with a finger alone.
+
+
+_KEYS = (
+    ("7", "8", "9", "/"),
+    ("4", "5", "6", "*"),
+    ("1", "2", "3", "-"),
+    ("0", ".", "(", "+"),
+    ("C", "Esc", ")", "Back"),
+)
+_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "RETURN"}
+_FREE = "C"  # the place that a page gives its own meaning
+
+
+class KeyPad(Panel):
+    """Every key does what the key of the keyboard does."""
+
+    def __init__(
+        self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
+    ) -> None:
+        """``own``: a key of this page and the word on it; None leaves its place empty."""
+        super().__init__(look, parent)
+        self._press, self._own = press, own
+
+    def draw(self, painter: QPainter) -> None:
+        u = self.look.u
+        gap = 0.6 * u
+        high = (self.height() + gap) / (len(_KEYS) + 1)
+        wide = (self.width() + gap) / len(_KEYS[0])
+        for row, keys in enumerate(_KEYS):
+            for column, key in enumerate(keys):
+                box = QRectF(column * wide, row * high, wide - gap, high - gap)
+                if key != _FREE:
+                    self._key(painter, box, key, _SHOWN.get(key, key.upper()))
+                elif self._own is not None:
+                    self._key(painter, box, *self._own)
+        foot = QRectF(0, len(_KEYS) * high, self.width(), high - gap)
+        self._key(painter, foot, "Enter", _SHOWN["Enter"])
+
+    def _key(self, painter: QPainter, box: QRectF, key: str, shown: str) -> None:
+        look = self.look
+        figure = key.isdigit() or key == "."
+        painter.fillRect(box, look.colour("key"))
+        painter.setPen(look.colour("text" if figure else "accent"))
+        painter.setFont(look.fit(shown, 3.0, box.width() - look.u, bold=True))
+        put(painter, box, CENTRE, shown)
+        self.place(box, partial(self._press, key))

@@ -1,1 +1,0 @@
-"""F8 and F9: tables of offsets with their dialogue."""

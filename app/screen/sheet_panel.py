@@ -1,0 +1,213 @@
+"""A table with a head line, lamps, a marked row, notes, and one question below."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Protocol
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.screen.look import LEFT, RIGHT, Look, put, put_raw
+from app.screen.pages import Host, Page
+from app.screen.panel import Panel
+from app.special.section import Key, Row, Sheet
+
+ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
+LAMP = 3.2
+EMPTY = Sheet("", (), (), ())
+
+
+class SheetPanel(Panel):
+    """Draws any sheet; a finger on a row chooses it. The mark stays in sight."""
+
+    def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._choose = choose
+        self.sheet = EMPTY
+        self.top = 0
+
+    def show_sheet(self, sheet: Sheet) -> None:
+        """Redraw when something has changed."""
+        if sheet != self.sheet:
+            if sheet.title.split("  ·  ")[0] != self.sheet.title.split("  ·  ")[0]:
+                self.top = 0
+            self.sheet = sheet
+            self.update()
+
+    @property
+    def rows(self) -> int:
+        """How many rows fit."""
+        foot = len(self.sheet.notes) * NOTE + (ASKED if self.sheet.question else 0.0)
+        return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / ROW))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three rows a notch."""
+        self._look_at(self.top - round(event.angleDelta().y() / 40))
+
+    def _look_at(self, top: int) -> None:
+        self.top = max(0, min(top, len(self.sheet.rows) - self.rows))
+        self.update()
+
+    def _follow(self) -> None:
+        marked = self.sheet.marked
+        if marked >= 0:
+            self.top = min(max(self.top, marked - self.rows + 1), marked)
+        self.top = max(0, min(self.top, len(self.sheet.rows) - self.rows))
+
+    def draw(self, painter: QPainter) -> None:
+        u, sheet = self.look.u, self.sheet
+        self.frame(painter, sheet.title)
+        self._follow()
+        room = self.inside()
+        row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
+        self._head(painter, row)
+        for number in range(self.top, min(len(sheet.rows), self.top + self.rows)):
+            place = number - self.top
+            box = QRectF(room.x(), row.bottom() + place * ROW * u, room.width(), ROW * u)
+            self._row(painter, box, sheet.rows[number], number == sheet.marked)
+            self.place(box, partial(self._choose, number))
+        self._bar(painter, room)
+        self._foot(painter, room)
+
+    def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:
+        u = self.look.u
+        lamp = LAMP * u if any(row.lit is not None for row in self.sheet.rows) else 0.8 * u
+        x, wide = box.x() + lamp, box.width() - lamp - 1.6 * u
+        for number, share in enumerate(self.sheet.shares):
+            yield number, QRectF(x, box.y(), share * wide - 1.0 * u, box.height())
+            x += share * wide
+
+    def _head(self, painter: QPainter, box: QRectF) -> None:
+        look = self.look
+        painter.setPen(look.colour("soft"))
+        for number, at in self._columns(box):
+            painter.setFont(look.fit(self.sheet.heads[number], 1.6, at.width(), bold=True))
+            put(painter, at, self._side(number), self.sheet.heads[number])
+
+    def _side(self, number: int) -> Qt.AlignmentFlag:
+        return RIGHT if number in self.sheet.figures else LEFT
+
+    def _row(self, painter: QPainter, box: QRectF, row: Row, marked: bool) -> None:
+        look, u = self.look, self.look.u
+        if marked:
+            painter.fillRect(box, look.colour("here"))
+            painter.fillRect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), look.colour("lit"))
+        if row.lit is not None:
+            side = 1.6 * u
+            lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
+            painter.setPen(look.pen(row.tone.value, 0.2))
+            painter.setBrush(look.colour(row.tone.value) if row.lit else Qt.BrushStyle.NoBrush)
+            painter.drawRect(lamp)
+        painter.setPen(look.colour("text"))
+        for number, at in self._columns(box):
+            text = row.cells[number]
+            painter.setFont(look.fit(text, 2.1, at.width(), bold=number == 0 or marked))
+            (put_raw if number in self.sheet.raw else put)(painter, at, self._side(number), text)
+
+    def _bar(self, painter: QPainter, room: QRectF) -> None:
+        """How much of the table is seen, and where."""
+        count = len(self.sheet.rows)
+        if count <= self.rows:
+            return
+        u = self.look.u
+        track = QRectF(room.right() - 0.5 * u, room.y() + HEAD * u, 0.6 * u, self.rows * ROW * u)
+        painter.fillRect(track, self.look.colour("key"))
+        part = QRectF(track.x(), 0, track.width(), track.height() * self.rows / count)
+        part.moveTop(track.y() + track.height() * self.top / count)
+        painter.fillRect(part, self.look.colour("accent"))
+
+    def _foot(self, painter: QPainter, room: QRectF) -> None:
+        look, u, sheet = self.look, self.look.u, self.sheet
+        y = room.bottom() - len(sheet.notes) * NOTE * u
+        painter.setPen(look.colour("soft"))
+        for number, note in enumerate(sheet.notes):
+            painter.setFont(look.fit(note, 1.8, room.width()))
+            put(painter, QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u), LEFT, note)
+        if sheet.question:
+            self._ask(painter, QRectF(room.x(), y - ASKED * u, room.width(), (ASKED - 0.6) * u))
+
+    def _ask(self, painter: QPainter, row: QRectF) -> None:
+        look, u, sheet = self.look, self.look.u, self.sheet
+        asked = QRectF(row.x(), row.y(), 0.5 * row.width(), row.height())
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(sheet.question, 2.2, asked.width() - u, bold=True))
+        put(painter, asked, LEFT, sheet.question)
+        box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
+        painter.setPen(look.pen("accent", 0.2))
+        painter.setBrush(look.colour("ground"))
+        painter.drawRect(box)
+        inside = box.adjusted(u, 0, -u, 0)
+        font = look.fit(sheet.text, 2.6, inside.width() - u, bold=True)
+        painter.setFont(font)
+        painter.setPen(look.colour("text"))
+        put_raw(painter, inside, LEFT, sheet.text)
+        wide = min(QFontMetricsF(font).horizontalAdvance(sheet.text), inside.width() - u)
+        cursor = QRectF(inside.x() + wide + 0.3 * u, box.center().y() - 1.4 * u, 0.3 * u, 2.8 * u)
+        painter.fillRect(cursor, look.colour("accent"))
+
+
+# --- A page that comes up with a list at its left: the model decides what its keys do.
+
+
+class ListModel(Protocol):
+    """What such a page asks of its model; ``escape`` is False where it stands on the list itself."""
+
+    def typed(self, key: str) -> bool: ...
+
+    def takes(self, key: str) -> bool: ...
+
+    def prompt(self) -> str: ...
+
+    def opened(self) -> None: ...
+
+    def leave(self) -> None: ...
+
+    def escape(self) -> bool: ...
+
+
+class ListPage(Page):
+    """Hands keys on, and goes from the list back to the Automatic page."""
+
+    model: ListModel
+
+    def __init__(self, host: Host, model: ListModel, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+
+    def labels_of(self, own: Mapping[str, str], keys: Mapping[str, Key]) -> tuple[str, ...]:
+        """The ten labels: those that every such page has, the page's ``own``, and the model's ``keys``."""
+        named = {"F1": "MENU", "F7": "ALARMS", **own}
+        named.update((name, key.label) for name, key in keys.items())
+        return tuple(named.get(f"F{number}", "") for number in range(1, 11))
+
+    def typed(self, key: str) -> bool:
+        """To the list, or to what is open."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt()
+
+    def opened(self) -> None:
+        """With the list."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Nothing stays half entered or half asked."""
+        self.desk.clear()
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """One step back, and from the list to the Automatic page."""
+        if not self.model.escape():
+            self.host.go(pages.AUTOMATIC)
+        return True

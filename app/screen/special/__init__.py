@@ -1,1 +1,0 @@
-"""F10, the special functions: the page."""

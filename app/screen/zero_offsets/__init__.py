@@ -1,1 +1,0 @@
-"""G54 to G59: the table and its history."""

@@ -1,0 +1,193 @@
+"""Backup and restore of everything that is kept: offsets, versions, counts, settings, log."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from app.desk.desk import Desk
+from app.desk.keep import Keep
+from app.desk.prompts import UNDER_WAY
+from app.desk.view import Tone
+from app.desk.words import tr
+from app.desk.worker import Worker
+from app.programs.folder_chooser import Stick, sticks
+from app.special.section import Key, Row, Section, Sheet
+from core.executor.snapshot import Snapshot
+
+BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
+ENDING = ".turndesk.db"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A folder for backups, or one backup in it."""
+
+    label: str
+    path: Path
+    backup: bool = False
+    size: int = 0
+    at: str = ""
+
+
+class KeepingSection(Section):
+    """Return on a place makes a backup there; Return on a backup restores it, after asking."""
+
+    name = "BACKUP AND RESTORE"
+    use = "offsets, versions, counts, settings, log"
+
+    def __init__(
+        self,
+        desk: Desk,
+        keep: Keep,
+        worker: Worker,
+        folder: Path,
+        plugged: Callable[[], Sequence[Stick]] = sticks,
+    ) -> None:
+        super().__init__(desk)
+        self.keep, self.worker, self.folder, self.plugged = keep, worker, folder, plugged
+        self.places: tuple[Place, ...] = ()
+        self.busy = ""
+        self.restored: Callable[[], None] = _nobody
+
+    @property
+    def count(self) -> int:
+        """Places and backups."""
+        return len(self.places)
+
+    def opened(self) -> None:
+        """Look what is there."""
+        self.look()
+
+    def look(self) -> None:
+        """List places and backups again; the answer comes with a later frame."""
+        self.worker.ask(lambda: _places(self.folder, self.plugged()), self._found, self._failed)
+
+    def _found(self, places: tuple[Place, ...]) -> None:
+        self.places = places
+        self.marked = min(self.marked, max(0, len(places) - 1))
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """Places, each with its backups under it."""
+        rows = tuple(
+            Row(
+                (
+                    place.label if not place.backup else f"     {place.label}",
+                    "RESTORE" if place.backup else "BACKUP TO HERE",
+                    f"{place.size / 1024:.0f} KB" if place.backup else "",
+                    place.at,
+                ),
+                None if place.backup else True,
+                Tone.WAIT,
+            )
+            for place in self.places
+        )
+        return Sheet(
+            "BACKUP AND RESTORE",
+            ("WHERE", "RETURN DOES", "SIZE", "WHEN"),
+            (0.42, 0.23, 0.13, 0.22),
+            rows,
+            self.marked,
+            notes=(self.busy,) if self.busy else ("What a restore replaces is kept beside it.",),
+            raw=frozenset({0, 2, 3}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """F4 looks for media again."""
+        return {"F4": Key("LOOK", self.look)}
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return does it."""
+        if key == "Enter":
+            self._do()
+            return True
+        return self.moves(key)
+
+    def choose(self, row: int) -> None:
+        """A finger marks; on the marked row it is Return."""
+        if row == self.marked:
+            self._do()
+        else:
+            self.desk.clear()
+            self.marked = row
+
+    def _do(self) -> None:
+        if self.busy:
+            self.desk.say("STILL AT IT: WAIT UNTIL IT IS DONE")
+        elif self.places:
+            place = self.places[self.marked]
+            (self._restore if place.backup else self._backup)(place)
+
+    def _backup(self, place: Place) -> None:
+        name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{ENDING}"
+        target = place.path / name
+        self.busy = "Backing up …"
+        self.desk.clear()
+
+        def work() -> str:
+            place.path.mkdir(parents=True, exist_ok=True)
+            self.keep.backup(target)
+            os.sync()
+            return name
+
+        self.worker.ask(work, self._backed_up, self._failed)
+
+    def _backed_up(self, name: str) -> None:
+        self.busy = ""
+        self.desk.say(tr("BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.look()
+
+    def _restore(self, place: Place) -> None:
+        if self.desk.snapshot().state in UNDER_WAY:
+            self.desk.say(BARRED)
+            return
+        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT")
+        self.desk.ask(asked.format(name=place.label), lambda: self._restore_now(place))
+
+    def _restore_now(self, place: Place) -> None:
+        if self.desk.snapshot().state in UNDER_WAY:
+            self.desk.say(BARRED)
+            return
+        self.busy = "Restoring …"
+        self.desk.restoring = True
+        self.worker.ask(lambda: self.keep.restore(place.path), self._done, self._failed)
+
+    def _done(self, kept: Path | None) -> None:
+        self.busy = ""
+        self.desk.restoring = False
+        self.restored()
+        where = kept.name if kept else "—"
+        self.desk.say(tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where))
+        self.look()
+
+    def _failed(self, why: str) -> None:
+        self.busy = ""
+        self.desk.restoring = False
+        self.desk.say(f"REFUSED: {why}")
+
+    def prompt(self) -> str:
+        """What Return does."""
+        return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
+
+
+def _nobody() -> None:
+    """Nobody has to read anything again."""
+
+
+def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
+    """The control's own folder and the media, each followed by the backups in it, newest first."""
+    found: list[Place] = []
+    for label, path in (("THIS CONTROL", folder), *((stick.label, stick.path) for stick in plugged)):
+        found.append(Place(label, path))
+        backups = sorted(path.glob(f"*{ENDING}"), key=lambda file: file.name, reverse=True)
+        found += [_backup_of(file) for file in backups if not file.name.startswith(".")]
+    return tuple(found)
+
+
+def _backup_of(file: Path) -> Place:
+    status = file.stat()
+    at = datetime.fromtimestamp(status.st_mtime).strftime("%Y-%m-%d %H:%M")
+    return Place(file.name.removesuffix(ENDING), file, True, status.st_size, at)

@@ -1,0 +1,156 @@
+"""The event log: what happened when, newest first; searched and filtered on a worker."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+
+from app.desk.desk import Desk
+from app.desk.keep import Keep
+from app.desk.view import Tone
+from app.desk.worker import Worker
+from app.special.section import Entry, Key, Row, Section, Sheet
+from core.executor.snapshot import Snapshot
+from core.store.rows import EventRow
+
+SHOWN = 500
+EVERY = 1.0  # seconds between two looks at a log that is open
+FILTERS: Mapping[str, frozenset[str]] = {
+    "ALL": frozenset(),
+    "ALARMS": frozenset({"alarm", "estop", "starved"}),
+    "RUNS": frozenset({"load", "start", "end", "part", "uncounted", "stop"}),
+    "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets"}),
+}
+
+
+class EventsSection(Section):
+    """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
+
+    name = "EVENT LOG"
+    use = "what happened when; search"
+
+    def __init__(self, desk: Desk, keep: Keep, worker: Worker) -> None:
+        super().__init__(desk)
+        self.keep, self.worker = keep, worker
+        self.entry = Entry(words=True)
+        self.searching = False
+        self.filter = "ALL"
+        self.events: tuple[EventRow, ...] = ()
+        self.trouble = ""
+        self._rows: tuple[Row, ...] = ()
+        self._next = 0.0
+        self._asking = self._again = False  # a search is under way; another one was asked for meanwhile
+
+    @property
+    def count(self) -> int:
+        """Events found."""
+        return len(self.events)
+
+    def opened(self) -> None:
+        """Look at once."""
+        self._next = 0.0
+        self.marked = 0
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """What was found; looked for again every second while it is open."""
+        now = self.desk.clock()
+        if now >= self._next:
+            self._next = now + EVERY
+            self.look()
+        found = f"{self.count} EVENTS" if self.count < SHOWN else f"THE LAST {SHOWN} EVENTS"
+        return Sheet(
+            f"EVENT LOG  ·  {self.filter}  ·  {found}",
+            ("WHEN", "KIND", "WHAT", "LINE"),
+            (0.25, 0.13, 0.54, 0.08),
+            self._rows,
+            self.marked,
+            question="SEARCH FOR?" if self.searching or self.entry.text else "",
+            text=self.entry.text,
+            notes=(self.trouble,) if self.trouble else (),
+            raw=frozenset({0}),
+            figures=frozenset({3}),
+        )
+
+    def look(self) -> None:
+        """Ask the store; the answer comes with a later frame. Of questions meanwhile only the last counts."""
+        if self._asking:
+            self._again = True
+            return
+        self._asking = True
+        search, kinds = self.entry.text.strip(), FILTERS[self.filter]
+        self.worker.ask(lambda: tuple(self.keep.events(search, kinds, SHOWN)), self._found, self._failed)
+
+    def _found(self, events: tuple[EventRow, ...]) -> None:
+        self.trouble = ""
+        self._answered()
+        if events != self.events:
+            self.events = events
+            self._rows = tuple(_row(event) for event in events)
+            self.marked = min(self.marked, max(0, len(events) - 1))
+
+    def _failed(self, why: str) -> None:
+        self.trouble = why
+        self._answered()
+
+    def _answered(self) -> None:
+        self._asking, again, self._again = False, self._again, False
+        if again:
+            self.look()
+
+    def keys(self) -> Mapping[str, Key]:
+        """Search and filter."""
+        return {"F4": Key("SEARCH", self._search), "F5": Key("FILTER", self._filter)}
+
+    def _search(self) -> None:
+        self.searching = True
+        self.desk.clear()
+
+    def _filter(self) -> None:
+        names = list(FILTERS)
+        self.filter = names[(names.index(self.filter) + 1) % len(names)]
+        self.marked = 0
+        self.look()
+
+    def takes(self, key: str) -> bool:
+        """Every letter, while a search is typed."""
+        return self.searching and self.entry.takes(key)
+
+    def typed(self, key: str) -> bool:
+        """Letters of the search; arrows look through the log."""
+        if self.moves(key):
+            return True
+        if not self.searching:
+            return False
+        if key == "Enter":
+            self.searching = False
+        elif self.entry.type(key):
+            self.marked = 0
+        else:
+            return False
+        self.look()
+        return True
+
+    def prompt(self) -> str:
+        """What the keys do now."""
+        if self.searching:
+            return "TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY"
+        return "F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK"
+
+    def escape(self) -> bool:
+        """The search."""
+        open_before = self.searching or bool(self.entry.text)
+        if open_before:
+            self.searching, self.entry.text, self.marked = False, "", 0
+            self.look()
+        return open_before
+
+    def left(self) -> None:
+        """The log as a whole, next time."""
+        self.searching, self.entry.text = False, ""
+
+
+def _row(event: EventRow) -> Row:
+    at = datetime.fromisoformat(event.at).astimezone().strftime("%Y-%m-%d %H:%M:%S")
+    line = str(event.line) if event.line else ""
+    alarm = event.kind == "alarm"
+    return Row((at, event.kind, event.text, line), True if alarm else None, Tone.ALARM)

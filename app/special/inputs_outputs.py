@@ -1,0 +1,158 @@
+"""Inputs, outputs and machine lamps, live; outputs are switched by hand at rest only."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from app.desk.desk import Desk
+from app.desk.lamps import Lamp, lamps_of
+from app.desk.view import Tone
+from app.desk.words import tr
+from app.special.section import Key, Row, Section, Sheet
+from core.executor.commands import ForceOutput
+from core.executor.snapshot import Snapshot, State
+from core.machine.model import Machine
+
+NOT_NOW = "OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES"
+AT_REST = frozenset({State.IDLE, State.DISABLED})
+# What asks for an input: the language's own codes, and what the control itself looks at.
+ASKED_BY = {
+    "TB2-5": "M91 M92",
+    "TB2-7": "M93 M94",
+    "TB2-9": "M95",
+    "estop": "E-STOP",
+    "start": "CYCLE START",
+    "hold": "FEED HOLD",
+    "guard": "GUARD",
+    "collet_closed": "COLLET",
+}
+OWN_CODES = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
+
+
+class Kind(StrEnum):
+    """What is listed."""
+
+    OUTPUTS = "OUTPUTS"
+    INPUTS = "INPUTS"
+    LAMPS = "MACHINE LAMPS"
+
+    @property
+    def following(self) -> Kind:
+        """The list that the key goes on to."""
+        kinds = list(Kind)
+        return kinds[(kinds.index(self) + 1) % len(kinds)]
+
+
+class SignalsSection(Section):
+    """F4 goes from list to list; Return on an output switches it over, after asking."""
+
+    name = "INPUTS AND OUTPUTS"
+    use = "live state, outputs by hand, lamps"
+
+    def __init__(self, desk: Desk, machine: Machine) -> None:
+        super().__init__(desk)
+        self.machine = machine
+        self.kind = Kind.OUTPUTS
+        self._codes = _codes(machine)
+
+    @property
+    def count(self) -> int:
+        """Of the list that is shown."""
+        if self.kind is Kind.OUTPUTS:
+            return len(self.machine.outputs)
+        return len(self.machine.inputs) if self.kind is Kind.INPUTS else 0
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """The list, every state from the one snapshot."""
+        if self.kind is Kind.LAMPS:
+            return self._lamps(snapshot)
+        outputs = self.kind is Kind.OUTPUTS
+        on = snapshot.outputs if outputs else snapshot.inputs
+        models = self.machine.outputs if outputs else self.machine.inputs
+        rows = tuple(
+            Row(
+                (name, model.terminal, "ON" if name in on else "OFF", self._used(name, outputs)),
+                name in on,
+                Tone.RUN if name in on else Tone.OFF,
+            )
+            for name, model in models.items()
+        )
+        heads = ("NAME", "TERMINAL", "STATE", "SWITCHED BY" if outputs else "ASKED BY")
+        return Sheet(self.kind.value, heads, (0.34, 0.2, 0.16, 0.3), rows, self.marked, raw=frozenset({0, 1}))
+
+    def _lamps(self, snapshot: Snapshot) -> Sheet:
+        lamps = (
+            *lamps_of(snapshot),
+            Lamp("DRIVES ON", snapshot.state not in {State.ESTOP, State.DISABLED}),
+            Lamp("ALARM", bool(snapshot.alarms), warn=True),
+            Lamp("E-STOP", snapshot.state is State.ESTOP, warn=True),
+            Lamp("AXES HOMED", all(snapshot.homed)),
+        )
+        rows = tuple(
+            Row((lamp.word, "ON" if lamp.lit else "OFF"), lamp.lit, Tone.PAUSE if lamp.warn else Tone.RUN)
+            for lamp in lamps
+        )
+        return Sheet(self.kind.value, ("LAMP", "STATE"), (0.6, 0.4), rows)
+
+    def _used(self, name: str, output: bool) -> str:
+        if output:
+            return self._codes.get(name, "")
+        return ASKED_BY.get(name, f"M97I{name}" if name.isdigit() else "")
+
+    def keys(self) -> Mapping[str, Key]:
+        """F4 shows the next list."""
+        labels = {Kind.OUTPUTS: "OUTPUTS", Kind.INPUTS: "INPUTS", Kind.LAMPS: "LAMPS"}
+        return {"F4": Key(labels[self.kind.following], self._go_on)}
+
+    def _go_on(self) -> None:
+        self.desk.clear()
+        self.kind, self.marked = self.kind.following, 0
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return switches."""
+        if key == "Enter":
+            self._switch()
+            return True
+        return self.moves(key)
+
+    def choose(self, row: int) -> None:
+        """A finger marks an output; on the marked one it is Return."""
+        if row == self.marked:
+            self._switch()
+        else:
+            self.desk.clear()
+            self.marked = row
+
+    def _switch(self) -> None:
+        if self.kind is not Kind.OUTPUTS:
+            self.desk.say("ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM")
+            return
+        name = tuple(self.machine.outputs)[self.marked]
+        snapshot = self.desk.snapshot()
+        if snapshot.state not in AT_REST:
+            self.desk.say(NOT_NOW)
+            return
+        on = name not in snapshot.outputs
+        asked = (
+            tr("PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF")
+            if on
+            else tr("PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON")
+        )
+        self.desk.ask(asked.format(name=name), lambda: self.desk.post(ForceOutput(name, on)))
+
+    def prompt(self) -> str:
+        """What Return does here."""
+        if self.kind is not Kind.OUTPUTS:
+            return "F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS"
+        if self.desk.snapshot().state not in AT_REST:
+            return NOT_NOW
+        return "RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST"
+
+
+def _codes(machine: Machine) -> dict[str, str]:
+    """The M codes that switch each output, off after on."""
+    found: dict[str, list[str]] = {name: list(codes) for name, codes in OWN_CODES.items()}
+    for code, (output, _on) in sorted(machine.m_codes.items(), key=lambda entry: (not entry[1][1], entry[0])):
+        found.setdefault(output, []).append(f"M{code:02d}")
+    return {name: " ".join(codes) for name, codes in found.items()}

@@ -1,0 +1,66 @@
+"""The machine file: what has changed in it since somebody accepted it, key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.desk.changes import FileChanges
+from app.desk.desk import Desk
+from app.desk.view import Tone
+from app.desk.words import tr
+from app.special.section import Key, Row, Section, Sheet
+from core.executor.snapshot import Snapshot, State
+
+_OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
+
+
+class MachineFileSection(Section):
+    """F2 accepts, after asking once; until then the drives cannot be switched on."""
+
+    name = "MACHINE FILE"
+    use = "what has changed in it"
+
+    def __init__(self, desk: Desk, changes: FileChanges) -> None:
+        super().__init__(desk)
+        self.changes = changes
+
+    @property
+    def count(self) -> int:
+        """The changes."""
+        return len(self.changes.changes)
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """One row a key."""
+        rows = tuple(Row(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
+        note = tr("F2 accepts; the drives stay off until then.") if rows else tr("It is as it was accepted.")
+        return Sheet(
+            f"MACHINE FILE  ·  {self.changes.source}",
+            ("KEY", "WAS", "IS"),
+            (0.44, 0.28, 0.28),
+            rows,
+            self.marked if rows else -1,
+            notes=(note,),
+            raw=frozenset({0, 1, 2}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """F2, while there is something to accept."""
+        return {"F2": Key("ACCEPT", self._accept)} if self.changes.changes else {}
+
+    def _accept(self) -> None:
+        if self.desk.snapshot().state not in _OFF:
+            self.desk.say(tr("A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF"))
+        else:
+            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT")
+            self.desk.ask(question, self._accepted)
+
+    def _accepted(self) -> None:
+        self.changes.accept()
+        self.marked = 0
+        self.desk.say(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
+
+    def prompt(self) -> str:
+        """What can be done."""
+        if self.changes.changes:
+            return tr("ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST")
+        return super().prompt()

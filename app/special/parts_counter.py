@@ -1,0 +1,119 @@
+"""The parts counter: count, target, times; reset after asking once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from app.desk import formats
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.words import tr
+from app.special.part_count import MOST, PartCounter
+from app.special.section import FigureSection, Key, Row, Sheet
+from core.executor.snapshot import Snapshot
+from core.store.errors import StoreError
+
+RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
+NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
+
+
+class PartsSection(FigureSection):
+    """Of the program on the desk."""
+
+    name = "PARTS COUNTER"
+    use = "parts made, stop at a number, times"
+
+    @property
+    def counter(self) -> PartCounter:
+        """The desk's own."""
+        return self.desk.counter
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """Count, target, what is left of it, times."""
+        counter, last = self.counter, snapshot.last_cycle
+        left = max(0, counter.target - counter.count)
+        to_come = formats.duration(left * last) if counter.target and last else formats.NOTHING
+        rows = (
+            Row(("PARTS MADE", str(counter.count)), counter.reached or None),
+            Row(("STOP AT", str(counter.target) if counter.target else "NO TARGET")),
+            Row(("PARTS TO GO", str(left) if counter.target else formats.NOTHING)),
+            Row(("LAST CYCLE", formats.duration(last) if last else formats.NOTHING)),
+            Row(("TIME FOR THE PARTS TO GO", to_come)),
+        )
+        return Sheet(
+            "PARTS COUNTER",
+            ("PROGRAM", counter.program or "NO PROGRAM"),
+            (0.55, 0.45),
+            rows,
+            question="STOP AT HOW MANY PARTS?",
+            text=self.entry.text,
+            notes=(
+                "In the cycle of the last part Cycle Repeat is switched off. 0 takes the target away.",
+                "NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.",
+            ),
+            figures=frozenset({1}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """Corrections of the count, the count to nought, and runs that are no parts."""
+        return {
+            "F2": Key("ONE MORE", partial(self.correct, 1)),
+            "F3": Key("ONE LESS", partial(self.correct, -1)),
+            "F4": Key("RESET", self.reset),
+            "F5": Key("NO COUNT", partial(self.desk.switch, "no_count")),
+        }
+
+    def correct(self, by: int) -> None:
+        """One part that was not counted, or one that is scrap."""
+        if not self.counter.program:
+            self.desk.say(NO_PROGRAM)
+        elif self.counter.count + by < 0:
+            self.desk.say("THE COUNT IS AT NOUGHT")
+        else:
+            self.desk.clear()
+            self._kept(lambda: self.counter.correct(by))
+
+    def reset(self) -> None:
+        """Count to nought, after asking."""
+        if not self.counter.program:
+            self.desk.say(NO_PROGRAM)
+        elif self.counter.count == 0:
+            self.desk.say("THE COUNT IS AT NOUGHT")
+        else:
+            self.desk.ask(RESET, partial(self._kept, self.counter.reset))
+
+    def enter(self) -> None:
+        """The target, from the count on; 0 takes it away."""
+        if not self.counter.program:
+            self.desk.say(NO_PROGRAM)
+            return
+        try:
+            target = _whole(self.entry.text)
+        except EntryError as error:
+            self.desk.say(f"REFUSED: {error}")
+            return
+        if 0 < target <= self.counter.count:
+            made = self.counter.count
+            self.desk.say(
+                tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
+            )
+            return
+        self.entry.text = ""
+        self._kept(lambda: self.counter.aim(target))
+
+    def _kept(self, change: Callable[[], None]) -> None:
+        try:
+            change()
+        except StoreError as error:
+            self.desk.say(f"NOT KEPT: {error}")
+
+    def prompt(self) -> str:
+        """How to set the target."""
+        return "TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST"
+
+
+def _whole(text: str) -> int:
+    value = value_of(text)
+    if value != int(value) or not 0 <= value <= MOST:
+        raise EntryError(f"{value:g} is no number of parts; type a whole number from 0 to {MOST}")
+    return int(value)

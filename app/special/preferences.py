@@ -1,0 +1,82 @@
+"""Units, language, theme, readout and station of the screen: every one acts at once and is kept."""
+
+from __future__ import annotations
+
+from app.special.section import Row, Section, Sheet
+from core.executor.snapshot import Snapshot
+from core.store.errors import StoreError
+
+WORDS = {
+    "units": "UNITS OF THE FIGURES",
+    "readout": "LARGE FIGURES SHOW",
+    "language": "LANGUAGE",
+    "theme": "COLOURS",
+    "dock": "OPERATOR STATION ON THE SCREEN",
+}
+VALUES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
+
+
+class PreferencesSection(Section):
+    """Return, or a finger, goes on to the next choice."""
+
+    name = "SCREEN"
+    use = "units, language, colours, station"
+
+    @property
+    def count(self) -> int:
+        """The choices."""
+        return len(WORDS)
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """What is chosen now."""
+        now = self.desk.settings.now
+        rows = tuple(Row((words, _told(getattr(now, name)))) for name, words in WORDS.items())
+        control = "MM" if snapshot.modal.metric else "INCH"
+        return Sheet(
+            "SCREEN",
+            ("", ""),
+            (0.6, 0.4),
+            rows,
+            self.marked,
+            notes=(
+                f"The control is in {control} now.",
+                "Units change the figures that are shown; what is typed is always in the control's unit.",
+            ),
+        )
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark, Return chooses."""
+        if key == "Enter":
+            self._go_on()
+            return True
+        return self.moves(key)
+
+    def choose(self, row: int) -> None:
+        """A finger chooses."""
+        self.marked = row
+        self._go_on()
+
+    def _go_on(self) -> None:
+        name = tuple(WORDS)[self.marked]
+        settings = self.desk.settings
+        if name == "dock" and self.desk.station is None:
+            self.desk.say("THIS MACHINE HAS AN OPERATOR STATION OF ITS OWN: NONE IS SHOWN")
+            return
+        if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
+            self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)")
+            return
+        self.desk.clear()
+        try:
+            settings.choose(name, settings.following(name))
+        except StoreError as error:
+            self.desk.say(f"NOT KEPT: {error}")
+
+    def prompt(self) -> str:
+        """How to choose."""
+        return "ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
+
+
+def _told(value: object) -> str:
+    if isinstance(value, bool):
+        return "SHOWN" if value else "HIDDEN"
+    return VALUES.get(str(value), str(value))

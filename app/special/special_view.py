@@ -1,0 +1,150 @@
+"""F10, the special functions: the list at the left, the one that is chosen at the right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import pages
+from app.desk.session import Loaded
+from app.desk.view import View
+from app.screen.entry_panel import KeyPad
+from app.screen.letter_keys import LetterPad
+from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.pages import Doings, Host
+from app.screen.panel import Panel
+from app.screen.sheet_panel import ListPage, SheetPanel
+from app.special.special_functions import SpecialDesk
+from core.executor.snapshot import Snapshot
+
+# --- The list of special functions: a number, a name, what it is for; each a target for a finger.
+
+
+ROW = 7.0  # units at most: a fingertip
+
+
+class ItemList(Panel):
+    """The one that is shown is filled; it has a bar while the keys are its own."""
+
+    title = "SPECIAL FUNCTIONS"
+
+    def __init__(self, look: Look, model: SpecialDesk, enter: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.model, self._enter = model, enter
+        self._shown: tuple[int, bool] | None = None
+
+    def show_items(self) -> None:
+        """Redraw when the mark has moved."""
+        shown = (self.model.at, self.model.inside)
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        room, sections = self.inside(), self.model.sections
+        high = min(room.height() / max(1, len(sections)), ROW * self.look.u)
+        for number, section in enumerate(sections):
+            box = QRectF(room.x(), room.y() + number * high, room.width(), high - 0.4 * self.look.u)
+            self._item(painter, box, number, section.name, section.use)
+            self.place(box, partial(self._enter, number))
+
+    def _item(self, painter: QPainter, box: QRectF, number: int, name: str, use: str) -> None:
+        look, u = self.look, self.look.u
+        here = number == self.model.at
+        painter.fillRect(box, look.colour("here" if here else "key"))
+        if here:
+            wide = (1.0 if self.model.inside else 0.4) * u
+            painter.fillRect(QRectF(box.x(), box.y(), wide, box.height()), look.colour("lit"))
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.6, bold=True))
+        put(painter, QRectF(box.x() + u, box.y(), 3.6 * u, box.height()), CENTRE, str(number + 1))
+        text = box.adjusted(5.2 * u, 0.1 * box.height(), -0.6 * u, -0.1 * box.height())
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(name, 2.0, text.width(), bold=True))
+        put(painter, QRectF(text.x(), text.y(), text.width(), 0.55 * text.height()), LEFT, name)
+        painter.setPen(look.colour("text" if here else "soft"))
+        painter.setFont(look.fit(use, 1.6, text.width()))
+        below = QRectF(text.x(), text.y() + 0.55 * text.height(), text.width(), 0.45 * text.height())
+        put(painter, below, LEFT, use)
+
+
+LIST, PAD = 34.0, 28.4  # units: widths
+LETTERS = 24.0  # units: height
+
+
+class SpecialPage(ListPage):
+    """The models decide; this shows them and hands the keys on."""
+
+    NAME = pages.SPECIAL
+    model: SpecialDesk
+
+    def __init__(self, host: Host, model: SpecialDesk, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.items = ItemList(self.look, model, self._enter, self)
+        self.table = SheetPanel(self.look, self._chosen, self)
+        self.pad = KeyPad(self.look, self._touched, own=None, parent=self)
+        self.letters = LetterPad(self.look, self._touched, self)
+
+    def _enter(self, number: int) -> None:
+        self.model.enter(number)
+
+    def _chosen(self, row: int) -> None:
+        self.model.inside = True
+        self.model.section.choose(row)
+
+    def _touched(self, key: str) -> None:
+        self.model.inside = True
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.model.typed(key)
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the function that is shown, beside the page's own."""
+        return self.labels_of({}, self.model.section.keys())
+
+    def doings(self) -> Doings:
+        """The keys of the function that is shown; pressing one goes into it."""
+        keys = self.model.section.keys()
+        return {name: partial(self._do, name) for name in keys}
+
+    def has_field(self) -> bool:
+        """The question of a function that is open."""
+        return self.model.inside and self.model.section.takes("1")
+
+    def _do(self, name: str) -> None:
+        self.model.inside = True
+        self.model.section.keys()[name].action()
+
+    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+        """The table of this snapshot."""
+        self.model.look()
+        section = self.model.section
+        sheet = section.sheet(snapshot)
+        self.items.show_items()
+        self.table.show_sheet(sheet)
+        letters = bool(sheet.question) and section.takes("a")
+        figures = bool(sheet.question) and section.takes("1") and not letters
+        if (figures, letters) != (not self.pad.isHidden(), not self.letters.isHidden()):
+            self.pad.setVisible(figures)
+            self.letters.setVisible(letters)
+            self._lay_out()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """List, table and pad side by side."""
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(LIST * u)
+        pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
+        self.items.setGeometry(0, 0, left, self.height())
+        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        right = self.width() - left - gap
+        self.table.setGeometry(left + gap, 0, right - pad, self.height() - low)
+        self.letters.setGeometry(left + gap, self.height() - low + gap, right, max(0, low - gap))
+        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())

@@ -1,0 +1,88 @@
+"""The maximum spindle speed until restart."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from app.desk import formats
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.words import tr
+from app.special.section import FigureSection, Key, Row, Sheet
+from core.executor.commands import SpindleLimit
+from core.executor.snapshot import Snapshot
+from core.machine.model import SpindleModel
+
+LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
+
+
+class SpeedSection(FigureSection):
+    """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
+
+    name = "MAXIMUM SPINDLE SPEED"
+    use = "a limit until restart"
+
+    def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
+        super().__init__(desk)
+        self.spindle = spindle
+
+    def sheet(self, snapshot: Snapshot) -> Sheet:
+        """The machine's speed, the limit, and what turns now."""
+        limit = snapshot.spindle_limit
+        rows = (
+            Row(("MACHINE'S OWN MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
+            Row(
+                ("LIMIT IN FORCE", formats.rpm(limit) if limit else "NONE", "rpm" if limit else ""),
+                bool(limit),
+            ),
+            Row(("COMMANDED NOW", formats.rpm(snapshot.rpm_command), "rpm")),
+            Row(("MEASURED NOW", formats.rpm(snapshot.rpm_actual), "rpm")),
+        )
+        return Sheet(
+            "MAXIMUM SPINDLE SPEED",
+            ("", "", ""),
+            (0.55, 0.3, 0.15),
+            rows,
+            question="MAXIMUM SPINDLE SPEED?",
+            text=self.entry.text,
+            notes=(
+                "Programs that ask for more turn at the limit.",
+                "It acts at once, also while a program runs.",
+            ),
+            figures=frozenset({1}),
+        )
+
+    def keys(self) -> Mapping[str, Key]:
+        """F4 lifts the limit."""
+        return {"F4": Key("NO LIMIT", self.lift)}
+
+    def lift(self) -> None:
+        """The machine's own maximum again; asked once, because something may be in the chuck."""
+        if not self.desk.snapshot().spindle_limit:
+            self.desk.say("NO LIMIT IS IN FORCE")
+        else:
+            self.desk.ask(LIFT, partial(self.desk.post, SpindleLimit(None)))
+
+    def enter(self) -> None:
+        """The limit, where this spindle can turn at it."""
+        try:
+            rpm = value_of(self.entry.text)
+            self._check(rpm)
+        except EntryError as error:
+            self.desk.say(f"REFUSED: {error}")
+            return
+        self.desk.post(SpindleLimit(rpm))
+        self.entry.text = ""
+        self.desk.say(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
+
+    def _check(self, rpm: float) -> None:
+        low, high = self.spindle.rpm_min, self.spindle.rpm_max
+        if not low <= rpm <= high:
+            raise EntryError(
+                f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
+            )
+
+    def prompt(self) -> str:
+        """How to set it."""
+        return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"

@@ -1,0 +1,1 @@
+"""RS-232: programs sent and received over the serial line."""

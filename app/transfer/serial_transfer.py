@@ -1,0 +1,290 @@
+"""F10, RS-232: settings, a program out, a program in; what comes in is stored as a new one, never started."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from app.desk.desk import Desk
+from app.desk.keep import Keep
+from app.desk.prompts import UNDER_WAY
+from app.desk.view import Tone
+from app.desk.words import tr
+from app.desk.worker import Worker
+from app.programs.file_changes import FileError
+from app.special.section import Entry, Key, Row, Section, Sheet
+from app.transfer.received_program import free_name, stored
+from app.transfer.serial_line import Carrying, Lines, Reach, Received
+from app.transfer.serial_settings import ROWS, form_of, kept_form
+from core.executor.snapshot import Snapshot
+from core.machine.hardware.model import DncModel
+from core.store.errors import StoreError
+
+# --- What the RS-232 function shows: its settings, how far a transfer has come, a program that has come in.
+
+
+TITLE = "RS-232"
+SHOWN = 6  # findings
+
+
+def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: str) -> Sheet:
+    """The line, and the program that would be sent."""
+    rows = tuple(Row((tr(name), value(settings))) for name, value, _ in ROWS)
+    program = chosen.name if chosen is not None else "—"
+    notes = (tr("F4 sends: {program}").format(program=program), last)
+    return Sheet(TITLE, ("SETTING", "VALUE"), (0.5, 0.5), rows, marked, notes=notes, raw=frozenset({0, 1}))
+
+
+def progress_sheet(reach: Reach, settings: DncModel, sends: str) -> Sheet:
+    """How far it has come."""
+    share = f"{reach.done / reach.total:.0%}" if reach.total else "—"
+    rows = (
+        Row((tr("SENDING") if sends else tr("RECEIVING"), sends or settings.port), True, Tone.RUN),
+        Row((tr("BYTES"), f"{reach.done}" + (f" / {reach.total}" if reach.total else ""))),
+        Row((tr("LINES"), f"{reach.lines}")),
+        Row((tr("DONE"), share)),
+        Row((tr("WAITS"), _waits(reach.what)), bool(reach.what), Tone.WAIT),
+    )
+    words = f"{settings.port}  {settings.baud} {settings.bits}{settings.parity}{settings.stop}"
+    return Sheet(TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), raw=frozenset({0, 1}))
+
+
+def _waits(what: str) -> str:
+    """For whom or what."""
+    words = {
+        "held": tr("HELD BY THE OTHER SIDE (XOFF)"),
+        "dc1": tr("FOR DC1 FROM THE OTHER SIDE"),
+        "sender": tr("FOR THE OTHER SIDE TO SEND"),
+        "frame": tr("FOR THE FIRST %"),
+    }
+    return words.get(what, "—")
+
+
+def received_sheet(received: Received, name: str) -> Sheet:
+    """What came, whether it is whole, and what proving found."""
+    code = tr("7 BITS, EVEN PARITY, FOUND OUT") if received.seven else tr("AS SET")
+    errors = len(received.findings)
+    result = tr("{count} ERRORS").format(count=errors) if errors else tr("NO ERROR")
+    rows = (
+        Row((tr("WHOLE"), tr("{count} LINES").format(count=received.lines)), True, Tone.RUN),
+        Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
+        Row((tr("CALLS ITSELF"), received.name or "—")),
+        Row((tr("SHA-256"), received.digest[:32] + " …")),
+        Row((tr("CHARACTERS"), code)),
+        Row((tr("SKIPPED BEFORE IT"), f"{received.skipped}")),
+        *(Row(("", text)) for text in received.findings[:SHOWN]),
+    )
+    return Sheet(
+        TITLE,
+        ("", ""),
+        (0.25, 0.75),
+        rows,
+        question="NAME OF THE NEW PROGRAM?",
+        text=name,
+        notes=(*received.findings[:1], "It replaces nothing and starts nothing."),
+        raw=frozenset({0, 1}),
+    )
+
+
+KEPT = "rs232"
+BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
+UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
+THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
+
+
+class TransferSection(Section):
+    """Three faces: the settings, a transfer under way, and a program that waits for its name."""
+
+    name = "RS-232"
+    use = "programs over the serial line"
+
+    def __init__(self, desk: Desk, keep: Keep, lines: Lines, default: DncModel, own: Path) -> None:
+        super().__init__(desk)
+        self.keep, self.lines, self.own = keep, lines, own
+        self.worker = Worker()
+        self.settings = _kept(keep, default)
+        self.ports: Sequence[str] = ()
+        self.under_way: Carrying[int] | Carrying[Received] | None = None
+        self.sends = ""  # the name of the program that is being sent
+        self.received: Received | None = None
+        self.entry = Entry(words=True)
+        self.last = ""  # what came of the last transfer
+
+    @property
+    def count(self) -> int:
+        """Settings, while nothing is under way."""
+        return 0 if self.under_way or self.received else len(ROWS)
+
+    def opened(self) -> None:
+        """Look for ports."""
+        self.worker.ask(lambda: [device for device, _ in self.lines.ports()], self._found, self._no_ports)
+
+    def _found(self, ports: list[str]) -> None:
+        self.ports = ports
+
+    def _no_ports(self, why: str) -> None:
+        self.desk.say(f"REFUSED: {why}")
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """The face of this moment."""
+        self.worker.poll()
+        if self.received is not None:
+            return received_sheet(self.received, self.entry.text)
+        if self.under_way is not None:
+            return progress_sheet(self.under_way.reach, self.settings, self.sends)
+        return settings_sheet(self.settings, self.marked, self._chosen(), self.last)
+
+    def keys(self) -> Mapping[str, Key]:
+        """What can be done now."""
+        if self.received is not None:
+            return {"F6": Key("DISCARD", self.discard)}
+        if self.under_way is not None:
+            return {"F6": Key("CANCEL", self.cancel)}
+        return {
+            "F4": Key("SEND", self.send),
+            "F5": Key("RECEIVE", self.receive),
+            "F8": Key("PORTS", self.opened),
+        }
+
+    def takes(self, key: str) -> bool:
+        """Letters of the new name; while a program is under way they keep their meaning: H holds."""
+        return self.received is not None and self._at_rest() and self.entry.takes(key)
+
+    def _at_rest(self) -> bool:
+        return self.desk.snapshot().state not in UNDER_WAY
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark a setting, Return steps it on; or the name of what has come."""
+        if self.received is not None:
+            return self._named(key)
+        if key == "Enter" and self.count:
+            self._step()
+            return True
+        return self.moves(key)
+
+    def choose(self, row: int) -> None:
+        """A finger marks; on the marked one it is Return."""
+        if not self.count:
+            return
+        if row == self.marked:
+            self._step()
+        else:
+            self.desk.clear()
+            self.marked = row
+
+    def prompt(self) -> str:
+        """What the keys do."""
+        if self.received is not None and not self._at_rest():
+            return UNDER_WAY_NAME
+        if self.received is not None:
+            return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
+        if self.under_way is not None:
+            return "F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN"
+        return "ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
+
+    def close(self) -> None:
+        """The desk shuts: nothing goes on."""
+        self.cancel()
+        self.worker.close()
+
+    # --- transfers -----------------------------------------------------------------------------------
+
+    def _chosen(self) -> Path | None:
+        return self.desk.session.now.path
+
+    def send(self) -> None:
+        """The program on the desk."""
+        path = self._chosen()
+        if path is None:
+            self.desk.say("NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)")
+        elif self._ready():
+            self.sends = path.name
+            carrying = self.lines.send(self.settings, path)
+            self.under_way = carrying
+            self.worker.ask(carrying.run, self._sent, self._failed)
+
+    def receive(self) -> None:
+        """Whatever comes."""
+        if self._ready():
+            self.sends = ""
+            carrying = self.lines.receive(self.settings)
+            self.under_way = carrying
+            self.worker.ask(carrying.run, self._came, self._failed)
+
+    def cancel(self) -> None:
+        """Give it up; the worker says when it has ended."""
+        if self.under_way is not None:
+            self.under_way.cancel()
+
+    def _ready(self) -> bool:
+        self.desk.clear()
+        if self.under_way is not None or self.worker.busy:
+            self.desk.say(BUSY)
+        elif not self.settings.port:
+            self.desk.say("NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE")
+        else:
+            return True
+        return False
+
+    def _sent(self, count: int) -> None:
+        self.under_way = None
+        self._say(tr("{name} IS SENT: {count} BYTES").format(name=self.sends, count=count))
+
+    def _came(self, received: Received) -> None:
+        self.under_way, self.received = None, received
+        self.entry.text = free_name(self.own, received.name)
+        self._say(tr("A WHOLE PROGRAM HAS COME: {lines} LINES").format(lines=received.lines))
+
+    def _failed(self, why: str) -> None:
+        self.under_way = None
+        self._say(tr("NOTHING IS KEPT: {why}").format(why=why))
+
+    def _say(self, text: str) -> None:
+        self.last = text
+        self.desk.say(text)
+
+    # --- the name of what has come -------------------------------------------------------------------
+
+    def _named(self, key: str) -> bool:
+        if key == "Enter":
+            self._store()
+            return True
+        if not self._at_rest() or not self.entry.type(key):
+            return False
+        self.desk.clear()
+        return True
+
+    def _store(self) -> None:
+        assert self.received is not None
+        try:
+            path = stored(self.received.text, self.own, self.entry.text)
+        except FileError as error:
+            self.desk.say(f"REFUSED: {error}")
+            return
+        self.received = None
+        self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
+
+    def discard(self) -> None:
+        """Throw away what has come, after asking."""
+        self.desk.ask(THROW_AWAY, self._discarded)
+
+    def _discarded(self) -> None:
+        self.received = None
+        self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
+
+    def _step(self) -> None:
+        ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
+        self.settings = replace(ROWS[self.marked][2](self.settings, ports))
+        self.desk.clear()
+        try:
+            self.keep.keep_setting(KEPT, kept_form(self.settings))
+        except StoreError as error:
+            self.desk.say(f"REFUSED: {error}")
+
+
+def _kept(keep: Keep, default: DncModel) -> DncModel:
+    try:
+        return form_of(keep.setting(KEPT), default)
+    except StoreError:
+        return default  # the desk says by itself that nothing is kept

@@ -1,1 +1,0 @@
-"""The editor without a screen."""

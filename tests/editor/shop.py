@@ -1,0 +1,76 @@
+"""A bench in a temporary folder: the real prover, and an archive in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+
+from app.compose.machine import setup_for
+from app.compose.proof import proof_of
+from app.desk.latest import Watch
+from app.desk.picture import Picture, sketched
+from app.desk.session import Proved, Workshop
+from app.editor.versions import Bench
+from core.executor.job import Job
+from core.interpreter.dialects import Reading
+from core.interpreter.setup import ToolOffset
+from core.language.source import Source, load_source
+from core.machine.load import load_machine
+from core.proving.prove import prove
+from core.proving.timeline import Timeline, timed_blocks
+from core.store.errors import StoreError
+from core.store.rows import VersionRow
+
+GOOD = "G90G94F300G72\nT1\nM03S1000\nX1Z.1\nZ-.5\nM05\nM30\n"
+TOOLS = {1: ToolOffset(-12.7, -76.2)}
+
+
+@dataclass
+class Memory:
+    """Versions as the store keeps them: the same text again is no new one."""
+
+    kept: dict[str, list[tuple[bytes, str]]] = field(default_factory=dict)
+    full: bool = False
+
+    def versions(self, name: str) -> tuple[VersionRow, ...]:
+        rows = [
+            VersionRow(n, sha256(text).hexdigest(), "2026-03-01T10:00:00.000Z", why, len(text))
+            for n, (text, why) in enumerate(self.kept.get(name, []), 1)
+        ]
+        return tuple(reversed(rows))
+
+    def text_of(self, name: str, version: int) -> bytes:
+        return self.kept[name][version - 1][0]
+
+    def keep_version(self, name: str, text: bytes, why: str) -> int:
+        if self.full:
+            raise StoreError("the disk is full")
+        rows = self.kept.setdefault(name, [])
+        if not rows or rows[-1][0] != text:
+            rows.append((text, why))
+        return len(rows)
+
+
+def workshop() -> Workshop:
+    """The real interpreter and prover on the shipped lathe."""
+    lathe = load_machine(None)
+
+    def make_job(source: Source, block_delete: bool) -> Job:
+        setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
+        return Job(source, setup, source.text, Reading(source), frozenset(TOOLS))
+
+    def proved(job: Job, watch: Watch) -> Proved:
+        report = prove(job.source, job.setup, lathe, watch)
+        return Proved(proof_of(job, report), report.diagnostics)
+
+    def draw(job: Job, watch: Watch) -> Picture:
+        return sketched(timed_blocks(Timeline.of(job.source, job.setup, lathe)), watch)
+
+    return Workshop(load_source, make_job, proved, draw)
+
+
+def bench_in(folder: Path, archive: Memory | None = None) -> Bench:
+    """The operator's programs and the samples, both empty at first."""
+    (folder / "samples").mkdir(exist_ok=True)
+    return Bench(workshop(), archive or Memory(), folder / "programs", folder / "samples")

@@ -1,0 +1,157 @@
+"""What is typed survives a control that ends without a word; what was left in good order leaves nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from app.editor.editor import Editor, Stage
+from tests.editor.shop import GOOD, Memory, bench_in
+
+TYPED = GOOD.replace("Z-.5", "Z-.75")
+LIMIT = 20.0
+Start = Callable[[], Editor]
+
+
+@pytest.fixture
+def memory() -> Memory:
+    return Memory()
+
+
+@pytest.fixture
+def start(tmp_path: Path, memory: Memory) -> Iterator[Start]:
+    """Another control on the same folder."""
+    editors: list[Editor] = []
+
+    def begin() -> Editor:
+        editors.append(Editor(bench_in(tmp_path, memory)))
+        return editors[-1]
+
+    yield begin
+    for editor in editors:
+        editor.close()
+
+
+def settle(editor: Editor) -> None:
+    for _ in range(3):
+        editor.worker.settle(LIMIT)
+        editor.drafts.settle(LIMIT)
+    editor.poll()
+
+
+def program(editor: Editor, text: str = GOOD) -> Path:
+    path = editor.bench.programs / "part.nc"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+def type_in(editor: Editor, path: Path, *texts: str) -> None:
+    editor.open(path)
+    settle(editor)
+    for text in texts:
+        editor.changed(text)
+    settle(editor)
+
+
+def drafts(editor: Editor) -> list[str]:
+    folder = editor.drafts.folder
+    return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
+
+
+def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: Memory) -> None:
+    dead = start()
+    path = program(dead)
+    type_in(dead, path, "G90\n", TYPED)
+    after = start()  # nobody has closed the first
+    after.open(path)
+    settle(after)
+    assert after.text == GOOD  # the file is what it was
+    assert "NOT SAVED IS IN THE HISTORY" in after.notice
+    assert memory.kept["part.nc"] == [(TYPED.encode(), "typed and not saved")]
+    assert drafts(after) == []
+
+
+def test_a_new_file_that_was_never_saved_too(start: Start, memory: Memory) -> None:
+    dead = start()
+    dead.offer("new.nc")
+    dead.create()
+    settle(dead)
+    dead.changed(TYPED)
+    settle(dead)
+    after = start()
+    after.offer("new.nc")
+    after.create()
+    settle(after)
+    assert after.stage is Stage.OPEN
+    assert memory.kept["new.nc"][0][0] == TYPED.encode()
+
+
+def test_saving_and_leaving_leave_nothing(start: Start) -> None:
+    editor = start()
+    type_in(editor, program(editor), TYPED)
+    assert drafts(editor) == ["part.nc.draft"]
+    editor.save(TYPED)
+    settle(editor)
+    assert drafts(editor) == []
+
+
+def test_giving_up_what_was_typed_leaves_nothing(start: Start) -> None:
+    editor = start()
+    type_in(editor, program(editor), TYPED)
+    editor.abandon(TYPED)
+    editor.answer(TYPED)
+    settle(editor)
+    assert editor.stage is Stage.CLOSED
+    assert drafts(editor) == []
+
+
+def test_taking_back_what_was_typed_leaves_nothing(start: Start) -> None:
+    editor = start()
+    type_in(editor, program(editor), TYPED, GOOD)
+    assert drafts(editor) == []
+
+
+def test_closing_the_control_over_a_text_keeps_it(start: Start) -> None:
+    editor = start()
+    path = program(editor)
+    editor.open(path)
+    settle(editor)
+    editor.changed(TYPED)
+    editor.close()
+    assert (editor.drafts.folder / "part.nc.draft").read_text() == TYPED
+
+
+def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memory) -> None:
+    dead = start()
+    path = program(dead)
+    type_in(dead, path, TYPED)
+    memory.full = True
+    after = start()
+    after.open(path)
+    settle(after)
+    after.changed(GOOD)
+    settle(after)
+    assert "part.nc.left: the disk is full" in after.notice
+    assert (after.drafts.folder / "part.nc.left").read_text() == TYPED
+
+
+def test_a_damaged_draft_is_set_aside_and_told(start: Start) -> None:
+    editor = start()
+    path = program(editor)
+    editor.drafts.folder.mkdir()
+    (editor.drafts.folder / "part.nc.draft").write_bytes(b"G90\xff\n")
+    type_in(editor, path, GOOD)
+    assert "part.nc.left" in editor.notice
+    assert (editor.drafts.folder / "part.nc.left").read_bytes() == b"G90\xff\n"
+
+
+def test_a_folder_that_cannot_be_written_is_told_and_typing_goes_on(start: Start) -> None:
+    editor = start()
+    path = program(editor)
+    editor.drafts.folder.write_text("a file where the folder should be")
+    type_in(editor, path, TYPED)
+    assert "SAFE ONLY WHEN IT IS SAVED" in editor.notice
+    assert editor.stage is Stage.OPEN

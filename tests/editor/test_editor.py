@@ -1,0 +1,157 @@
+"""The editor's stages: what each request leads to, and what is refused in which words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.editor import messages
+from app.editor.editor import Editor, Left, Stage
+from app.editor.versions import History
+from tests.editor.shop import GOOD, Memory, bench_in
+
+
+@pytest.fixture
+def memory() -> Memory:
+    return Memory()
+
+
+@pytest.fixture
+def left() -> list[Left]:
+    return []
+
+
+@pytest.fixture
+def editor(tmp_path: Path, memory: Memory, left: list[Left]) -> Iterator[Editor]:
+    editor = Editor(bench_in(tmp_path, memory), left.append)
+    yield editor
+    editor.close()
+
+
+def settle(editor: Editor) -> None:
+    editor.worker.settle(10)
+
+
+def own(editor: Editor, name: str, text: str = GOOD) -> Path:
+    """A program of the operator, open in the editor."""
+    path = editor.bench.programs / name
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(text)
+    editor.open(path)
+    settle(editor)
+    return path
+
+
+def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
+    editor: Editor, left: list[Left], memory: Memory
+) -> None:
+    path = own(editor, "part.nc")
+    editor.leave(editor.text)
+    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [Left(path, False, False)], {})
+
+
+def test_leaving_saves_and_keeps_the_old_and_the_new(
+    editor: Editor, left: list[Left], memory: Memory
+) -> None:
+    path = own(editor, "part.nc")
+    editor.leave(GOOD + "(END)\n")
+    settle(editor)
+    assert left == [Left(path, True, False)]
+    assert path.read_text() == GOOD + "(END)\n"
+    assert len(memory.kept["part.nc"]) == 2
+
+
+def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[Left]) -> None:
+    path = own(editor, "part.nc")
+    editor.leave("X1\0\n")
+    settle(editor)
+    assert editor.stage is Stage.OPEN
+    assert left == []
+    assert "zero bytes" in editor.notice
+    assert path.read_text() == GOOD
+
+
+def test_a_file_that_is_gone_is_told(editor: Editor, tmp_path: Path) -> None:
+    editor.open(tmp_path / "gone.nc")
+    settle(editor)
+    assert editor.stage is Stage.CLOSED
+    assert "cannot be read" in editor.notice
+
+
+def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: Editor) -> None:
+    path = own(editor, "part.nc")
+    path.write_text("M02\n")
+    for _ in range(3):
+        editor.save("M30\n")
+        settle(editor)
+    assert path.read_text() == "M02\n"
+    editor.answer("M30\n")
+    settle(editor)
+    assert path.read_text() == "M30\n"
+
+
+def test_the_first_asking_says_what_happened(editor: Editor) -> None:
+    path = own(editor, "part.nc")
+    path.write_text("M02\n")
+    editor.leave("M30\n")
+    settle(editor)
+    assert editor.notice == messages.CHANGED_OUTSIDE.format("part.nc")
+    assert (editor.stage, path.read_text()) == (Stage.OPEN, "M02\n")
+
+
+def test_a_new_file_does_not_take_a_name_that_is_there(editor: Editor) -> None:
+    own(editor, "part.nc")
+    editor.abandon(editor.text)
+    editor.offer("part")
+    editor.create()
+    assert editor.notice == messages.THERE_ALREADY.format("part.nc")
+    assert editor.stage is Stage.OFFERED
+
+
+def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Left]) -> None:
+    own(editor, "mine.nc", "M02\n")
+    editor.abandon(editor.text)
+    sample = editor.bench.samples / "knob.nc"
+    sample.write_text(GOOD)
+    editor.open(sample)
+    settle(editor)
+    editor.leave(GOOD + "(X)\n")
+    assert editor.stage is Stage.NAMING
+    assert not editor.take_name("mine")
+    assert not editor.take_name("a/b")
+    assert editor.take_name("other")
+    settle(editor)
+    assert left == [Left(editor.bench.programs / "other.nc", True, False)]
+    assert sample.read_text() == GOOD
+
+
+def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: Editor, memory: Memory) -> None:
+    own(editor, "part.nc")
+    memory.full = True
+    editor.leave("M30\n")
+    settle(editor)
+    assert editor.stage is Stage.CLOSED
+    assert editor.notice == messages.NOT_KEPT.format("the disk is full")
+
+
+def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Memory) -> None:
+    memory.kept["part.nc"] = [(b"X1\r\nM30\r\n", "first"), (b"X2\nM30\n", "second")]
+    history = History(memory, editor.worker)
+    history.look("part.nc", "X2\nM30\n")
+    settle(editor)
+    assert (history.number, history.words()) == (2, "THE SAME AS IN THE EDITOR")
+    history.mark(99)
+    settle(editor)
+    assert (history.number, history.text) == (1, "X1\nM30\n")
+    assert [row.sign for row in history.changes] == ["-", "+", " "]
+
+
+def test_no_history_is_said(editor: Editor, memory: Memory) -> None:
+    history = History(memory, editor.worker)
+    history.look("part.nc", "")
+    settle(editor)
+    assert history.words() == "NO VERSION IS KEPT OF THIS PROGRAM YET"
+    history.mark(1)
+    assert history.number == 0

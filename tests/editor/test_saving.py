@@ -1,0 +1,129 @@
+"""Saving: the whole file or none of it, every version kept, nothing of anybody else's lost."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from app.editor.document import CHANGED, MOST_LINES, TooLongError, created, opened, save_document
+from app.programs.whole_file import SavingError, write_whole
+from core.language.source import SourceError
+from tests.editor.shop import GOOD, Memory
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    path = tmp_path / "part.nc"
+    path.write_text(GOOD)
+    return path
+
+
+def test_a_file_is_replaced_and_nothing_is_left_beside_it(part: Path) -> None:
+    part.chmod(0o640)
+    write_whole(part, b"M30\n")
+    assert part.read_bytes() == b"M30\n"
+    assert part.stat().st_mode & 0o777 == 0o640
+    assert list(part.parent.iterdir()) == [part]
+
+
+def test_a_link_stays_a_link(part: Path) -> None:
+    link = part.parent / "link.nc"
+    link.symlink_to(part)
+    write_whole(link, b"M30\n")
+    assert link.is_symlink()
+    assert part.read_bytes() == b"M30\n"
+
+
+@pytest.mark.parametrize("data", [b"X1\0\n", b"  \n", b"X" * 9000 + b"\n", b"X\xff\n"])
+def test_what_would_not_read_back_is_refused_and_the_file_stays(part: Path, data: bytes) -> None:
+    with pytest.raises(SavingError):
+        write_whole(part, data)
+    assert part.read_text() == GOOD
+    assert list(part.parent.iterdir()) == [part]
+
+
+def test_a_folder_that_cannot_be_is_told_in_a_sentence(part: Path) -> None:
+    with pytest.raises(SavingError, match="CANNOT BE WRITTEN"):
+        write_whole(part / "below.nc", b"M30\n")
+
+
+def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_file: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(SavingError, match="No space left"):
+        write_whole(part, b"M30\n")
+    assert part.read_text() == GOOD
+    assert list(part.parent.iterdir()) == [part]
+
+
+def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
+    path = tmp_path / "dos.nc"
+    path.write_bytes(b"X1\r\nM30\r\n")
+    document = opened(path, tmp_path / "samples")
+    assert document.text == "X1\nM30\n"
+    assert save_document(document, "X2\nM30", Memory(), replacing=False) == ""
+    assert path.read_bytes() == b"X2\r\nM30\r\n"
+
+
+@pytest.mark.parametrize(
+    "data", [b"(\x94LFL\x8aCHE)\nM30\n\x1a", b"\xef\xbb\xbfX1\n", b"(\xd6L)\nX1", b"X1\rM30\r"]
+)
+def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> None:
+    path, memory = tmp_path / "old.nc", Memory()
+    path.write_bytes(data)
+    document = opened(path, tmp_path / "samples")
+    assert save_document(document, document.text + "(NEW)", memory, replacing=False) == ""
+    assert memory.kept["old.nc"][0][0] == data  # the very bytes that were there
+    assert opened(path, tmp_path / "samples").text.startswith(document.text + "(NEW)")
+
+
+def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
+    document, memory = opened(part, part.parent / "samples"), Memory()
+    part.write_text("M02\n")
+    assert save_document(document, "M30\n", memory, replacing=False) == CHANGED
+    assert part.read_text() == "M02\n"
+    assert save_document(document, "M30\n", memory, replacing=True) == ""
+    assert [text for text, _why in memory.kept["part.nc"]] == [b"M02\n", b"M30\n"]
+
+
+def test_what_another_program_wrote_is_not_replaced_when_it_cannot_be_kept(part: Path) -> None:
+    document = opened(part, part.parent / "samples")
+    part.write_text("M02\n")
+    assert save_document(document, "M30\n", Memory(full=True), replacing=True) == CHANGED
+    assert part.read_text() == "M02\n"
+
+
+def test_a_full_archive_does_not_keep_the_file_from_being_saved(part: Path) -> None:
+    document = opened(part, part.parent / "samples")
+    assert save_document(document, "M30\n", Memory(full=True), replacing=False) == "the disk is full"
+    assert part.read_text() == "M30\n"
+
+
+def test_a_file_that_has_come_meanwhile_is_not_overwritten_by_a_new_one(tmp_path: Path) -> None:
+    document = created(tmp_path, "part")
+    (tmp_path / "part.nc").write_text("M02\n")
+    assert save_document(document, "M30\n", Memory(), replacing=False) == CHANGED
+
+
+def test_samples_are_protected_and_an_empty_file_can_be_written(tmp_path: Path) -> None:
+    (tmp_path / "empty.nc").write_text("")
+    assert opened(tmp_path / "empty.nc", tmp_path).protected
+    assert opened(tmp_path / "empty.nc", tmp_path / "samples").text == ""
+
+
+def test_what_is_no_program_is_not_opened(tmp_path: Path) -> None:
+    (tmp_path / "picture.nc").write_bytes(b"\x89PNG\0\0")
+    with pytest.raises(SourceError, match="zero bytes"):
+        opened(tmp_path / "picture.nc", tmp_path)
+
+
+def test_a_text_too_long_for_the_field_is_not_opened(tmp_path: Path) -> None:
+    (tmp_path / "long.nc").write_text("X1\n" * MOST_LINES)
+    with pytest.raises(TooLongError, match="over 50000 lines"):
+        opened(tmp_path / "long.nc", tmp_path)
+    (tmp_path / "long.nc").write_text("X1\n" * (MOST_LINES - 1))
+    assert opened(tmp_path / "long.nc", tmp_path).text

@@ -1,0 +1,79 @@
+"""Find, differences and names: what is found, what is shown, what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.editor.document import NameRefusedError, program_name
+from app.editor.find_replace import Search, following, preceding
+from app.editor.versions import Row, differences
+
+TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
+
+
+def test_whole_numbers_are_found_and_longer_ones_are_only_counted() -> None:
+    places = Search("F100").places(TEXT)
+    assert [TEXT[p : p + 5] for p in places] == ["F100\n", "f100(", "F100.", "F100X"]
+    assert Search("F100").words(TEXT) == "4 FOUND, 2 MORE INSIDE LONGER WORDS"
+    assert Search("F100", whole=False).words(TEXT) == "6 FOUND, PARTS OF WORDS TOO"
+
+
+@pytest.mark.parametrize(("needle", "text"), [(".5", "X1.5"), ("5", "X15"), ("M3", "CM3"), ("M", "MM")])
+def test_the_end_of_a_longer_word_is_not_that_word(needle: str, text: str) -> None:
+    assert Search(needle).places(text) == ()
+    assert Search(needle, whole=False).places(text)
+
+
+def test_signs_of_patterns_mean_themselves() -> None:
+    assert Search("X.5", whole=False).places("X15 X.5") == (4,)
+    assert Search("(", whole=False).places("a(b(") == (1, 3)
+
+
+def test_nothing_is_found_of_nothing() -> None:
+    assert Search("").places(TEXT) == ()
+    assert Search("Q9").words(TEXT) == "NOT FOUND"
+    assert following((), 3) is None
+    assert preceding((), 3) is None
+
+
+def test_finding_goes_round() -> None:
+    assert [following((2, 5), at) for at in (0, 2, 3, 6)] == [2, 2, 5, 2]
+    assert [preceding((2, 5), at) for at in (9, 5, 2)] == [5, 2, 5]
+
+
+def test_differences_show_lines_with_both_numbers() -> None:
+    assert differences("a\nb\nc\n", "a\nB\nc\n") == (
+        Row(" ", 1, 1, "a"),
+        Row("-", 2, 0, "b"),
+        Row("+", 0, 2, "B"),
+        Row(" ", 3, 3, "c"),
+    )
+
+
+def test_the_same_text_has_no_differences() -> None:
+    assert differences("a\n", "a\n") == ()
+
+
+def test_what_is_left_out_is_told() -> None:
+    rows = differences("".join(f"{n}\n" for n in range(20)), "".join(f"{n}\n" for n in range(19)))
+    assert rows[0].sign == "…"
+    assert rows[-1] == Row("-", 20, 0, "19")
+
+
+def test_a_huge_text_is_compared_from_both_ends() -> None:
+    lines = [f"X{n}" for n in range(30_000)]
+    changed = [*lines[:500], "M00", *lines[500:]]
+    assert differences("\n".join(lines), "\n".join(changed)) == (Row("…", 0, 0, ""), Row("+", 0, 501, "M00"))
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"), [("pin", "pin.nc"), (" pin 2 ", "pin 2.nc"), ("pin.TXT", "pin.TXT")]
+)
+def test_a_name_gets_the_usual_ending(typed: str, name: str) -> None:
+    assert program_name(typed) == name
+
+
+@pytest.mark.parametrize("typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "x" * 300])
+def test_a_name_that_no_program_can_have_is_refused(typed: str) -> None:
+    with pytest.raises(NameRefusedError):
+        program_name(typed)

@@ -1,0 +1,89 @@
+"""A desk with a store of its own, and a machine whose state the test decides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pytest
+
+from app.desk.desk import Desk
+from app.desk.picture import Sketch
+from app.desk.session import Proved, Session, Workshop
+from app.desk.shelf import Shelf
+from app.offsets.offset_book import OffsetBook
+from app.offsets.secondary_offsets import SeccmpDesk
+from app.offsets.tool_offsets import ToolGrid
+from core.executor.job import Proof, make_job
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.setup import Setup
+from core.language.source import Source
+from core.store.store import Store
+
+LIMIT = 5.0
+
+
+@dataclass
+class Room:
+    """Everything around one offset page."""
+
+    desk: Desk
+    store: Store
+    now: list[Snapshot]
+    loads: list[str] = field(default_factory=list)
+
+    def at(self, state: State = State.IDLE, *, metric: bool = False, diameter: bool = False) -> None:
+        """The machine is in this state and mode."""
+        modal = self.now[0].modal._replace(metric=metric, diameter=diameter)
+        self.now[0] = replace(self.now[0], state=state, modal=modal)
+
+    def page(self) -> SeccmpDesk:
+        """F9, on the desk's book."""
+        return SeccmpDesk(self.desk, self.desk.book)
+
+    def grid(self) -> ToolGrid:
+        """F8, on the desk's book."""
+        return ToolGrid(self.desk, self.desk.book)
+
+    def enter(self, page: SeccmpDesk | ToolGrid, *answers: str) -> None:
+        """Type each answer with its Return, and wait until what they change is saved."""
+        page.look(self.now[0])
+        for answer in answers:
+            for key in answer:
+                assert page.typed(key)
+            assert page.typed("Enter")
+        self.settle(page)
+
+    def settle(self, page: SeccmpDesk | ToolGrid) -> None:
+        """Wait for the disk, then look as a frame would."""
+        self.store.write(lambda _connection: None).result(LIMIT)
+        self.desk.look()
+        page.look(self.now[0])
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[Room]:
+    store, now, loads = Store.open(tmp_path / "home"), [Snapshot(state=State.IDLE)], []
+
+    def read(path: Path) -> Source:
+        loads.append(path.name)
+        return Source(path.name, "G90\nM30\n")
+
+    workshop = Workshop(
+        read,
+        lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
+        lambda job, _watch: Proved(Proof(job.digest, ())),
+        lambda _job, _watch: Sketch().picture(),
+    )
+    desk = Desk(
+        post=lambda _command: None,
+        snapshot=lambda: now[0],
+        session=Session(workshop, lambda _command: None),
+        shelf=Shelf(()),
+        clock=lambda: 0.0,
+        book=OffsetBook(store),
+    )
+    yield Room(desk, store, now, loads)
+    desk.close()
+    store.close()

@@ -1,0 +1,316 @@
+"""F9 in the control's words: what each answer does, what is refused, what is remembered."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_values import row
+from app.offsets.secondary_dialogue import Step
+from core.executor.snapshot import State
+from core.store.rows import Kind, SecondaryRow
+from tests.offsets.conftest import LIMIT, Room
+
+
+def test_the_questions_in_their_order(room: Room) -> None:
+    page = room.page()
+    asked = []
+    for key in ("1", "", "", ""):
+        asked.append(page.dialogue.question)
+        room.enter(page, key)
+    assert asked == ["Offset Number?", "X DIAMETER CORRECTION?", "Z CORRECTION?", "R?"]
+    assert page.dialogue.step is Step.NUMBER
+
+
+def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "3", "-.001", ".002", ".0156")
+    room.enter(page, "3", "-.001", ".002", ".0312")
+    x, z, r = (value / 25.4 for value in room.store.secondary()[3])
+    assert (x, z, r) == pytest.approx((-0.001, 0.004, 0.0312), abs=1e-12)
+    assert row(3, room.store.secondary()[3], metric=False) == "3  X: −0.00100 Z: +0.00400R: 0.03120"
+
+
+def test_an_empty_row_reads_as_on_the_control() -> None:
+    assert row(1, SecondaryRow(), metric=False) == "1  X: +0.00000 Z: +0.00000R: 0.00000"
+    assert row(32, SecondaryRow(0.0, -0.01, 0.4), metric=True) == "32  X: +0.0000 Z: −0.0100R: 0.4000"
+
+
+def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
+    page = room.page()
+    for _ in range(10):
+        room.enter(page, "1", ".0001", "", "")
+    assert room.store.secondary()[1].x == 0.0005 * 25.4
+
+
+def test_bare_return_keeps(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "2", ".1", ".2", ".3")
+    room.enter(page, "2", "", ".1", "")
+    assert room.store.secondary()[2] == pytest.approx((0.05 * 25.4, 0.3 * 25.4, 0.3 * 25.4))
+    room.enter(page, "2", "", "", "")
+    assert room.desk.notice == "D2 IS AS IT WAS"
+    assert len(room.store.history()) == 2
+
+
+def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1")
+    for key in ".5-.002":
+        page.typed(key)
+    assert page.old_to_new.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
+    page.typed("+")  # half a sum: the last figure that was one
+    assert page.dialogue.preview == (0.0, 0.0, 0.0)
+    page.typed("Back")
+    room.enter(page, "", "", "")
+    assert room.store.secondary()[1].x == pytest.approx(0.249 * 25.4)
+    assert room.desk.notice == "D1 SAVED"
+    assert page.old_to_new == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
+
+
+@pytest.mark.parametrize(
+    ("answers", "why"),
+    [
+        (("0",), "REFUSED: D0 does not exist; offsets are D1…32"),
+        (("33",), "REFUSED: D33 does not exist; offsets are D1…32"),
+        (("1.5",), "REFUSED: D1.5 does not exist; offsets are D1…32"),
+        (("",), "REFUSED: nothing is entered; type a number"),
+        (("1", ".5-"), "REFUSED: .5- stops short; expected a number at its end"),
+        (("1", "0,5"), "REFUSED: , in 0,5 is no number; the decimal sign is a point"),
+        (("1", "1/0"), "REFUSED: 1/0 divides by zero"),
+        (("1", "21"), "REFUSED: D1 X would become 10.50000 in; it may be -10…10"),
+        (("1", "", "-10.1"), "REFUSED: D1 Z would become −10.10000 in; it may be -10…10"),
+        (("1", "", "", "-.01"), "REFUSED: D1 R would become −0.01000 in; it may be 0…2"),
+    ],
+)
+def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str, ...], why: str) -> None:
+    page = room.page()
+    room.enter(page, *answers)
+    assert room.desk.notice == why
+    assert page.dialogue.text == answers[-1]
+    assert room.store.secondary() == {}
+
+
+def test_metric_when_the_control_is_metric(room: Room) -> None:
+    room.at(metric=True)
+    page = room.page()
+    room.enter(page, "1", ".02", "-.5", ".4")
+    assert room.store.secondary()[1] == (0.01, -0.5, 0.4)
+    assert room.store.history()[0].why == "MM X .02 Z -.5 R .4"
+
+
+def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".02")
+    room.at(metric=True)
+    page.look(room.now[0])
+    assert page.dialogue.step is Step.NUMBER
+    assert "NOTHING WAS CHANGED" in room.desk.notice
+    assert room.store.secondary() == {}
+
+
+def test_escape_goes_back_step_by_step(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "4", ".1")
+    assert page.escape()
+    assert room.desk.notice == "D4 IS AS IT WAS"
+    assert page.dialogue.question == "Offset Number?"
+    assert not page.escape()
+    assert room.store.secondary() == {}
+
+
+def test_clear_asks_once_more(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "9", "", ".1", "")
+    assert page.typed("C")
+    assert room.desk.notice.startswith("PRESS Y TO CLEAR ALL 32")
+    assert page.escape()
+    page.typed("c")
+    page.typed("7")  # any other key takes the question back
+    page.typed("Back")
+    page.typed("C")
+    room.settle(page)
+    assert len(room.store.secondary()) == 2
+    page.typed("C")
+    room.settle(page)
+    assert len(room.store.secondary()) == 2
+    room.desk.answers._since = float("-inf")
+    room.desk.answer()
+    room.settle(page)
+    assert room.store.secondary() == {}
+    assert page.old_to_new == "2 offsets changed: F5 shows them"
+    page.undo()
+    room.settle(page)
+    assert sorted(room.store.secondary()) == [1, 9]
+
+
+def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1")
+    page.typed("C")
+    page.typed("C")
+    room.settle(page)
+    assert room.store.secondary()
+    assert "ONLY WHILE Offset Number?" in room.desk.notice
+
+
+def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.store.set_tool(1, "touched off", x=5.0).result(LIMIT)
+    page.undo()
+    room.settle(page)
+    assert room.store.secondary() == {}
+    assert room.store.tools()[1].x == 5.0
+    assert room.desk.notice == "D1 TAKEN BACK"
+    page.undo()
+    room.settle(page)
+    assert room.desk.notice == "REFUSED: there is no offset change to undo"
+
+
+def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".5-.002", "", "")
+    page.ledger.toggle_history()
+    assert page.ledger.looking_back is not None
+    at, which, change, why = page.ledger.told(page.ledger.looking_back[0])
+    assert at.startswith("20")
+    assert (which, why) == ("D1", "X .5-.002")
+    assert change == "not set  →  X +0.24900  Z +0.00000  R 0.00000"
+    assert page.escape()
+    assert page.ledger.looking_back is None
+
+
+def test_a_change_loads_the_program_again(room: Room) -> None:
+    room.desk.session.load(Path("part.nc"), block_delete=True)
+    room.desk.session.settled(LIMIT)
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.desk.session.settled(LIMIT)
+    assert room.loads == ["part.nc", "part.nc"]
+    assert room.desk.session.now.block_delete
+
+
+UNDER_WAY = [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP]
+
+
+@pytest.mark.parametrize("state", UNDER_WAY)
+@pytest.mark.parametrize(("repeat", "when"), [(True, "NEXT PART"), (False, "NEXT CYCLE START")])
+def test_a_correction_while_parts_run_counts_from_the_next_one(
+    room: Room, state: State, repeat: bool, when: str
+) -> None:
+    page = room.page()
+    room.at(state)
+    room.now[0] = replace(room.now[0], cycle_repeat=repeat)
+    assert f"COUNTS FROM THE {when}" in page.prompt(room.now[0])
+    room.enter(page, "1", ".1", "", "")
+    assert room.desk.notice == f"D1 SAVED; IT COUNTS FROM THE {when}"
+    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+    page.undo()
+    room.settle(page)
+    assert room.desk.notice == f"D1 TAKEN BACK; IT COUNTS FROM THE {when}"
+
+
+@pytest.mark.parametrize("state", UNDER_WAY)
+def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: State) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "")
+    room.at(state)
+    page.typed("C")
+    page.typed("C")
+    assert room.desk.notice == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE"
+    room.settle(page)
+    assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
+
+
+@pytest.mark.parametrize("state", [State.JOG, State.HOME])
+def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: State) -> None:
+    page = room.page()
+    room.at(state)
+    room.enter(page, "1")
+    assert room.desk.notice == "THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST"
+
+
+def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(room: Room) -> None:
+    """Every part begins with G73 and goes over to its G72; the correction is a diameter all the same."""
+    page = room.page()
+    room.at(State.RUN, diameter=True)
+    room.enter(page, "3", "-.0002")
+    room.at(State.RUN, diameter=False)
+    room.enter(page, "", "")
+    assert room.store.secondary()[3].x == pytest.approx(-0.0001 * 25.4)
+
+
+def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
+    page = room.page()
+    room.at(State.RUN)
+    room.enter(page, "3", "-.0002")
+    room.at(State.RUN, metric=True)
+    room.settle(page)
+    assert room.desk.notice.startswith("THE CONTROL HAS CHANGED ITS UNIT")
+    assert 3 not in room.store.secondary()
+
+
+def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:
+    room.desk.session.load(Path("part.nc"))
+    room.desk.session.settled(LIMIT)
+    page = room.page()
+    room.at(State.PROGRAM_STOP)
+    assert "COUNTS FROM THE NEXT CYCLE START" in page.prompt(room.now[0])
+    room.enter(page, "1", ".1", "", "")
+    assert room.desk.notice == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
+    room.at(State.RUN)
+    room.desk.look()
+    assert room.loads == ["part.nc"]
+    room.at(State.IDLE)
+    room.desk.look()
+    room.desk.session.settled(LIMIT)
+    assert room.loads == ["part.nc", "part.nc"]
+
+
+def test_offsets_of_a_file_are_read_only(room: Room) -> None:
+    room.desk.book = OffsetBook(locked="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
+    page = room.page()
+    room.enter(page, "1")
+    assert room.desk.notice == "READ ONLY"
+    page.typed("C")
+    page.undo()
+    assert room.desk.notice == "READ ONLY"
+    assert page.dialogue.old is None
+    assert page.book.of(Kind.SECONDARY, 1) == (0.0, 0.1, 0.0)
+
+
+def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
+    book = OffsetBook(room.store)
+    assert book.change(Kind.SECONDARY, 1, {"x": 0.1}, "one") == ""
+    assert book.change(Kind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
+    assert book.undo(Kind.SECONDARY).startswith("STILL SAVING")
+    room.store.write(lambda _connection: None).result(LIMIT)
+    assert book.poll() == ""
+    assert book.of(Kind.SECONDARY, 1) == (0.1, 0.0, 0.0)
+
+
+def test_a_store_that_is_closed_is_told(room: Room) -> None:
+    book = OffsetBook(room.store)
+    room.store.close()
+    assert "closed" in book.change(Kind.SECONDARY, 1, {"x": 0.1}, "late")
+
+
+def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(room: Room) -> None:
+    room.desk.session.load(Path("part.nc"))
+    room.desk.session.settled(LIMIT)
+    page = room.page()
+    page.look(room.now[0])
+    for key in ("1", "Enter", ".", "1", "Enter", "Enter", "Enter"):
+        page.typed(key)
+    page.leave()
+    room.store.write(lambda _connection: None).result(LIMIT)
+    room.desk.look()
+    room.desk.session.settled(LIMIT)
+    assert not room.desk.book.busy
+    assert room.loads == ["part.nc", "part.nc"]

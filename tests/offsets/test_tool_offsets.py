@@ -1,0 +1,276 @@
+"""F8: a cell is chosen, typed into and saved; what is refused, and when."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.offsets import tool_offsets
+from app.offsets.tool_offsets import ToolGrid
+from core.executor.snapshot import State
+from core.store.rows import ToolRow
+from tests.offsets.conftest import LIMIT, Room
+
+INCH = 25.4
+
+
+def set_tools(room: Room) -> None:
+    """T1 and T2 stand in the table."""
+    room.store.set_tool(1, "touched off", x=-12.7, z=-76.2, nose_radius=0.381)
+    room.store.set_tool(2, "touched off", x=25.4, z=-50.8).result(LIMIT)
+    room.desk.book.__post_init__()  # as a desk that is opened now reads them
+
+
+def at(room: Room, number: int, name: str) -> ToolGrid:
+    """F8 with the cursor on a cell."""
+    grid = room.grid()
+    grid.look(room.now[0])
+    names = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
+    grid.choose(number, names.index(name))
+    return grid
+
+
+def write(grid: ToolGrid, text: str) -> None:
+    for key in text:
+        assert grid.typed(key)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "name", "typed", "mm"),
+    [
+        (False, "x", "1.25", 1.25 * INCH),
+        (True, "x", "1.25", 0.625 * INCH),
+        (True, "wear_x", "-.001", -0.0005 * INCH),
+        (False, "wear_x", "-.001", -0.0005 * INCH),
+        (True, "wear_z", "-.001", -0.001 * INCH),
+        (True, "nose_radius", ".0156", 0.0156 * INCH),
+        (False, "z", "-3-.25", -3.25 * INCH),
+    ],
+)
+def test_a_length_is_read_as_the_control_shows_it(
+    room: Room, diameter: bool, name: str, typed: str, mm: float
+) -> None:
+    set_tools(room)
+    room.at(diameter=diameter)
+    grid = at(room, 1, name)
+    room.enter(grid, typed)
+    assert getattr(room.store.tools()[1], name) == pytest.approx(mm, abs=1e-12)
+    assert room.desk.notice == "T1 SAVED"
+
+
+def test_f2_adds_to_what_is_there(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "wear_x")
+    for _ in range(10):
+        write(grid, ".0001")
+        grid.add()
+        room.settle(grid)
+    assert room.store.tools()[1].wear_x == 0.0005 * INCH
+    assert room.store.history()[0].why == "WEAR X + .0001"
+    grid.add()
+    assert room.desk.notice.startswith("TYPE WHAT IS TO BE ADDED FIRST")
+
+
+def test_quadrant_remark_and_the_sum_that_the_control_gets(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "quadrant")
+    room.enter(grid, "3")
+    grid.choose(1, 7)
+    assert grid.typed("Enter")
+    write(grid, "Hard END, .4 R")
+    assert grid.typed("Enter")
+    room.settle(grid)
+    grid.choose(1, 5)
+    room.enter(grid, "-.002")
+    row = room.store.tools()[1]
+    assert row == pytest.approx(ToolRow(-12.7, -76.2, 0.381, 0.0, -0.0508, 3)[:6] + row[6:])
+    assert row.remark == "Hard END, .4 R"
+    assert row.offset == pytest.approx((-12.7, -76.2508))
+
+
+def test_a_remark_takes_letters_only_once_it_is_open(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "remark")
+    assert not grid.takes("H")
+    assert not grid.typed("H")
+    grid.typed("Enter")
+    assert grid.takes("H")
+    assert grid.typed("H")
+    assert grid.escape()
+    assert not grid.takes("H")
+    assert room.store.tools()[1].remark == ""
+
+
+def test_a_tool_that_was_never_set_needs_x_and_z_together(room: Room) -> None:
+    grid = at(room, 7, "x")
+    room.enter(grid, "1")
+    assert room.store.tools() == {}
+    assert room.desk.notice == "NOW Z: T7 IS SET WHEN BOTH ARE THERE"
+    assert grid.name == "z"
+    room.enter(grid, "-2")
+    assert room.store.tools() == {7: ToolRow(INCH, -2 * INCH)}
+
+
+def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
+    grid = at(room, 7, "z")
+    room.enter(grid, "1")
+    grid.typed("Down")
+    assert room.desk.notice == "T7 IS NOT SET: X AND Z BELONG TOGETHER"
+    assert tool_offsets.cell(grid, 7, "z") == ""
+    assert room.store.tools() == {}
+
+
+@pytest.mark.parametrize("name", ["nose_radius", "wear_x", "quadrant"])
+def test_no_other_field_of_a_tool_that_was_never_set(room: Room, name: str) -> None:
+    grid = at(room, 7, name)
+    room.enter(grid, "0")
+    assert room.desk.notice.startswith("T7 WAS NEVER SET")
+    assert room.store.tools() == {}
+
+
+def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 2, "master")
+    grid.turn_relative()
+    assert room.desk.notice.startswith("NO TOOL IS THE MASTER")
+    before = {n: row.offset for n, row in room.store.tools().items()}
+    room.enter(grid, "")
+    assert room.desk.book.master == 2
+    assert {n: row.offset for n, row in room.store.tools().items()} == before
+    grid.turn_relative()
+    # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
+    assert (tool_offsets.cell(grid, 1, "x"), tool_offsets.cell(grid, 1, "z")) == ("−1.50000", "−1.00000")
+    assert tool_offsets.cell(grid, 2, "x") == "+1.00000"
+    room.enter(grid, "")
+    assert room.desk.book.master == 0
+    grid.choose(1, 0)
+    room.enter(grid, "1")
+    assert "PRESS F3" in room.desk.notice  # from the master they are only shown
+    assert room.store.tools()[1].x == -12.7
+
+
+def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "x")
+    write(grid, "1")
+    grid.typed("Down")
+    assert (grid.number, grid.text) == (1, "1")
+    assert room.desk.notice.startswith("PRESS RETURN TO SET IT")
+    assert tool_offsets.old_to_new(grid) == "−0.50000  →  +1.00000"
+    assert grid.escape()
+    grid.typed("Page down")
+    assert grid.number == 6
+    assert not grid.escape()
+
+
+GEOMETRY = ("x", "z", "nose_radius", "quadrant", "master")
+
+
+@pytest.mark.parametrize("state", [State.RUN, State.WAIT, State.HOLD, State.BLOCK_END, State.HOLDING])
+@pytest.mark.parametrize("name", GEOMETRY)
+def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State, name: str) -> None:
+    set_tools(room)
+    before = room.store.tools()
+    room.at(state)
+    grid = at(room, 1, name)
+    room.enter(grid, "1" if name != "master" else "")
+    assert "UNDER WAY" in room.desk.notice
+    assert "UNDER WAY" in grid.prompt(room.now[0])
+    grid.escape()
+    grid.undo()
+    assert "UNDER WAY" in room.desk.notice
+    room.settle(grid)
+    assert room.store.tools() == before
+
+
+@pytest.mark.parametrize("name", GEOMETRY)
+@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.PROGRAM_STOP])
+def test_while_a_part_runs_only_wear_may_change(room: Room, state: State, name: str) -> None:
+    set_tools(room)
+    room.at(state)
+    grid = at(room, 1, name)
+    room.enter(grid, "1" if name != "master" else "")
+    assert "ONLY WEAR" in room.desk.notice
+    grid.escape()
+    grid.choose(1, 4)
+    room.enter(grid, "-.001")
+    assert room.desk.notice == "T1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
+    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
+
+
+def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "x")
+    write(grid, "1")
+    room.at(State.RUN)
+    room.enter(grid, "")
+    assert "UNDER WAY" in room.desk.notice
+    assert room.store.tools()[1].x == -12.7
+
+
+def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "x")
+    write(grid, "1")
+    room.at(metric=True)
+    grid.look(room.now[0])
+    assert grid.text == ""
+    assert "NOTHING WAS CHANGED" in room.desk.notice
+
+
+def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "wear_x")
+    room.at(State.RUN)
+    grid.look(room.now[0])
+    write(grid, "-.001")
+    room.at(State.RUN, diameter=True)
+    room.enter(grid, "")
+    assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "why"),
+    [
+        ("x", "51", "REFUSED: X would become +51.00000 in; it may be -50…50"),
+        ("x", "0,5", "REFUSED: , in 0,5 is no number"),
+        ("nose_radius", "-.1", "REFUSED: nose radius would become −0.10000 in; it may be 0…2"),
+        ("wear_x", ".21", "REFUSED: wear X would become +0.21000 in; it may be -0.2…0.2"),
+        ("quadrant", "10", "REFUSED: tip quadrant takes 0…9"),
+        ("quadrant", "2.5", "REFUSED: tip quadrant takes 0…9"),
+    ],
+)
+def test_what_is_no_value_is_refused_and_stays_to_be_mended(
+    room: Room, name: str, typed: str, why: str
+) -> None:
+    set_tools(room)
+    before = room.store.tools()
+    grid = at(room, 1, name)
+    write(grid, typed) if "," not in typed else setattr(grid, "text", typed)
+    grid.typed("Enter")
+    assert room.desk.notice.startswith(why)
+    assert grid.text == typed
+    room.settle(grid)
+    assert room.store.tools() == before
+
+
+def test_undo_and_history(room: Room) -> None:
+    set_tools(room)
+    grid = at(room, 1, "wear_x")
+    room.enter(grid, "-.001")
+    grid.undo()
+    room.settle(grid)
+    assert room.store.tools()[1].wear_x == 0.0
+    assert room.desk.notice == "T1 TAKEN BACK"
+    grid.ledger.toggle_history()
+    assert grid.ledger.looking_back is not None
+    at_, which, change, why = grid.ledger.told(grid.ledger.looking_back[1])
+    assert (which, why) == ("T1", "WEAR X -.001")
+    assert change == "WEAR X +0.00000 → −0.00100"
+    assert at_.startswith("20")
+    assert grid.escape()
+
+
+def test_c_and_letters_are_not_taken(room: Room) -> None:
+    grid = room.grid()
+    assert not grid.typed("C")
+    assert not grid.typed("H")

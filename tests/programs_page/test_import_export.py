@@ -1,0 +1,146 @@
+"""Copies that are whole, or are not; folders that cannot be read; names that will not do."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from app.desk.keep import NothingKept
+from app.programs import import_export
+from app.programs.file_changes import FileError, deleted, good_name, renamed
+from app.programs.folder_chooser import UP, Chooser, Stick
+from app.programs.import_export import Moved, brought_in, taken_out
+from tests.programs_page.test_run_record import Kept
+
+
+class Keeping(Kept):
+    """Versions are kept."""
+
+    def keep_text(self, program: str, text: bytes, why: str) -> None:
+        self.told.append((program, text, why))
+
+
+def made(folder: Path, **texts: str) -> list[Path]:
+    folder.mkdir(exist_ok=True)
+    paths = []
+    for name, text in texts.items():
+        paths.append(folder / f"{name}.nc")
+        paths[-1].write_text(text)
+    return paths
+
+
+def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: Path) -> None:
+    sources = made(tmp_path / "stick", a="M30\n", b="M02\n")
+    own = tmp_path / "own"
+    made(own, b="M00\n")
+    moved = brought_in(sources, own, Keeping(), lambda _path: "", replace=False)
+    assert moved == Moved(standing=("b.nc",))
+    assert not (own / "a.nc").exists()
+
+
+def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
+    sources = made(tmp_path / "stick", a="M30\n")
+    own = tmp_path / "own"
+    made(own, a="M30\n")
+    keep = Keeping()
+    assert brought_in(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
+    assert keep.told == []
+
+
+def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None:
+    sources = made(tmp_path / "stick", a="M30\n")
+    own = tmp_path / "own"
+    made(own, a="M00\n")
+    with pytest.raises(FileError, match="CANNOT BE KEPT"):
+        brought_in(sources, own, NothingKept(), lambda _path: "", replace=True)
+    assert (own / "a.nc").read_text() == "M00\n"
+
+
+def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
+    sources = made(tmp_path / "stick", a="M30\n")
+    bad = tmp_path / "stick" / "b.nc"
+    bad.write_bytes(b"\x00\x01" * 40)
+    with pytest.raises(FileError, match=r"b\.nc IS NO PROGRAM"):
+        brought_in([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
+    assert not (tmp_path / "own").exists()
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_export, "LARGEST", 3)
+    sources = made(tmp_path / "stick", a="M30\n")
+    with pytest.raises(FileError, match="LARGER THAN ANY PROGRAM"):
+        taken_out(sources, tmp_path, replace=False)
+
+
+def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sources = made(tmp_path / "own", a="M30\n")
+    stick = tmp_path / "stick"
+    stick.mkdir()
+    real = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if path.suffix == ".part" else real(path))
+    with pytest.raises(FileError, match="DOES NOT READ BACK"):
+        taken_out(sources, stick, replace=False)
+    assert list(stick.iterdir()) == []
+
+
+def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sources = made(tmp_path / "own", a="M30\n")
+    stick = tmp_path / "stick"
+    stick.mkdir()
+
+    def full(_handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(FileError, match="No space left"):
+        taken_out(sources, stick, replace=False)
+    assert list(stick.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
+)
+def test_a_name_gets_the_ending_it_lacks(typed: str, name: str) -> None:
+    assert good_name(typed, Path("like.nc")) == name
+
+
+@pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
+def test_a_name_that_will_not_do(typed: str) -> None:
+    with pytest.raises(FileError):
+        good_name(typed, Path("like.nc"))
+
+
+def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
+    (path,) = made(tmp_path / "own", a="M30\n")
+    assert renamed(path, "A", NothingKept()) == "A.nc"
+    with pytest.raises(FileError, match="IS ITS NAME ALREADY"):
+        renamed(path.with_name("A.nc"), "A.nc", NothingKept())
+
+
+def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
+    (path,) = made(tmp_path / "own", a="M30\n")
+    with pytest.raises(FileError, match="NOT DELETED"):
+        deleted(path, NothingKept())
+    assert path.exists()
+
+
+def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
+    (tmp_path / "stick").mkdir()
+    made(tmp_path / "stick" / "jobs", a="M30\n")
+    (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")
+    (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
+    chooser = Chooser(tmp_path, lambda: (Stick("STICK", tmp_path / "stick", 5),))
+    chooser.found(chooser.look())
+    assert [spot.name for spot in chooser.spots] == ["STICK", "THIS CONTROL"]
+    for name in ("STICK", "jobs"):
+        chooser.go(next(spot for spot in chooser.spots if spot.name == name))
+        chooser.found(chooser.look())
+    assert [spot.name for spot in chooser.spots] == [UP, "a.nc"]
+    assert [path.name for path in chooser.programs] == ["a.nc"]
+    for _ in range(2):
+        chooser.go(chooser.spots[0])
+        chooser.found(chooser.look())
+    assert chooser.at is None

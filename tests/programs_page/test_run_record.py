@@ -1,0 +1,120 @@
+"""What the record makes of snapshots: runs that end well, badly, or again and again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pytest
+
+from app.desk.keep import NothingKept
+from app.desk.session import Loaded, Phase
+from app.programs.run_record import RunRecord
+from core.executor.job import Proof
+from core.executor.snapshot import Alarm, Snapshot, State
+from core.store.errors import StoreError
+
+READY = Snapshot(state=State.IDLE, program="/programs/pin.nc")
+RUNNING = replace(READY, state=State.RUN, block=3)
+NO_PROGRAM = Loaded()
+
+
+@dataclass
+class Kept(NothingKept):
+    """Writes down what is posted."""
+
+    told: list[tuple[object, ...]] = field(default_factory=list)
+
+    def run_started(self, program: str) -> None:
+        self.told.append(("started", program))
+
+    def run_ended(self, program: str, outcome: str) -> None:
+        self.told.append(("ended", program, outcome))
+
+    def cycle_finished(self, program: str, seconds: float) -> None:
+        self.told.append(("cycle", program, seconds))
+
+    def program_proved(self, program: str, result: str, planned: float | None) -> None:
+        self.told.append(("proved", program, result, planned))
+
+
+def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
+    keep = Kept()
+    record = RunRecord(keep)
+    for snapshot in snapshots:
+        record.see(snapshot, NO_PROGRAM)
+    return keep.told
+
+
+def test_a_whole_cycle() -> None:
+    done = replace(READY, parts=1, last_cycle=12.5)
+    assert told(READY, RUNNING, RUNNING, done, done) == [
+        ("started", "pin.nc"),
+        ("cycle", "pin.nc", 12.5),
+        ("ended", "pin.nc", "COMPLETE"),
+    ]
+
+
+def test_cycle_repeat_is_one_run_after_the_other() -> None:
+    again = replace(RUNNING, parts=1, last_cycle=12.5)
+    assert told(READY, RUNNING, again, again) == [
+        ("started", "pin.nc"),
+        ("cycle", "pin.nc", 12.5),
+        ("ended", "pin.nc", "COMPLETE"),
+        ("started", "pin.nc"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("last", "outcome"),
+    [
+        (READY, "GIVEN UP"),
+        (replace(READY, state=State.ESTOP), "E-STOP"),
+        (replace(READY, state=State.FAULT, alarms=(Alarm(102, "following", "", "", ""),)), "ALARM 102"),
+    ],
+)
+def test_a_run_that_does_not_end_well(last: Snapshot, outcome: str) -> None:
+    held = replace(RUNNING, state=State.HOLD)
+    assert told(READY, RUNNING, held, last)[-1] == ("ended", "pin.nc", outcome)
+
+
+def test_parts_made_before_the_screen_looked_are_nobodys() -> None:
+    assert told(replace(READY, parts=7), replace(READY, parts=7)) == []
+
+
+def test_jogging_is_no_run() -> None:
+    assert told(READY, replace(READY, state=State.JOG), READY) == []
+
+
+def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
+    line = replace(RUNNING, lines=1)
+    after = replace(READY, lines=1)
+    assert told(READY, line, line, after) == []
+    assert told(READY, line, after, replace(RUNNING, lines=1)) == [("started", "pin.nc")]
+
+
+def test_a_proof_is_kept_once() -> None:
+    keep = Kept()
+    record = RunRecord(keep)
+    proof = Proof(digest="x", errors=(), blocks=3, cycle_time=9.5, tools=())
+    loaded = Loaded(Phase.READY, Path("pin.nc"), proof=proof)
+    for _ in range(3):
+        record.see(READY, loaded)
+    record.see(READY, replace(loaded, phase=Phase.UNREADABLE, trouble="gone"))
+    assert keep.told == [("proved", "pin.nc", "PROVED", 9.5), ("proved", "pin.nc", "UNREADABLE", None)]
+
+
+def test_a_store_that_fails_stops_nobody() -> None:
+    class Broken(Kept):
+        def run_started(self, program: str) -> None:
+            raise StoreError(f"the disk is full: {program}")
+
+    record = RunRecord(Broken())
+    for snapshot in (READY, RUNNING, READY):
+        record.see(snapshot, NO_PROGRAM)
+    assert record.running == ""
+
+
+def test_a_run_that_counts_as_no_part_has_no_cycle_time() -> None:
+    done = replace(READY, ends=1, last_cycle=3.0)
+    assert told(READY, RUNNING, done, done) == [("started", "pin.nc"), ("ended", "pin.nc", "NOT COUNTED")]

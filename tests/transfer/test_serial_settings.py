@@ -1,0 +1,64 @@
+"""Settings of the line by Return, and what is kept of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.transfer.serial_settings import ROWS, form_of, kept_form
+from core.machine.hardware.model import DncModel
+
+DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
+PORTS = ("/dev/ttyS0", "/dev/ttyUSB0")
+
+
+def around(name: str, model: DncModel) -> list[str]:
+    """What a row shows as Return steps it on, until it is where it began."""
+    _, value, step = next(row for row in ROWS if row[0] == name)
+    shown = [value(model)]
+    while True:
+        model = step(model, PORTS)
+        if value(model) == shown[0]:
+            return shown
+        shown.append(value(model))
+
+
+@pytest.mark.parametrize(
+    ("row", "count"),
+    [
+        ("PORT", 2),
+        ("SPEED", 11),
+        ("BITS, PARITY, STOP BITS", 7),
+        ("FLOW CONTROL", 3),
+        ("FRAME", 2),
+        ("LINE END", 3),
+        ("DC CODES", 2),
+        ("WAIT FOR DC1 TO SEND", 2),
+        ("LEADER OF NULS", 4),
+    ],
+)
+def test_every_setting_goes_round(row: str, count: int) -> None:
+    shown = around(row, DEFAULT)
+    assert len(shown) == len(set(shown)) == count
+
+
+def test_a_speed_that_is_none_of_the_list_is_left_for_the_first() -> None:
+    _, value, step = ROWS[1]
+    assert value(step(replace(DEFAULT, baud=12345), PORTS)) == "110"
+
+
+def test_without_a_port_there_is_nothing_to_step_to() -> None:
+    assert ROWS[0][2](DEFAULT, ()) == DEFAULT
+
+
+def test_what_is_kept_comes_back() -> None:
+    changed = replace(DEFAULT, baud=4800, parity="O", eol="\n", wait=True)
+    assert form_of(kept_form(changed), DEFAULT) == changed
+
+
+@pytest.mark.parametrize(
+    "kept", [None, 7, {"flow": "smoke"}, {"bits": 9}, {"parity": "X"}, {"baud": "fast"}, {"wait": 1}]
+)
+def test_what_cannot_be_is_forgotten(kept: object) -> None:
+    assert form_of(kept, DEFAULT) == DEFAULT
