@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 from app.cli.errors import EXIT_ERRORS, EXIT_OK
 from app.cli.options import add_ideal_option, add_program_options, circumstances, read_source
 from app.cli.progress import Progress
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
-    from core.interpreter.blocks import Block
+    from core.interpreter.elementary_blocks import Block
     from core.proving.timeline import Timeline
 
 _HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"

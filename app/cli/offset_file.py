@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.cli.toml_file import read_toml, refuse, unknown
 from app.cli.zero_file import TABLE
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import MM_PER_INCH, OFFSETS, Kind, SecondaryRow, ToolRow, Value
 

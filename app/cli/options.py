@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
-from core.language.dialect import Dialect, dialect_of
+from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:
-    from core.interpreter.setup import Setup
+    from core.interpreter.job_setup import Setup
     from core.language.source import Source
     from core.machine.model import Machine
 
@@ -93,6 +93,6 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
         raise CommandError(str(error).replace(path.name, str(path), 1)) from error
     if dialect is not Dialect.SINUMERIK:
         return source
-    from core.language.sinumerik.sections import with_subprograms
+    from core.language.sinumerik.subprogram_files import with_subprograms
 
     return with_subprograms(source, [path.parent])

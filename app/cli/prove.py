@@ -80,7 +80,7 @@ def _ways(report: Report) -> str:
 def _sheet(path: Path, report: Report) -> str:
     """The proof as a person reads it."""
     from app.cli.shown import MM_PER_INCH, inches, millimetres, per_minute
-    from core.language.dialect import Dialect
+    from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN
     length, unit, scale = (inches, "in", 1.0) if inch else (millimetres, "mm", MM_PER_INCH)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from app.desk.headless import Outcome
     from core.executor.job import Job
-    from core.language.dialect import Dialect
+    from core.language.source import Dialect
     from core.proving.report import Report
 
 
@@ -129,7 +129,7 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
     """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
     from app.cli.shown import degrees, length_of
-    from core.language.dialect import Dialect
+    from core.language.source import Dialect
 
     if report.mill is not None:
         from app.cli.shown_klartext import place

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 
 if TYPE_CHECKING:
-    from core.interpreter.blocks import Block
+    from core.interpreter.elementary_blocks import Block
     from core.language.diagnostics import Diagnostic
     from core.proving.report import Report
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from app.cli.shown import Json, degrees, millimetres, seconds
 
 if TYPE_CHECKING:
-    from core.interpreter.blocks import Block
-    from core.interpreter.swivel import Swivel
+    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.working_plane import Swivel
     from core.proving.report import MillFigures, Report
 
 HEAD = (

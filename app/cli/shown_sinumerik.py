@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from app.cli.shown import Json, degrees, millimetres, seconds
 
 if TYPE_CHECKING:
-    from core.interpreter.blocks import Block
+    from core.interpreter.elementary_blocks import Block
 
 HEAD = (
     "    n  line  kind             X          Z          C        dC"

@@ -13,7 +13,7 @@ from app.cli.errors import CommandError
 from app.cli.expand import report_diagnostics
 from app.cli.options import add_program_options, circumstances, read_source
 from app.cli.progress import Progress
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers

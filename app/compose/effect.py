@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from core.executor.job import Job
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
 from core.machine.model import Machine
 
 if TYPE_CHECKING:

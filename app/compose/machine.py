@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
-from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:
     from core.machine.model import Machine

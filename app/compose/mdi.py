@@ -15,7 +15,7 @@ from app.desk.mdi.typing import Typing
 from app.desk.session import Proved
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot
-from core.interpreter.begin import Begin, Checkpoint
+from core.interpreter.checkpoint import Begin, Checkpoint
 from core.language.source import Source
 from core.machine.model import Machine
 

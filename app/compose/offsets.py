@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.errors import CommandError
 from app.desk.home import home
 from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.rows import SecondaryRow, ToolRow
 
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Event, Snapshot
 from core.executor.thread import ExecutorThread
 from core.executor.watchdog import Watchdog
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 from core.machine.model import Machine
 from core.ports import Clock, DriverError
 from core.store.errors import StoreError

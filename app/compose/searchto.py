@@ -8,20 +8,20 @@ from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.desk.searchto.search import SearchDesk
 from core.executor.job import Job
-from core.interpreter.restart.approach import Choices
+from core.interpreter.restart.restart_approach import Choices
 from core.machine.model import Machine
 
 if TYPE_CHECKING:
-    from core.interpreter.restart.rebuild import Rebuild
+    from core.interpreter.restart.state_rebuild import StateRebuild
 
 _MODEST = 0.2  # of the manual rapid: legs within the part
 
 
-def rebuilt(job: Job, watch: Watch) -> Rebuild:
+def rebuilt(job: Job, watch: Watch) -> StateRebuild:
     """What goes through the program of a job; the interpreter is loaded when it is first asked for."""
-    from core.interpreter.restart.rebuild import Rebuild
+    from core.interpreter.restart.state_rebuild import StateRebuild
 
-    return Rebuild(job.source, job.setup, watch)
+    return StateRebuild(job.source, job.setup, watch)
 
 
 def give_searchto(desk: Desk, machine: Machine) -> None:

@@ -16,9 +16,8 @@ from app.desk.home import home
 from app.desk.latest import Watch
 from app.desk.session import Proved, Workshop
 from core.executor.job import Job, make_job
-from core.interpreter.modal import Modal
-from core.language.dialect import Dialect
-from core.language.source import Source, SourceError, load_source
+from core.interpreter.modal_state import Modal
+from core.language.source import Dialect, Source, SourceError, load_source
 from core.machine.model import Machine
 
 if TYPE_CHECKING:
@@ -83,6 +82,6 @@ def _whole(source: Source, *folders: Path) -> Source:
     """With the subprograms that it calls: from beside it, or from where programs are kept."""
     if source.dialect is not Dialect.SINUMERIK or source.subprograms:
         return source
-    from core.language.sinumerik.sections import with_subprograms
+    from core.language.sinumerik.subprogram_files import with_subprograms
 
     return with_subprograms(source, [*folders, home() / "programs", samples()])

@@ -11,7 +11,7 @@ from app.cli.errors import CommandError
 from app.compose.offsets import OF_A_FILE
 from app.desk.home import home
 from app.offsets.offset_book import ZeroBook
-from core.interpreter.setup import ZeroOffset
+from core.interpreter.job_setup import ZeroOffset
 from core.store.zero import ZeroRow
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from app.desk import formats
 from app.desk.words import tr
-from core.interpreter.begin import Checkpoint
-from core.interpreter.modal import Modal
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.modal_state import Modal
 
 NONE = formats.NOTHING
 

@@ -12,7 +12,7 @@ from app.desk.settings import Units
 from app.desk.words import tr
 from core.executor.interrupted import Interrupted
 from core.executor.snapshot import Snapshot, Starts, State
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 
 _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
 

@@ -21,8 +21,7 @@ from app.desk.drawing.turned import TurnedSketch, way_of
 from app.desk.swivel.scene import Scene, SceneSketch
 from core.geometry.extent import arc_sweep
 from core.geometry.face import Face
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.series import Series, TimedSeries
+from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 
 if TYPE_CHECKING:
     from core.geometry.mill import PlaneMove, Spot

@@ -6,12 +6,12 @@ from PySide6.QtGui import QFont, QSyntaxHighlighter, QTextCharFormat, QTextDocum
 
 from app.screen.look import Look
 from core.language.diagnostics import ProgramError
-from core.language.dialect import Dialect
-from core.language.ink import Ink
-from core.language.klartext.spans import spans as klartext_spans
+from core.language.klartext.klartext_colours import spans as klartext_spans
 from core.language.omniturn import Line, Word, lex_line
-from core.language.omniturn.plane import ends_program, lex_plane, plane_entry
-from core.language.sinumerik.spans import spans as sinumerik_spans
+from core.language.omniturn.plane_switching_lines import ends_program, lex_plane, plane_entry
+from core.language.sinumerik.sinumerik_colours import spans as sinumerik_spans
+from core.language.source import Dialect
+from core.language.syntax_colours import Ink
 
 PLAIN, IN_PLANE = 0, 1  # states that lines hand on
 

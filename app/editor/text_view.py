@@ -22,7 +22,7 @@ from app.editor.editor import Editor, Stage
 from app.editor.highlight_view import Highlighter
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import dialect_of
+from core.language.source import dialect_of
 
 SIZE = 2.3  # units: the text
 TONES = {Severity.ERROR: "alarm", Severity.WARNING: "pause", Severity.NOTE: "wait"}

@@ -16,7 +16,7 @@ import numpy as np
 
 from app.desk.latest import AbandonedError, Watch
 from core.executor.job import Job
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 if TYPE_CHECKING:
     from app.desk.picture import Picture

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.errors import StoreError
 from core.store.rows import Change, Kind, Row, SecondaryRow, ToolRow, Value
 from core.store.toolset import Touch

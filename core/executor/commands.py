@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Starts
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,8 @@ from core.executor.safe_stop import SafeStop
 from core.executor.snapshot import Event, State
 from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED, demand_allowed
 from core.executor.supervisor import Supervisor
-from core.interpreter.modal import Modal
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
 _STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})

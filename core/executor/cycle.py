@@ -14,8 +14,8 @@ from core.executor.snapshot import State
 from core.executor.standstill import Next, Standstill
 from core.executor.waits import Wait, at_speed
 from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 
 _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
 _ACTIONS = 50  # carried out in one tick at most

@@ -25,7 +25,7 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.executor.spindle import SpindleControl
 from core.executor.states import ACTIVE, CYCLE
 from core.executor.station_watch import StationWatch
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
 from core.machine.model import Machine
 from core.motion.errors import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError

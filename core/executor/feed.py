@@ -10,8 +10,8 @@ from typing import NamedTuple
 from core.executor.alarms import TroubleError
 from core.geometry.arcs import arc_length
 from core.interpreter.actions import SpindleRun
-from core.interpreter.begin import Checkpoint
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.elementary_blocks import Block, Kind
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
 

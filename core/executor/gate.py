@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.executor.bench import Bench
 from core.executor.job import Job, Proof
 from core.executor.snapshot import State
-from core.interpreter.needs import THREAD
+from core.interpreter.machine_requirements import THREAD
 
 _BUSY = {
     State.ESTOP: "E-stop is pressed: release it",

@@ -15,7 +15,7 @@ import numpy as np
 
 from core.executor.thread_way import Phases, Way
 from core.executor.turns import Turns
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import MotionLimits
 from core.ports import AxisSink, Cam, DriverError, Gear, Geared, Segments, Stop
 

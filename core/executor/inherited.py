@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.executor.bench import Bench
-from core.interpreter.ending import after_end
-from core.interpreter.modal import Modal
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.modal_state import Modal
+from core.interpreter.omniturn.carry_over import after_end
 
 
 def at_power_up(bench: Bench) -> Modal:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from core.executor.feed import Pass
 from core.executor.job import Job
 from core.interpreter.dialects import line_alone
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
 
 
 def interpret(job: Job, setup: Setup) -> Pass:

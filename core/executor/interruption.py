@@ -14,9 +14,9 @@ from core.executor.parts import PartCount
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Standing
 from core.executor.states import STOPPED
-from core.interpreter.begin import Begin
-from core.interpreter.blocks import Block
-from core.language.dialect import Dialect
+from core.interpreter.checkpoint import Begin
+from core.interpreter.elementary_blocks import Block
+from core.language.source import Dialect
 
 Note = Callable[[Interrupted | None], None]
 """Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""

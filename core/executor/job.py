@@ -6,11 +6,11 @@ import hashlib
 import math
 from dataclasses import dataclass, field
 
-from core.interpreter.carried import RAPID, UNITS, carried
-from core.interpreter.dialects import Reading
-from core.interpreter.modal import Modal
-from core.interpreter.needs import Need
-from core.interpreter.setup import Setup
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
+from core.interpreter.machine_requirements import Need
+from core.interpreter.modal_state import Modal
+from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
 from core.language.source import Source
 
 
@@ -24,7 +24,7 @@ class Job:
     source: Source
     setup: Setup
     digest: str
-    reading: Reading = field(compare=False, repr=False)
+    reading: ReadProgram = field(compare=False, repr=False)
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that somebody has entered
     carries: frozenset[str] = frozenset()  # what the program has from the job before it
     text_digest: str = ""  # of the text alone
@@ -64,9 +64,16 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     alone = text.hexdigest()
     text.update(repr(circumstances).encode())
-    reading = whole.reading if whole is not None else Reading(source, strict=setup.strict)
+    reading = whole.reading if whole is not None else ReadProgram(source, strict=setup.strict)
     return Job(
-        source, setup, text.hexdigest(), reading, frozenset(setup.tools), carried(source), alone, part_of
+        source,
+        setup,
+        text.hexdigest(),
+        reading,
+        frozenset(setup.tools),
+        inherited_settings(source),
+        alone,
+        part_of,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.executor.alarms import TroubleError
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.machine.model import Axis, Machine
 
 _ROUNDING = 1e-6  # mm

@@ -8,7 +8,7 @@ from core.executor.moving import Progress
 from core.executor.player import Player
 from core.executor.retreat import Retreat
 from core.executor.stretch import Scales
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 
 class Mover:

@@ -6,7 +6,7 @@ from enum import Enum
 from typing import Protocol
 
 from core.executor.feed import BlockFeed
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 
 
 class Progress(Enum):

@@ -15,7 +15,7 @@ from core.executor.stretch import Scales, Stretch
 from core.executor.thread_pass import ThreadPass
 from core.executor.tracks import Track
 from core.executor.turns import Turns
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.path import Path
 from core.motion.plan import plan

@@ -8,8 +8,8 @@ from core.executor.inherited import as_it_is
 from core.executor.job import Job, outdated
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Standing
-from core.interpreter.begin import Begin
-from core.interpreter.modal import Modal
+from core.interpreter.checkpoint import Begin
+from core.interpreter.modal_state import Modal
 
 _NOTHING = {
     Starts.LINE: "no line is ready: type one and press Enter",

@@ -10,9 +10,9 @@ from core.executor.conductor import Conductor
 from core.executor.cycle import Cycle
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.actions import ProgramStop
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
-from core.interpreter.swivel import Swivel
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
+from core.interpreter.working_plane import Swivel
 from core.ports import AxisSample
 
 

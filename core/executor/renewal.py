@@ -8,7 +8,7 @@ from core.executor.commands import Renew
 from core.executor.inherited import with_offsets
 from core.executor.job import Job, outdated
 from core.executor.standing import Standing
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 
 
 class Renewal:

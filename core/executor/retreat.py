@@ -8,7 +8,7 @@ from core.executor.alarms import TroubleError
 from core.executor.bench import Bench
 from core.executor.player import Player
 from core.executor.stretch import Scales
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 _THERE = 1e-6  # mm
 INCH = 25.4

@@ -22,9 +22,9 @@ from core.executor.renewal import Renewal
 from core.executor.snapshot import Starts, State
 from core.executor.standing import Standing
 from core.interpreter.actions import ProgramEnd
-from core.interpreter.modal import Modal
-from core.interpreter.setup import Setup
-from core.language.dialect import Dialect
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+from core.language.source import Dialect
 from core.motion.limits import MotionLimits
 
 

@@ -7,8 +7,8 @@ from enum import StrEnum
 
 from core.alarms import Code
 from core.executor.interrupted import Interrupted
-from core.interpreter.modal import Modal
-from core.interpreter.swivel import Swivel
+from core.interpreter.modal_state import Modal
+from core.interpreter.working_plane import Swivel
 
 
 class State(StrEnum):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from core.executor.alarms import TroubleError
 from core.executor.turns import Turns
 from core.geometry.spindle import surface_rpm
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.machine.model import SpindleModel
 from core.ports import Spindle, SpindleHold, code_of
 

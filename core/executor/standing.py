@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from core.executor.interrupted import Interrupted
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, Starts, State
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 
 
 @dataclass(slots=True)

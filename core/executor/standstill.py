@@ -7,7 +7,7 @@ from enum import Enum, auto
 from core.executor.bench import Bench
 from core.executor.feed import BlockFeed, needs_speed
 from core.executor.waits import Wait, at_speed, carry_out, in_position
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 
 class Next(Enum):

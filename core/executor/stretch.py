@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.path import Path, PathBuilder
 

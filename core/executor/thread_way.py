@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.executor.alarms import TroubleError
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.limits import MotionLimits
 from core.ports import Segments
 

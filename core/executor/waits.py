@@ -21,7 +21,7 @@ from core.interpreter.actions import (
     SpindleStop,
     WaitInput,
 )
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 
 _IN_POSITION = 1.0  # s for a slide that is at rest to arrive
 _COLLET_LATE = 2.0  # s beyond its time

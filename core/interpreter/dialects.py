@@ -6,19 +6,38 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-from core.interpreter.begin import Checkpoint
-from core.interpreter.blocks import Block
-from core.interpreter.modal import Modal
-from core.interpreter.refused import Refused
-from core.interpreter.series import Series
-from core.interpreter.setup import Setup
-from core.language.diagnostics import Diagnostic
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, Source
 
 if TYPE_CHECKING:
-    from core.interpreter.branching import Branching, Guide
-    from core.interpreter.program import Program
+    from core.interpreter.omniturn.conditional_calls import Branching, Guide
+    from core.interpreter.omniturn.omniturn_program import Program
+
+# --- A program that this machine cannot run at all: one finding, and no block.
+
+
+class RefusedPass:
+    """``core.interpreter.dialects.Interpretation`` of nothing."""
+
+    source_blocks = 0
+    used_tools: Sequence[int] = ()
+    missing_tools: Sequence[int] = ()
+
+    def __init__(self, why: str, hint: str) -> None:
+        self.modal = Modal()
+        self.diagnostics: Sequence[Diagnostic] = (
+            Diagnostic(0, 0, Severity.ERROR, "machine-kind", why, hint),
+        )
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """None."""
+        del to_first_error
+        return iter(())
+
 
 _LATHE_AXES = 3
 
@@ -57,7 +76,7 @@ class Interpretation(Protocol):
 
 
 @runtime_checkable
-class InSeries(Protocol):
+class MakesSeries(Protocol):
     """An interpretation that can also hand on whole series of moves; the blocks are the same."""
 
     def series(self) -> Iterator[Block | Series]:
@@ -65,7 +84,7 @@ class InSeries(Protocol):
         ...
 
 
-class Line(Interpretation, Protocol):
+class MdiPass(Interpretation, Protocol):
     """One line of MDI."""
 
     @property
@@ -74,12 +93,12 @@ class Line(Interpretation, Protocol):
         ...
 
 
-Begin = Callable[[Setup], Interpretation]
+PassFactory = Callable[[Setup], Interpretation]
 """One more pass through a text that has been read."""
 
 
-def _omniturn(source: Source, strict: bool) -> Begin:
-    from core.interpreter.program import read_program
+def _omniturn(source: Source, strict: bool) -> PassFactory:
+    from core.interpreter.omniturn.omniturn_program import read_program
 
     return _OmniTurn(read_program(source, strict))
 
@@ -91,28 +110,28 @@ class _OmniTurn:
         self.program = program
 
     def __call__(self, setup: Setup) -> Interpretation:
-        from core.interpreter.run import Interpreter
+        from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 
         return Interpreter(self.program.for_one_pass(), setup)
 
 
-def line_alone(source: Source, setup: Setup) -> Line:
+def line_alone(source: Source, setup: Setup) -> MdiPass:
     """One line of MDI, beginning with what ``setup.begin`` says; MDI speaks OmniTurn alone."""
-    from core.interpreter.run import Interpreter
-    from core.interpreter.single import read_single
+    from core.interpreter.omniturn.mdi_line import read_single
+    from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 
     return Interpreter(read_single(source), setup)
 
 
-def _sinumerik(source: Source, _strict: bool) -> Begin:
-    from core.interpreter.sinumerik.run import Interpreter
+def _sinumerik(source: Source, _strict: bool) -> PassFactory:
+    from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 
     return lambda setup: Interpreter(source, setup)
 
 
-def _klartext(source: Source, _strict: bool) -> Begin:
-    from core.interpreter.klartext.program import read_program
-    from core.interpreter.klartext.run import Interpreter
+def _klartext(source: Source, _strict: bool) -> PassFactory:
+    from core.interpreter.klartext.klartext_interpreter import Interpreter
+    from core.interpreter.klartext.klartext_program import read_program
 
     program = read_program(source)
 
@@ -123,35 +142,35 @@ def _klartext(source: Source, _strict: bool) -> Begin:
     return begin
 
 
-def _refusal(dialect: Dialect, setup: Setup) -> Refused | None:
+def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
     """What this machine, or this start, cannot be asked."""
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
-        return Refused(why, "Choose the machine file of a lathe.")
+        return RefusedPass(why, "Choose the machine file of a lathe.")
     if dialect is Dialect.SINUMERIK and not lathe:
         why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
-        return Refused(why, "Choose the machine file of a lathe.")
+        return RefusedPass(why, "Choose the machine file of a lathe.")
     if dialect is Dialect.KLARTEXT and setup.kinematics is None:
         why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
-        return Refused(why, "Choose the machine file of a mill: --machine ac-table-mill.")
+        return RefusedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
     if dialect is not Dialect.OMNITURN and setup.begin is not None:
         why = f"A {_NAMES[dialect]} program begins with its first block."
-        return Refused(why, "Start it from the beginning.")
+        return RefusedPass(why, "Start it from the beginning.")
     return None
 
 
 _NAMES = {Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
 
 # A language is loaded when a program of it is: the others cost nothing.
-_READERS: Mapping[Dialect, Callable[[Source, bool], Begin]] = {
+_READERS: Mapping[Dialect, Callable[[Source, bool], PassFactory]] = {
     Dialect.OMNITURN: _omniturn,
     Dialect.SINUMERIK: _sinumerik,
     Dialect.KLARTEXT: _klartext,
 }
 
 
-class Reading:
+class ReadProgram:
     """A program's text, read with its first pass and kept for all others: to prove, to draw, to run.
 
     Reading a million blocks takes the better part of a second, which whoever moves the slides has not.
@@ -178,7 +197,7 @@ class Reading:
         read = self._begin
         if not isinstance(read, _OmniTurn) or not read.program.asks:
             return None
-        from core.interpreter.branching import Branching
+        from core.interpreter.omniturn.conditional_calls import Branching
 
         return Branching(read.program.for_one_pass(), setup, guide)
 
@@ -189,15 +208,15 @@ class Reading:
         return read.program if isinstance(read, _OmniTurn) else None
 
     @cached_property
-    def _begin(self) -> Begin:
+    def _begin(self) -> PassFactory:
         return _READERS[self.source.dialect](self.source, self._strict)
 
 
 def interpretation(source: Source, setup: Setup) -> Interpretation:
     """One pass through a program that is read for it alone."""
-    return Reading(source, strict=setup.strict).begin(setup)
+    return ReadProgram(source, strict=setup.strict).begin(setup)
 
 
-def passed_on(interpreter: Interpretation) -> Iterator[Block | Series]:
+def blocks_and_series(interpreter: Interpretation) -> Iterator[Block | Series]:
     """The elementary blocks as whoever goes through a whole program takes them: in series where there are."""
-    return interpreter.series() if isinstance(interpreter, InSeries) else interpreter.blocks()
+    return interpreter.series() if isinstance(interpreter, MakesSeries) else interpreter.blocks()

@@ -1,15 +1,34 @@
-"""Program text as it was read: a name and lines, counted from 1."""
+"""Program text as it was read: a name, its dialect, and lines counted from 1."""
 
 from __future__ import annotations
 
 import codecs
 import re
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import Dialect, dialect_of
+
+# --- Which language a program is written in.
+
+
+class Dialect(StrEnum):
+    """The words are those of the command line and of the JSON."""
+
+    OMNITURN = "omniturn"
+    KLARTEXT = "klartext"
+    SINUMERIK = "sinumerik"
+
+
+_BY_ENDING = {".h": Dialect.KLARTEXT, ".mpf": Dialect.SINUMERIK, ".spf": Dialect.SINUMERIK}
+
+
+def dialect_of(name: str) -> Dialect:
+    """The dialect that a file of this name holds where nobody says otherwise."""
+    return _BY_ENDING.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)
+
 
 # Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
 _LINE_END = re.compile(r"\r\n|\r|\n")

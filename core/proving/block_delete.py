@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from core.interpreter.needs import first_needs
+from core.interpreter.machine_requirements import first_needs
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.language.source import Dialect, Source
 from core.proving.report import Report, Ways
 
 # / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.

@@ -14,12 +14,12 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 
 from core.interpreter.actions import AskInput
-from core.interpreter.branching import Branching
-from core.interpreter.count import terminal
-from core.interpreter.dialects import Reading
-from core.interpreter.needs import first_needs
-from core.interpreter.setup import Setup
-from core.interpreter.statement import Statement
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
+from core.interpreter.machine_requirements import first_needs
+from core.interpreter.omniturn.conditional_calls import Branching
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.program_size import terminal
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Machine
 from core.proving.block_delete import in_order
@@ -81,7 +81,7 @@ def _with(choices: Sequence[Choice], message: str) -> str:
 class Branches:
     """Goes all ways of one program; the first of them in ``gone``, the others in ``proved``."""
 
-    def __init__(self, reading: Reading, setup: Setup, machine: Machine, *, ideal: bool) -> None:
+    def __init__(self, reading: ReadProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
         self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
         self.root = reading.branching(setup, self)
         self._now = _Going(Way(), self.root)

@@ -6,11 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 from core.machine.model import Machine
 
 LIVE = "live"

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.blocks import Block
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Machine
 

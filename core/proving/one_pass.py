@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from core.interpreter.actions import Dwell, ProgramStop
-from core.interpreter.blocks import Block
-from core.interpreter.needs import Need, first_needs, needs_of
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.machine_requirements import Need, first_needs, needs_of
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.model import Machine

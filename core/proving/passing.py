@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from core.interpreter.blocks import Block
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Series
 
 Part = list[Block] | Series
 """Blocks one after the other that have come one by one, or as a series."""

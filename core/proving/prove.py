@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from core.interpreter.dialects import Reading
-from core.interpreter.setup import Setup
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from core.machine.model import Machine
 from core.proving.block_delete import deletes_blocks, with_the_other
@@ -22,7 +22,7 @@ Progress = Callable[[float], None]
 
 
 def prove(
-    program: Source | Reading,
+    program: Source | ReadProgram,
     setup: Setup,
     machine: Machine,
     progress: Progress | None = None,
@@ -38,7 +38,7 @@ def prove(
 
     ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
     """
-    reading = program if isinstance(program, Reading) else Reading(program, strict=setup.strict)
+    reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
     report = _proved(reading, setup, machine, progress, ideal=ideal)
     if not deletes_blocks(reading.source) or (setup.begin is not None and setup.begin.single):
         return report
@@ -48,7 +48,7 @@ def prove(
 
 
 def _proved(
-    reading: Reading, setup: Setup, machine: Machine, progress: Progress | None, *, ideal: bool
+    reading: ReadProgram, setup: Setup, machine: Machine, progress: Progress | None, *, ideal: bool
 ) -> Report:
     """With block delete as it stands, and all inputs both ways."""
     branches = Branches(reading, setup, machine, ideal=ideal)

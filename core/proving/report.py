@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.needs import Need
-from core.interpreter.swivel import Swivel
+from core.interpreter.machine_requirements import Need
+from core.interpreter.working_plane import Swivel
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 
 Range = tuple[float, float]
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import NamedTuple
 
-from core.interpreter.blocks import Block
-from core.interpreter.series import Series, TimedSeries
+from core.interpreter.elementary_blocks import Block, Series, TimedSeries
 from core.motion.timeline import Chunk
 from core.proving.passing import Part
 

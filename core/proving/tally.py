@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from core.geometry.extent import arc_sweep
 from core.geometry.mill import PlaneMove
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.proving.passing import Part
 from core.proving.report import Range, Reach
 

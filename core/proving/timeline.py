@@ -9,10 +9,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.dialects import Interpretation, Reading, passed_on
-from core.interpreter.series import Series, TimedSeries
-from core.interpreter.setup import Setup
+from core.interpreter.dialects import Interpretation, ReadProgram, blocks_and_series
+from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.model import Machine
@@ -54,7 +53,7 @@ class Timeline:
         if ideal:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
-        self._source = passed_on(self.interpreter)
+        self._source = blocks_and_series(self.interpreter)
         self._back: Block | Series | None = None  # what ended a motion and is still to come
         self._moving = Passing()
         self._speed_wanted = False  # a speed was commanded that no feed has waited for yet
@@ -62,10 +61,10 @@ class Timeline:
 
     @classmethod
     def of(
-        cls, program: Source | Reading, setup: Setup, machine: Machine, *, ideal: bool = False
+        cls, program: Source | ReadProgram, setup: Setup, machine: Machine, *, ideal: bool = False
     ) -> Timeline:
         """The timeline of a program's text, or of its reading."""
-        reading = program if isinstance(program, Reading) else Reading(program, strict=setup.strict)
+        reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
         return cls(reading.begin(setup), setup, machine, ideal=ideal)
 
     @property

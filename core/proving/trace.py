@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from core.geometry.spindle import surface_rpm
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.timeline import sample_positions
 from core.proving.stretches import Moved, Rested
 from core.proving.timeline import Timeline

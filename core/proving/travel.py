@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.series import Series
+from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.model import Axis, Machine
 

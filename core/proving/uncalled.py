@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.interpreter.dialects import Reading
-from core.interpreter.program import Program
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.omniturn.omniturn_program import Program
 from core.language.diagnostics import Diagnostic, Severity
 
 
-def uncalled(reading: Reading) -> Iterator[Diagnostic]:
+def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
     """A note for each subroutine that no line of the main program leads to."""
     program = reading.program
     if program is None or not program.structure.subroutines:

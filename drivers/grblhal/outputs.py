@@ -77,7 +77,7 @@ class GrblIO:
         return f"{terminal} is not among the controller's {have} auxiliary outputs"
 
     def able(self) -> frozenset[str]:
-        """What a program may ask of the terminals, as ``core.interpreter.needs`` names it."""
+        """What a program may ask of the terminals, as ``core.interpreter.machine_requirements`` names it."""
         outputs = {f"output {name}" for name in self._wanted if not self.lacking(name)}
         there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
         names = there | {self._c.config.inputs[name].terminal for name in there}

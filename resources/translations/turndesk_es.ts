@@ -7144,667 +7144,667 @@
       <translation>la trayectoria junto a él cortaría a otro</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>%1 is missing: under G90 and G73, I and K are the centre's coordinates.</source>
       <translation>Falta %1: con G90 y G73, I y K son las coordenadas del centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>A full circle takes I and K.</source>
       <translation>Un círculo completo lleva I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Add %1.</source>
       <translation>Agregue %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Add R, or I and K.</source>
       <translation>Agregue R, o I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Arcs cannot be incremental in diameter mode.</source>
       <translation>Los arcos no pueden ser incrementales en modo diámetro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct I and K.</source>
       <translation>Corrija I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct R or the end point.</source>
       <translation>Corrija R o el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Give larger arcs I and K.</source>
       <translation>A los arcos mayores déles I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>I and K are distances from the start here.</source>
       <translation>Aquí I y K son distancias desde el inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>I and K are the centre's coordinates here.</source>
       <translation>Aquí I y K son las coordenadas del centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Keep one way.</source>
       <translation>Deje una sola forma.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
       <translation>R es %1, y los extremos están tan separados que necesita al menos %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>R must be a number over 0.</source>
       <translation>R debe ser un número mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc by R ends where it starts.</source>
       <translation>El arco por R termina donde empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc has R and %1.</source>
       <translation>El arco tiene R y %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc has neither R nor I and K.</source>
       <translation>El arco no tiene ni R ni I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc's radius is %1 at its start and %2 at its end.</source>
       <translation>El radio del arco es %1 al inicio y %2 al final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The centre of the arc is its start point.</source>
       <translation>El centro del arco es su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arcs.py" />
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Use G90 or G73 for the arc.</source>
       <translation>Use G90 o G73 para el arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arrival.py" />
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
       <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/arrival.py" />
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>Write G04F%1 after it, or longer.</source>
       <translation>Escriba después G04F%1, o más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>%1 leaves nothing of the box to cut.</source>
       <translation>%1 no deja nada de la caja por cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>%1 needs %2 of the corner opposite to the start point.</source>
       <translation>%1 necesita %2 de la esquina opuesta al punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Correct %1 or the start point.</source>
       <translation>Corrija %1 o el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The box has no size along %1: its corner lies at the start point.</source>
       <translation>La caja no tiene medida en %1: su esquina está en el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>U is less than the way from the start to X.</source>
       <translation>U es menor que el camino del inicio a X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/box_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>the greatest depth of cut</source>
       <translation>la mayor profundidad de corte</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
       <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>A T stands between G35 and G36.</source>
       <translation>Hay una T entre G35 y G36.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>G%1 is not followed by a G92 with X and Z.</source>
       <translation>A G%1 no le sigue un G92 con X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>G%1 stands alone on its line.</source>
       <translation>G%1 va sola en su línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>G35 is in force already.</source>
       <translation>G35 ya está vigente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>G36 stands elsewhere than its G35, which was at radius %1, Z %2.</source>
       <translation>G36 está en otro lugar que su G35, que estaba en radio %1, Z %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Move back there before G36.</source>
       <translation>Regrese ahí antes de G36.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>No G35 is in force that G36 could end.</source>
       <translation>No hay G35 vigente que G36 pueda terminar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Put the rest on a line of its own.</source>
       <translation>Ponga lo demás en su propia línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Take the line out.</source>
       <translation>Quite la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>The G92 behind G%1 says another place than radius %2, Z %3.</source>
       <translation>El G92 tras G%1 dice otro lugar que radio %2, Z %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Write G35 or G35F2.</source>
       <translation>Escriba G35 o G35F2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Write G36 before it.</source>
       <translation>Escriba G36 antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/coarse.py" />
+      <location filename="core/interpreter/omniturn/coarse_feeds.py" />
       <source>Write G92 with the present X and Z on the next line.</source>
       <translation>Escriba en la línea siguiente G92 con la X y la Z actuales.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/codes.py" />
+      <location filename="core/interpreter/omniturn/code_table.py" />
       <source>coarse feed</source>
       <translation>avance burdo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/codes.py" />
+      <location filename="core/interpreter/omniturn/code_table.py" />
       <source>nose compensation</source>
       <translation>compensación de punta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/codes.py" />
+      <location filename="core/interpreter/omniturn/code_table.py" />
       <source>speed limits</source>
       <translation>topes de velocidad</translation>
     </message>
     <message>
-      <location filename="core/interpreter/codes.py" />
+      <location filename="core/interpreter/omniturn/code_table.py" />
       <source>spindle mode</source>
       <translation>modo de husillo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1 cannot follow this move.</source>
       <translation>%1 no puede seguir este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1 with a nose radius of %2 cannot follow this move: %3.</source>
       <translation>%1 con radio de punta %2 no puede seguir este movimiento: %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Move off the part on a straight line.</source>
       <translation>Salga de la pieza en línea recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Move off the part.</source>
       <translation>Salga de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>No move follows the contour between the approach and the departure of %1.</source>
       <translation>Ningún movimiento sigue el contorno entre la entrada y la salida de %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Take a smaller nose, or change the contour.</source>
       <translation>Use una punta menor, o cambie el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The departure, the last move before G40, has no length.</source>
       <translation>La salida, el último movimiento antes de G40, no tiene largo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The departure, the move before G40, is no straight line.</source>
       <translation>La salida, el movimiento antes de G40, no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Write G40 before it.</source>
       <translation>Escriba G40 antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/compensate.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Write the contour between them.</source>
       <translation>Escriba el contorno entre ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>%1 cannot make a corner: %2.</source>
       <translation>%1 no puede hacer una esquina: %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>A corner needs two straight moves in a row.</source>
       <translation>Una esquina necesita dos rectas seguidas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Make it smaller.</source>
       <translation>Hágala menor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Take C or R out.</source>
       <translation>Quite C o R.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>The two moves run in one direction: there is no corner to cut.</source>
       <translation>Los dos movimientos van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>it takes %1 of %2, which has %3 left</source>
       <translation>ocupa %1 de %2, al que le quedan %3</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the contour ends here</source>
       <translation>el contorno termina aquí</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the next move</source>
       <translation>el movimiento siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the next move is an arc</source>
       <translation>el movimiento siguiente es un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>this move</source>
       <translation>este movimiento</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>%1 finds no unbroken way along the contour at the distance U.</source>
       <translation>%1 no halla un camino continuo junto al contorno a la distancia U.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>%1 passes beside a contour of %2 lines and arcs are too many to work out.</source>
       <translation>%1 pasadas junto a un contorno de %2 líneas y arcos son demasiadas para calcular.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Both ends of the contour have the %1 of the start point: there is no area to cut.</source>
       <translation>Los dos extremos del contorno tienen la %1 del punto de inicio: no hay área que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Look whether the tool can do so.</source>
       <translation>Vea si la herramienta puede hacerlo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Look whether the tool fits.</source>
       <translation>Vea si la herramienta cabe.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Lower U, or open the narrow place.</source>
       <translation>Baje U, o abra el paso estrecho.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Move the start point away from the contour.</source>
       <translation>Aleje del contorno el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Move the start point beyond both ends.</source>
       <translation>Ponga el punto de inicio más allá de ambos extremos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>On the way from the start point to the contour and back the tool comes nearer to it than U.</source>
       <translation>En el camino del punto de inicio al contorno y de regreso la herramienta se acerca a menos de U.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>P does not say which subroutine describes the contour.</source>
       <translation>P no dice qué subrutina describe el contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Raise I, or describe the contour in fewer moves.</source>
       <translation>Suba I, o describa el contorno en menos movimientos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Run it with fewer, longer moves.</source>
       <translation>Córralo con menos movimientos, más largos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Start farther from the contour in X.</source>
       <translation>Empiece más lejos del contorno en X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The contour has %1 lines and arcs; %2 are the most.</source>
       <translation>El contorno tiene %1 líneas y arcos; lo más son %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The contour leaves nothing to cut between it and the start point.</source>
       <translation>El contorno no deja nada que cortar entre él y el punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The contour rises and falls again: the tool plunges into the material behind the rise.</source>
       <translation>El contorno sube y vuelve a bajar: la herramienta se hunde en el material detrás de la subida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The contour runs back along Z: behind that edge the pass along it cuts all that is there.</source>
       <translation>El contorno regresa en Z: detrás de ese filo la pasada corta todo lo que hay.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The start point lies between the ends of the contour in %1, not outside of both.</source>
       <translation>El punto de inicio está entre los extremos del contorno en %1, no fuera de ambos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_cycle.py" />
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>Write its number after P.</source>
       <translation>Escriba su número tras P.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>%1 and its like do not count in the contour of G%2.</source>
       <translation>%1 y similares no cuentan en el contorno de G%2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>%1 cannot stand in a contour</source>
       <translation>%1 no puede estar en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>%1: a corner's size must be a number over 0.</source>
       <translation>%1: el tamaño de una esquina debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>A contour holds moves, arcs and corners written out.</source>
       <translation>Un contorno contiene movimientos, arcos y esquinas escritos completos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Correct the line.</source>
       <translation>Corrija la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Finish with a contour of its own.</source>
       <translation>Termine con un contorno propio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>G%1 cannot stand in a contour</source>
       <translation>G%1 no puede estar en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Keep one of them.</source>
       <translation>Deje uno de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Nose compensation cannot be switched in a contour</source>
       <translation>La compensación de punta no se puede cambiar en un contorno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Take it out.</source>
       <translation>Quítelo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The contour cannot be read here</source>
       <translation>El contorno no se puede leer aquí</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The contour changes modes or coordinates; after the cycle those before it hold again.</source>
       <translation>El contorno cambia modos o coordenadas; tras el ciclo vuelven a valer los de antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The contour of G%1 has no line or arc.</source>
       <translation>El contorno de G%1 no tiene línea ni arco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The first line of a contour is its first point, which takes no arc and no corner</source>
       <translation>La primera línea de un contorno es su primer punto, que no lleva arco ni esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>The line has both C and R.</source>
       <translation>La línea tiene C y R a la vez.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Write X and Z of the point alone.</source>
       <translation>Escriba sólo la X y la Z del punto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Write its points.</source>
       <translation>Escriba sus puntos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/contour_reading.py" />
+      <location filename="core/interpreter/omniturn/cycle_contour.py" />
       <source>Write the size in full.</source>
       <translation>Escriba el tamaño completo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>%1 (line %2)</source>
       <translation>%1 (línea %2)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>%1 makes a corner at the end of a straight move, and the line has none.</source>
       <translation>%1 hace una esquina al final de una recta, y la línea no tiene ninguna.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>%1 on line %2 is no straight move</source>
       <translation>%1 en la línea %2 no es una recta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Lines %1 and %2 run in one direction: there is no corner to cut.</source>
       <translation>Las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>Put it on the line with X or Z.</source>
       <translation>Póngalo en la línea con X o Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>an arc</source>
       <translation>un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>another motion</source>
       <translation>otro movimiento</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>it takes %1 of the move on line %2, which has %3 left</source>
       <translation>ocupa %1 del movimiento de la línea %2, al que le quedan %3</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>no move follows</source>
       <translation>no sigue ningún movimiento</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>no move follows before %1</source>
       <translation>no sigue ningún movimiento antes de %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>no straight line</source>
       <translation>ninguna recta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>nose compensation ends before the next move</source>
       <translation>la compensación de punta termina antes del movimiento siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the move on line %1 has no length</source>
       <translation>el movimiento de la línea %1 no tiene largo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/corners.py" />
+      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the next move, on line %1, is %2</source>
       <translation>el movimiento siguiente, en la línea %1, es %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/count.py" />
+      <location filename="core/interpreter/omniturn/program_size.py" />
       <source>Lower the counts of the loops.</source>
       <translation>Baje las cuentas de los lazos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/count.py" />
+      <location filename="core/interpreter/omniturn/program_size.py" />
       <source>The program executes %1 lines; %2 are the most.</source>
       <translation>El programa ejecuta %1 líneas; lo más son %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/count.py" />
+      <location filename="core/interpreter/omniturn/program_size.py" />
       <source>The program makes %1 blocks; %2 are the most.</source>
       <translation>El programa hace %1 bloques; lo más son %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/count.py" />
+      <location filename="core/interpreter/omniturn/program_size.py" />
       <source>about 10^%1</source>
       <translation>cerca de 10^%1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1 cannot run while nose compensation is active.</source>
       <translation>%1 no puede correr con la compensación de punta activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1 has no feed: none for cutting is in force.</source>
       <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1 is the first move after the T on line %2: its start point is not known.</source>
       <translation>%1 es el primer movimiento tras la T de la línea %2: no se conoce su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1 needs %2, %3.</source>
       <translation>%1 necesita %2, %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1 would make %2 %3; %4 are the most.</source>
       <translation>%1 haría %2 %3; lo más son %4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1: %2, %3, must be over 0.</source>
       <translation>%1: %2, %3, debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>%1: U is what the cycle leaves on a side, which is never negative.</source>
       <translation>%1: U es lo que el ciclo deja por lado, y nunca es negativo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Correct %1.</source>
       <translation>Corrija %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Look for a lost decimal point in %1.</source>
       <translation>Busque un punto decimal perdido en %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Move to X and Z of the start point before it.</source>
       <translation>Muévase antes a la X y la Z del punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Put G40 and a departure before it.</source>
       <translation>Ponga antes G40 y una salida.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Take the sign out.</source>
       <translation>Quite el signo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/cycle_blocks.py" />
+      <location filename="core/interpreter/omniturn/cycle_motions.py" />
       <source>Write F on the %1 line.</source>
       <translation>Escriba F en la línea de %1.</translation>
     </message>
@@ -7844,2257 +7844,2257 @@
       <translation>Empiécelo desde el principio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>%1 lies in the hole, not before the depth of the first peck.</source>
       <translation>%1 está dentro del barreno, no antes de la profundidad del primer picoteo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>%1 needs Z, the bottom of the hole.</source>
       <translation>%1 necesita Z, el fondo del barreno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>%1: the rate of the retract goes from over 0 to %2.</source>
       <translation>%1: la velocidad de retiro va de más de 0 a %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>Correct Z, or start farther out.</source>
       <translation>Corrija Z, o empiece más afuera.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>R is where the drill comes out of the hole.</source>
       <translation>R es donde la broca sale del barreno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>The bottom of the hole at %1 is not beyond the start point at %2.</source>
       <translation>El fondo del barreno en %1 no está más allá del punto de inicio en %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>the depth of a peck</source>
       <translation>la profundidad de un picoteo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/drilling.py" />
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>the distance before the cut at which the feed begins</source>
       <translation>la distancia antes del corte en que empieza el avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/execute.py" />
+      <location filename="core/interpreter/omniturn/block_execution.py" />
       <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
       <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/execute.py" />
+      <location filename="core/interpreter/omniturn/block_execution.py" />
       <source>G04 does not say how long.</source>
       <translation>G04 no dice cuánto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/execute.py" />
+      <location filename="core/interpreter/omniturn/block_execution.py" />
       <source>Write G04Fn, n in seconds.</source>
       <translation>Escriba G04Fn, n en segundos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Feed %1 is out of range: %2 to %3.</source>
       <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Feed %1 is over %2 at %3 rpm, which is %4.</source>
       <translation>El avance %1 pasa de %2 a %3 rpm, que es %4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Feed %1 is over %2.</source>
       <translation>El avance %1 pasa de %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Feed %1 is very high for cutting.</source>
       <translation>El avance %1 es muy alto para cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>G00 stands with F, G94 or G95, each of which ends the rapid.</source>
       <translation>G00 está con F, G94 o G95, y cada uno termina el rápido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>G01 goes back to the last cutting feed, and none has been set after the first line.</source>
       <translation>G01 vuelve al último avance de corte, y no se puso ninguno después de la primera línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>G96 is active and no S has given a surface speed.</source>
       <translation>G96 está activo y ninguna S dio una velocidad superficial.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Look at F and at G94/G95.</source>
       <translation>Vea la F y G94/G95.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Look for a lost decimal point, or G94 for G95.</source>
       <translation>Busque un punto decimal perdido, o G94 en vez de G95.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Look for a lost decimal point.</source>
       <translation>Busque un punto decimal perdido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Lower F or S.</source>
       <translation>Baje F o S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Set one with G95Fn or G94Fn.</source>
       <translation>Ponga uno con G95Fn o G94Fn.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Split the line.</source>
       <translation>Divida la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Start it with M03 or M04, or use G94.</source>
       <translation>Arránquelo con M03 o M04, o use G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>The move has no feed.</source>
       <translation>El movimiento no tiene avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>The spindle stands, and the move runs at %1.</source>
       <translation>El husillo está parado, y el movimiento corre a %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>This move takes %1 s at %2.</source>
       <translation>Este movimiento tarda %1 s a %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Write F on this line or before it.</source>
       <translation>Escriba F en esta línea o antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Write S beside G96.</source>
       <translation>Escriba S junto a G96.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>a feed per revolution</source>
       <translation>un avance por vuelta</translation>
     </message>
     <message>
-      <location filename="core/interpreter/feeds.py" />
+      <location filename="core/interpreter/omniturn/feeds.py" />
       <source>constant surface speed</source>
       <translation>velocidad superficial constante</translation>
     </message>
     <message>
-      <location filename="core/interpreter/flow.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>A subroutine must not call itself.</source>
       <translation>Una subrutina no debe llamarse a sí misma.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/flow.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Subroutines call each other more than %1 deep.</source>
       <translation>Las subrutinas se llaman unas a otras a más de %1 niveles.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>A subprogram must not call itself.</source>
       <translation>Un subprograma no debe llamarse a sí mismo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/flow.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Calls are nested more than %1 deep at LBL %2.</source>
       <translation>Las llamadas se anidan a más de %1 niveles en LBL %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source> with %1</source>
       <translation> con %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>%1 %2 is not between %3 and %4.</source>
       <translation>%1 %2 no está entre %3 y %4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Correct the angle.</source>
       <translation>Corrija el ángulo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Correct the points.</source>
       <translation>Corrija los puntos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Look at points, angles and SYM.</source>
       <translation>Vea los puntos, los ángulos y SYM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>No position of the rotary axes inside their ranges gives this plane%1.</source>
       <translation>Ninguna posición de los ejes giratorios dentro de su alcance da este plano%1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>TABLE ROT</source>
       <translation>TABLE ROT</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Take the word out.</source>
       <translation>Quite la palabra.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>This machine has no rotary axis %1.</source>
       <translation>Esta máquina no tiene eje giratorio %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Where the table stands at the start decides which of two ways it swivels.</source>
       <translation>De dónde está la mesa al arrancar depende en cuál de dos sentidos bascula.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/frames.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Write SYM+ or SYM-, or position the table before.</source>
       <translation>Escriba SYM+ o SYM-, o posicione antes la mesa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M%1 stands twice in the block.</source>
       <translation>M%1 está dos veces en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M%1 starts the spindle, and no TOOL CALL has given S.</source>
       <translation>M%1 arranca el husillo, y ningún TOOL CALL dio S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M%1 while M128 is on.</source>
       <translation>M%1 con M128 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>More than one M function of the block steers the spindle.</source>
       <translation>Más de una función M del bloque manda el husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>Switch it off with M129 before.</source>
       <translation>Apáguelo antes con M129.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>TOOL %1</source>
       <translation>TOOL %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>Take one out.</source>
       <translation>Quite una.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/functions.py" />
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>Write S behind TOOL CALL.</source>
       <translation>Escriba S tras TOOL CALL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>%1 stand elsewhere than the plane of line %2 asks.</source>
       <translation>%1 están en otra posición que la que pide el plano de la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>A move of %1 with M128</source>
       <translation>Un movimiento de %1 con M128</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>A move with M128 and %1 swivelled</source>
       <translation>Un movimiento con M128 y %1 inclinado</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block.</source>
       <translation>Posiciónelos antes del corte: L A+Q120 C+Q122 R0 FMAX, o TURN en el bloque PLANE.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>Start it with M3 or M4.</source>
       <translation>Arránquelo con M3 o M4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>This feed move runs with the spindle at rest.</source>
       <translation>Este movimiento de avance corre con el husillo parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/moves.py" />
+      <location filename="core/interpreter/klartext/l_moves.py" />
       <source>This machine has no axis %1.</source>
       <translation>Esta máquina no tiene eje %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>M128 is on.</source>
       <translation>M128 está activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
       <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>No TOOL CALL has named a tool axis.</source>
       <translation>Ningún TOOL CALL nombró un eje de herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>The datum was shifted in the tilted system of line %1.</source>
       <translation>El origen se desplazó en el sistema inclinado de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM.</source>
       <translation>Si era en el sistema de la pieza, escriba PLANE RESET STAY antes de TRANS DATUM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Write MB with a length.</source>
       <translation>Escriba MB con una longitud.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/planes.py" />
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>Write TOOL CALL n Z before.</source>
       <translation>Escriba antes TOOL CALL n Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>A file holds one program.</source>
       <translation>Un archivo contiene un solo programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Correct the number, or write the label.</source>
       <translation>Corrija el número, o escriba la etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>END PGM is missing.</source>
       <translation>Falta END PGM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Give it another number.</source>
       <translation>Déle otro número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>LBL %1 is nowhere in the program.</source>
       <translation>LBL %1 no está en ninguna parte del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>LBL %1 stands on line %2 too.</source>
       <translation>LBL %1 está también en la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Look whether the file is whole.</source>
       <translation>Vea si el archivo está completo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Move it before END PGM.</source>
       <translation>Muévalo antes de END PGM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>The first block names program and unit.</source>
       <translation>El primer bloque nombra programa y unidad.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>The program begins as %1 and ends as %2.</source>
       <translation>El programa empieza como %1 y termina como %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>The subprogram LBL %1 has no LBL 0.</source>
       <translation>El subprograma LBL %1 no tiene LBL 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>This block stands behind END PGM.</source>
       <translation>Este bloque está después de END PGM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write LBL 0 behind it.</source>
       <translation>Escriba LBL 0 después.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/program.py" />
+      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write the unit of the program in both.</source>
       <translation>Escriba en ambos la unidad del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/run.py" />
+      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>Lower the counts of the repeats.</source>
       <translation>Baje los números de las repeticiones.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>A tool by its name</source>
       <translation>Una herramienta por su nombre</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>S%1 is over the spindle's %2 rpm.</source>
       <translation>S%1 pasa de las %2 rpm del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>Set the tool's offset.</source>
       <translation>Ponga la compensación de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>TOOL CALL while M128 is on.</source>
       <translation>TOOL CALL con M128 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>The tool axis %1</source>
       <translation>El eje de herramienta %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/tools.py" />
+      <location filename="core/interpreter/klartext/tool_call.py" />
       <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
       <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Correct the value.</source>
       <translation>Corrija el valor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>F must be above zero.</source>
       <translation>F debe ser mayor que cero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>No feed is in force.</source>
       <translation>No hay avance vigente.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Q%1 has no value yet.</source>
       <translation>Q%1 todavía no tiene valor.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>The last TOOL CALL has no F.</source>
       <translation>El último TOOL CALL no tiene F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write F behind TOOL CALL.</source>
       <translation>Escriba F tras TOOL CALL.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write F or FMAX.</source>
       <translation>Escriba F o FMAX.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write Q%1 = … before.</source>
       <translation>Escriba antes Q%1 = …</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/words.py" />
+      <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write a feed.</source>
       <translation>Escriba un avance.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1, less than the nose radius %2.</source>
       <translation>%1, menos que el radio de punta %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1, less than twice the nose radius %2.</source>
       <translation>%1, menos que el doble del radio de punta %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Choose another way for the %1, or the other side.</source>
       <translation>Elija otro camino para la %1, o el otro lado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Keep twice the nose radius off the part.</source>
       <translation>Quede a dos veces el radio de punta de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Move farther off the part.</source>
       <translation>Aléjese más de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>On the %1 the nose of G%2 cuts into the part.</source>
       <translation>En la %1 la punta de G%2 corta la pieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The %1 %2 %3 off the part</source>
       <translation>La %1 %2 %3 de la pieza</translation>
     </message>
     <message>
-      <location filename="core/interpreter/lead.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The %1 is %2 long, less than the nose radius %3.</source>
       <translation>La %1 mide %2, menos que el radio de punta %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>%1 is defined, and not switched on in the machine file.</source>
       <translation>%1 está definido, y no activado en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>%1 is no code of this machine. %2</source>
       <translation>%1 no es código de esta máquina. %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>M13 opens the collet while the spindle turns.</source>
       <translation>M13 abre la boquilla con el husillo girando.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>Set enabled = true for %1 under [m_codes].</source>
       <translation>Ponga enabled = true para %1 en [m_codes].</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>Stop it with M05 first.</source>
       <translation>Párelo primero con M05.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/mcodes.py" />
+      <location filename="core/interpreter/omniturn/m_codes.py" />
       <source>The machine file assigns the outputs.</source>
       <translation>El archivo de máquina asigna las salidas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>%1 is finer than the step of %2 %3; %4 is used.</source>
       <translation>%1 es más fino que el paso de %2 %3; se usa %4.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>%1 is finer than the step; %2 is used.</source>
       <translation>%1 es más fino que el paso; se usa %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>Round the number.</source>
       <translation>Redondee el número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>The first move after %1 lacks %2.</source>
       <translation>Al primer movimiento tras %1 le falta %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>This move is a rapid because of the G00 beside the comment on line %1.</source>
       <translation>Este movimiento es rápido por el G00 junto al comentario de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>Write G01 if it is meant to cut.</source>
       <translation>Escriba G01 si debe cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>Write both X and Z, or G92 before it.</source>
       <translation>Escriba X y Z, o G92 antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/moves.py" />
+      <location filename="core/interpreter/omniturn/straight_moves.py" />
       <source>the T on line %1</source>
       <translation>la T de la línea %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>a thread that pulls out in step with the spindle; end it in a groove</source>
       <translation>una rosca que sale en paso con el husillo; termínela en una ranura</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>constant surface speed; program the spindle in rpm with G97</source>
       <translation>velocidad superficial constante; programe el husillo en rpm con G97</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>input %1</source>
       <translation>la entrada %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>milling in a switched plane</source>
       <translation>fresado en un plano cambiado</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>more axes than X and Z</source>
       <translation>más ejes que X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>output collet</source>
       <translation>la salida de la boquilla</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>output coolant</source>
       <translation>la salida del refrigerante</translation>
     </message>
     <message>
-      <location filename="core/interpreter/needs.py" />
+      <location filename="core/interpreter/machine_requirements.py" />
       <source>the C axis</source>
       <translation>el eje C</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>%1 stands while G%2 is on.</source>
       <translation>%1 está con G%2 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>A subroutine is called while G%1 is on.</source>
       <translation>Se llama una subrutina con G%1 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Approach on a straight line with D.</source>
       <translation>Entre en línea recta con D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>D belongs on the first move after G41 or G42 alone.</source>
       <translation>D va sólo en el primer movimiento tras G41 o G42.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>D changes while G%1 is on.</source>
       <translation>D cambia con G%1 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>End G%1 first: a move off the part, then G40.</source>
       <translation>Termine primero G%1: un movimiento fuera de la pieza, luego G40.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Enter the nose radius among the offsets.</source>
       <translation>Ponga el radio de punta entre las compensaciones.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Enter the nose radius without a sign; G41 and G42 say the side.</source>
       <translation>Ponga el radio de punta sin signo; G41 y G42 dicen el lado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>G%1 comes while G%2 is on.</source>
       <translation>G%1 viene con G%2 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>G%1 does not stand alone on its line.</source>
       <translation>G%1 no va sola en su línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>G%1 stands in a subroutine.</source>
       <translation>G%1 está en una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Move off the part and write G40 before it.</source>
       <translation>Salga de la pieza y escriba G40 antes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Plane switching stands while G%1 is on.</source>
       <translation>Hay cambio de plano con G%1 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>R of D%1 is 0: G%2 compensates nothing.</source>
       <translation>La R de D%1 es 0: G%2 no compensa nada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>R of D%1 is negative.</source>
       <translation>La R de D%1 es negativa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The first move after G%1 on line %2 is no straight line.</source>
       <translation>El primer movimiento tras G%1 en la línea %2 no es una recta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The first move after G%1 on line %2 names no D.</source>
       <translation>El primer movimiento tras G%1 en la línea %2 no nombra D.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The program ends while G%1 is on.</source>
       <translation>El programa termina con G%1 activo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Write Dn: its R is the nose radius.</source>
       <translation>Escriba Dn: su R es el radio de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/nose.py" />
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Write the compensated contour in the main program.</source>
       <translation>Escriba el contorno compensado en el programa principal.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Begin with G90G94F300.</source>
       <translation>Empiece con G90G94F300.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Neither G90 (absolute) nor G91 (incremental) is in force.</source>
       <translation>No está vigente ni G90 (absoluto) ni G91 (incremental).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Say one of them first.</source>
       <translation>Diga primero uno de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>The first line must say G90 (absolute) or G91 (incremental).</source>
       <translation>La primera línea debe decir G90 (absoluto) o G91 (incremental).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>The program names neither G70 nor G71; it runs in millimetres, in which the control counts.</source>
       <translation>El programa no dice G70 ni G71; corre en milímetros, que es en lo que cuenta el control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/opening.py" />
+      <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Write G70 or G71 on the first line.</source>
       <translation>Escriba G70 o G71 en la primera línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>(~%1) needs the tool on the negative X side, and X is %2.</source>
       <translation>(~%1) necesita la herramienta del lado X negativo, y X es %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>(~%1) turns C, which is not locked.</source>
       <translation>(~%1) gira C, que no está bloqueado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>(~%1) under G95: a plane is fed in inches a minute.</source>
       <translation>(~%1) con G95: un plano avanza en pulgadas por minuto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>(~%1) with nose compensation on.</source>
       <translation>(~%1) con compensación de punta activa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Correct it.</source>
       <translation>Corríjalo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>D belongs to (~PLZC).</source>
       <translation>D pertenece a (~PLZC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>D comes where Y is %1: it would move Y.</source>
       <translation>D viene donde Y es %1: movería Y.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>D must be a diameter over 0.</source>
       <translation>D debe ser un diámetro mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>H belongs to (~PLXC).</source>
       <translation>H pertenece a (~PLXC).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>H comes after a move or F.</source>
       <translation>H viene después de un movimiento o F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Move there before the plane.</source>
       <translation>Muévase ahí antes del plano.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Move to X- before it.</source>
       <translation>Muévase antes a X-.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The T on line %1 has not been moved to X and Z.</source>
       <translation>La T de la línea %1 no se ha movido a X y Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Write G40 before.</source>
       <translation>Escriba antes G40.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Write G94 with F before.</source>
       <translation>Escriba antes G94 con F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Write M19 before.</source>
       <translation>Escriba antes M19.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Write it first.</source>
       <translation>Escríbalo primero.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Write it where Y is 0.</source>
       <translation>Escríbalo donde Y es 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>I and J are the centre's coordinates.</source>
       <translation>I y J son las coordenadas del centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The tool stands meanwhile; lead it past the axis.</source>
       <translation>La herramienta se detiene entretanto; llévela al lado del eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The tool's centre line stands H beside the axis.</source>
       <translation>La línea central de la herramienta está a H del eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The way comes within %1 of the axis; with this H the tool reaches %2.</source>
       <translation>El camino pasa a %1 del eje; con esta H la herramienta alcanza %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>The way leads through the axis: C turns by %1 degrees there.</source>
       <translation>El camino pasa por el eje: ahí C gira %1 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/plane_moves.py" />
+      <location filename="core/interpreter/omniturn/plane_switching.py" />
       <source>Z%1 lies beyond the centre: Z is the diameter that the tip touches.</source>
       <translation>Z%1 está más allá del centro: Z es el diámetro que toca la punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1 has no number.</source>
       <translation>%1 no tiene número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1 is finer than the step of %2 degrees; %3 is used.</source>
       <translation>%1 es más fino que el paso de %2 grados; se usa %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1 needs a C axis, and the machine file switches it off.</source>
       <translation>%1 necesita un eje C, y el archivo de máquina lo apaga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1 turns the spindle, which is not locked.</source>
       <translation>%1 gira el husillo, que no está bloqueado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>%1: C turns at more than 0 and at most %2 rpm.</source>
       <translation>%1: C gira a más de 0 y a lo más %2 rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>At %1 rpm of C this feed is %2; %3 is the most.</source>
       <translation>A %1 rpm de C este avance es %2; lo más es %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>C turns %1 degrees; the way of the slide at this feed needs %2.</source>
       <translation>C gira %1 grados; el camino del carro a este avance necesita %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>G89 locks the spindle and stands without M codes.</source>
       <translation>G89 bloquea el husillo y va sin códigos M.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Set axis.C.enabled.</source>
       <translation>Ponga axis.C.enabled.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>The line holds %1 and %2.</source>
       <translation>La línea contiene %1 y %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>The slide is fed by the turns of C, and no S has said how fast it turns.</source>
       <translation>El carro avanza por las vueltas de C, y ninguna S dijo qué tan rápido gira.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Turn C further, or raise F: the slide would stop on its way.</source>
       <translation>Gire más C, o suba F: el carro se detendría en el camino.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Write M19 or M89 before.</source>
       <translation>Escriba antes M19 o M89.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Write S on the line.</source>
       <translation>Escriba S en la línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/positioning.py" />
+      <location filename="core/interpreter/omniturn/c_axis.py" />
       <source>Write the degrees.</source>
       <translation>Escriba los grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>%1 is a comment without its ~, and so are the lines up to (END): nothing is milled.</source>
       <translation>%1 es un comentario sin su ~, y también las líneas hasta (END): no se fresa nada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>A comment stands inside a loop.</source>
       <translation>Hay un comentario dentro de un lazo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Move it before LS.</source>
       <translation>Muévalo antes de LS.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Move it before M30, or start a subroutine with }n.</source>
       <translation>Muévalo antes de M30, o empiece una subrutina con }n.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Plane switching on line %1 has no (END).</source>
       <translation>El cambio de plano de la línea %1 no tiene (END).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The program is empty.</source>
       <translation>El programa está vacío.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>This line stands after the end of the program and is in no subroutine.</source>
       <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write (END) alone on a line.</source>
       <translation>Escriba (END) solo en una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write (~%1.</source>
       <translation>Escriba (~%1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/program.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write G90 and M30.</source>
       <translation>Escriba G90 y M30.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>%1 and %2 cannot act on one line.</source>
       <translation>%1 y %2 no pueden actuar en una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>%1 has no meaning here. %2</source>
       <translation>%1 no significa nada aquí. %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>%1 is no code of this control. %2</source>
       <translation>%1 no es código de este control. %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>%1 looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line.</source>
       <translation>%1 parece cambio de plano; (~PLXC) y (~PLZC) van solos en una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Add %1 with its number.</source>
       <translation>Agregue %1 con su número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Look it up.</source>
       <translation>Búsquelo en la página del lenguaje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Put it on a line of its own.</source>
       <translation>Póngalo en su propia línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Take '/' out.</source>
       <translation>Quite '/'.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Take it out or add its code.</source>
       <translation>Quítelo o agregue su código.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>The line %1.</source>
       <translation>La línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Write C1 or C0.</source>
       <translation>Escriba C1 o C0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Write it alone.</source>
       <translation>Escríbalo solo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Write the input's number.</source>
       <translation>Escriba el número de la entrada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>deletes %1, without which the rest has no meaning</source>
       <translation>borra %1, sin lo cual el resto no tiene sentido</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1 besides %2, which stands alone</source>
       <translation>contiene %1 además de %2, que va solo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1 twice</source>
       <translation>contiene %1 dos veces</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1 without %2</source>
       <translation>contiene %1 sin %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1, which is neither C1 (on) nor C0 (off)</source>
       <translation>contiene %1, que no es C1 (encendido) ni C0 (apagado)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1, which is no number of an input</source>
       <translation>contiene %1, que no es número de una entrada</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds %1, which nothing on it takes</source>
       <translation>contiene %1, que nada en ella usa</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds two M codes</source>
       <translation>contiene dos códigos M</translation>
     </message>
     <message>
-      <location filename="core/interpreter/reading.py" />
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>holds two codes of one group (%1)</source>
       <translation>contiene dos códigos de un grupo (%1)</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/approach.py" />
+      <location filename="core/interpreter/restart/restart_approach.py" />
       <source>%1 OFF</source>
       <translation>%1 APAGADO</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/approach.py" />
+      <location filename="core/interpreter/restart/restart_approach.py" />
       <source>%1 ON</source>
       <translation>%1 ENCENDIDO</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>Line %1 %2</source>
       <translation>La línea %1 %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>Line %1 is empty.</source>
       <translation>La línea %1 está vacía.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>There is no line %1; the program has %2.</source>
       <translation>No hay línea %1; el programa tiene %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>describes the contour of line %1.</source>
       <translation>describe el contorno de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is in subroutine %1.</source>
       <translation>está en la subrutina %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is in the corner of line %1.</source>
       <translation>está en la esquina de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is in the plane switching that begins on line %1.</source>
       <translation>está en el cambio de plano que empieza en la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is inside the loop of lines %1 to %2.</source>
       <translation>está dentro del lazo de las líneas %1 a %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is under the nose compensation that begins on line %1.</source>
       <translation>está bajo la compensación de punta que empieza en la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/good.py" />
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>stands after the end of the program.</source>
       <translation>está después del final del programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>A tap stands in its thread there.</source>
       <translation>Allí hay un machuelo en su rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>A threading tool stands in its thread there.</source>
       <translation>Allí hay una herramienta de roscar en su rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1</source>
       <translation>Línea %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 begins in metal that %2 would have had to cut.</source>
       <translation>La línea %1 empieza en metal que debieron cortar antes: %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 begins in the work, and no sure way leads there. %2</source>
       <translation>La línea %1 empieza dentro de la pieza y ningún camino seguro lleva allí. %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 depends on the input that line %2 asks.</source>
       <translation>La línea %1 depende de la entrada que pregunta la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 is in plane switching.</source>
       <translation>La línea %1 está en un cambio de plano.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 is no place to go on: %2</source>
       <translation>La línea %1 no es lugar para seguir: %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Line %1 is under nose compensation or in a corner.</source>
       <translation>La línea %1 está bajo compensación de punta o en una esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Nothing has moved before line %1: start the program from its first line.</source>
       <translation>Nada se mueve antes de la línea %1: empiece el programa desde su primera línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>The program ends on line %1, before line %2.</source>
       <translation>El programa termina en la línea %1, antes de la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>The program has errors before line %1.</source>
       <translation>El programa tiene errores antes de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>Where the slides stand at line %1 depends on where they stood at Cycle Start.</source>
       <translation>Dónde están los carros en la línea %1 depende de dónde estaban en el inicio de ciclo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>lines %1 to %2</source>
       <translation>líneas %1 a %2</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>what input %1 answered on line %2 is not known.</source>
       <translation>no se sabe qué respondió la entrada %1 en la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/rebuild.py" />
+      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>what the input of line %1 answered is not known.</source>
       <translation>no se sabe qué respondió la entrada de la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/visits.py" />
+      <location filename="core/interpreter/restart/loop_passes.py" />
       <source>Line %1 is run %2 times; there is no pass %3.</source>
       <translation>La línea %1 corre %2 veces; no hay pasada %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/visits.py" />
+      <location filename="core/interpreter/restart/loop_passes.py" />
       <source>Line %1 is run more than %2 times: choose the line that begins the loop.</source>
       <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el lazo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/restart/visits.py" />
+      <location filename="core/interpreter/restart/loop_passes.py" />
       <source>The program never comes to line %1.</source>
       <translation>El programa nunca llega a la línea %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>%1 cuts a contour, and its lines would have to follow</source>
       <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>%1 rounds the corner with the next move</source>
       <translation>%1 redondea la esquina con el movimiento siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>/ leaves a line of a program out, and there is nothing to leave out</source>
       <translation>/ salta una línea de un programa, y no hay nada que saltar</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>Write it in a program.</source>
       <translation>Escríbalo en un programa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>begins a loop, and its lines and LF would have to follow</source>
       <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>begins a subroutine, and those stand in programs</source>
       <translation>empieza una subrutina, y ésas van en programas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>begins nose compensation, which looks at the lines that follow</source>
       <translation>empieza compensación de punta, que mira las líneas que siguen</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>belongs to plane switching, whose lines would have to follow</source>
       <translation>pertenece a un cambio de plano, cuyas líneas tendrían que seguir</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>calls a subroutine, and those stand in programs</source>
       <translation>llama una subrutina, y ésas van en programas</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>ends a contour, and there is none</source>
       <translation>termina un contorno, y no hay ninguno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>ends a loop, and there is none</source>
       <translation>termina un lazo, y no hay ninguno</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>ends a subroutine, and there is none</source>
       <translation>termina una subrutina, y no hay ninguna</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>ends nose compensation, which looks at the lines around it</source>
       <translation>termina compensación de punta, que mira las líneas alrededor</translation>
     </message>
     <message>
-      <location filename="core/interpreter/single.py" />
+      <location filename="core/interpreter/omniturn/mdi_line.py" />
       <source>needs a G92 on the next line</source>
       <translation>necesita un G92 en la línea siguiente</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>%1 is too small: the ends are %2 mm apart, half of which it takes at least.</source>
       <translation>%1 es demasiado chico: los extremos están a %2 mm, y necesita al menos la mitad.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>%1: an opening angle lies over 0 and under 360.</source>
       <translation>%1: un ángulo de apertura es mayor que 0 y menor que 360.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>AR stands without an end point and without I and K.</source>
       <translation>AR está sin punto final y sin I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>Add one of them.</source>
       <translation>Agregue uno de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>Correct CR or the end point.</source>
       <translation>Corrija CR o el punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>I and K are distances from the start, I a radius; AC( ) makes them coordinates.</source>
       <translation>I y K son distancias desde el inicio, I es radio; AC( ) las vuelve coordenadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>Keep two of them.</source>
       <translation>Deje dos de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>Write G18 before it.</source>
       <translation>Escriba antes G18.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>arcs of X and Z need G18.</source>
       <translation>los arcos de X y Z necesitan G18.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc by %1 ends where it starts.</source>
       <translation>el arco por %1 termina donde empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc has AR, an end point and a centre.</source>
       <translation>el arco tiene AR, un punto final y un centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc has CR and another way to say where its centre is.</source>
       <translation>el arco tiene CR y otra forma de decir dónde está su centro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc has neither CR, AR nor I and K.</source>
       <translation>el arco no tiene ni CR ni AR ni I y K.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the arc's radius is %1 mm at its start and %2 mm at its end.</source>
       <translation>el radio del arco es %1 mm al inicio y %2 mm al final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/arcs.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
       <source>the centre of the arc is its start point.</source>
       <translation>el centro del arco es su punto de inicio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>A corner needs two moves in a row.</source>
       <translation>Una esquina necesita dos movimientos seguidos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>CHF, CHR and RND take G1, G2 and G3.</source>
       <translation>CHF, CHR y RND admiten G1, G2 y G3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>Give another end point.</source>
       <translation>Dé otro punto final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>corners of X and Z need G18</source>
       <translation>las esquinas de X y Z necesitan G18</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>it takes %1 mm of the move on line %2, which has %3 mm</source>
       <translation>ocupa %1 mm del movimiento de la línea %2, que tiene %3 mm</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>lines %1 and %2 run in one direction: there is no corner to cut.</source>
       <translation>las líneas %1 y %2 van en una misma dirección: no hay esquina que cortar.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>the block is no line or arc</source>
       <translation>el bloque no es recta ni arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>the next move, on line %1, is no line or arc of X and Z</source>
       <translation>el próximo movimiento, en la línea %1, no es recta ni arco de X y Z</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/corners.py" />
+      <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>the size of a corner</source>
       <translation>el tamaño de una esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>G96 is in force and no S has given a surface speed.</source>
       <translation>G96 está vigente y ninguna S dio una velocidad superficial.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Start it with S and M3 or M4, or use G94.</source>
       <translation>Arránquelo con S y M3 o M4, o use G94.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Write F. Between G94 and G95 the old value is forgotten.</source>
       <translation>Escriba F. Entre G94 y G95 se olvida el valor anterior.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>kind of feed</source>
       <translation>clase de avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>no feedrate is programmed.</source>
       <translation>no hay avance programado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>no spindle speed for G95: the spindle stands.</source>
       <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/feeds.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>the feed</source>
       <translation>el avance</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow.py" />
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>%1 line %2: %3</source>
       <translation>%1 línea %2: %3</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow.py" />
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>M%1 ends a main program, and this is a subprogram.</source>
       <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow.py" />
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>Put %1.spf beside the main program, or %_N_%2_SPF into its file.</source>
       <translation>Ponga %1.spf junto al programa principal, o %_N_%2_SPF en su archivo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow.py" />
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>subprograms call each other more than %1 deep.</source>
       <translation>los subprogramas se llaman unos a otros a más de %1 niveles.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/flow.py" />
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>the subprogram %1 does not exist.</source>
       <translation>el subprograma %1 no existe.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>absolute or incremental</source>
       <translation>absoluto o incremental</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/modes.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>unit of length</source>
       <translation>unidad de longitud</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/moves.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>%1 belongs to an arc, and G%2 is in force.</source>
       <translation>%1 pertenece a un arco, y está vigente G%2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/moves.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Write G2 or G3, or take it out.</source>
       <translation>Escriba G2 o G3, o quítelo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>%1: an offset is a plain number.</source>
       <translation>%1: un desplazamiento es un número simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>Take C out, or choose a machine file that has it.</source>
       <translation>Quite C, o elija un archivo de máquina que lo tenga.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>Write %1 with its number.</source>
       <translation>Escriba %1 con su número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>settable offset</source>
       <translation>cero ajustable</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/offsets.py" />
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
       <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Add the axes.</source>
       <translation>Agregue los ejes.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>G53 acts in a block that moves an axis.</source>
       <translation>G53 actúa en un bloque que mueve un eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Lower the passes of the calls.</source>
       <translation>Baje las repeticiones de las llamadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>kind of spindle speed</source>
       <translation>clase de velocidad del husillo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>suppression of offsets</source>
       <translation>supresión de desplazamientos</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/run.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>the program makes more than %1 blocks or %2 executed lines.</source>
       <translation>el programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 is a dwell of %2 s; %3 are the most.</source>
       <translation>%1 es una espera de %2 s; lo más son %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 is over the spindle's %2 rpm.</source>
       <translation>%1 pasa de las %2 rpm del husillo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 m/min is no surface speed that a tool can stand.</source>
       <translation>%1 m/min no es velocidad superficial que aguante una herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 needs a controlled spindle, which this machine does not have.</source>
       <translation>%1 necesita un husillo controlado, que esta máquina no tiene.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 starts the spindle and no S has said how fast.</source>
       <translation>%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 starts the spindle with the collet open.</source>
       <translation>%1 arranca el husillo con la boquilla abierta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1: a dwell is 0 or longer.</source>
       <translation>%1: una espera es 0 o más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1: the speed has no sign; M3 and M4 say the direction.</source>
       <translation>%1: la velocidad no lleva signo; M3 y M4 dicen el sentido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Close it.</source>
       <translation>Ciérrela.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>F counts in seconds, S in revolutions.</source>
       <translation>F cuenta en segundos, S en vueltas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>G4 %1 waits for revolutions of a spindle that stands.</source>
       <translation>G4 %1 espera vueltas de un husillo parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>G96 is in force and F counts in mm/min (G94).</source>
       <translation>G96 está vigente y F cuenta en mm/min (G94).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>G97 makes S rpm.</source>
       <translation>G97 hace de S rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Start it with M3 or M4, or write G4 F.</source>
       <translation>Arránquelo con M3 o M4, o escriba G4 F.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Write G95 where F is meant as mm a revolution.</source>
       <translation>Escriba G95 donde F signifique mm por vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Write S in the block.</source>
       <translation>Escriba S en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/spindle.py" />
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>the limit of the speed</source>
       <translation>el tope de la velocidad</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/state.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
       <source>%1: %2 must be over 0.</source>
       <translation>%1: %2 debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/state.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
       <source>R%1 has no value: the program has not set it.</source>
       <translation>R%1 no tiene valor: el programa no lo puso.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/state.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
       <source>Write R%1=… before it.</source>
       <translation>Escriba antes R%1=…</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 and %2 are of one group (%3).</source>
       <translation>%1 y %2 son de un mismo grupo (%3).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 and %2 stand in one block.</source>
       <translation>%1 y %2 están en un bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 are the most.</source>
       <translation>lo más son %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 is no code of this control.</source>
       <translation>%1 no es código de este control.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 is programmed twice in the block.</source>
       <translation>%1 está programado dos veces en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 needs a block of its own, with axes and nothing else.</source>
       <translation>%1 necesita su propio bloque, con ejes y nada más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>%1 stands in a block without X or Z.</source>
       <translation>%1 está en un bloque sin X ni Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>DIAMON and DIAMOF are of one group.</source>
       <translation>DIAMON y DIAMOF son de un mismo grupo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>G4 needs a block of its own, with F (seconds) or S (revolutions).</source>
       <translation>G4 necesita su propio bloque, con F (segundos) o S (vueltas).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>M%1 and M%2 exclude each other.</source>
       <translation>M%1 y M%2 se excluyen.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>One G code of a group per block.</source>
       <translation>Un código G de un grupo por bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>Put it behind a move.</source>
       <translation>Póngalo tras un movimiento.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>Split the block.</source>
       <translation>Divida el bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/statement.py" />
+      <location filename="core/interpreter/sinumerik/sinumerik_statement.py" />
       <source>the block holds %1 M codes.</source>
       <translation>el bloque contiene %1 códigos M.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/targets.py" />
+      <location filename="core/interpreter/sinumerik/third_axis.py" />
       <source>%1 is no position of a modulo axis, which has 0 to &lt;360</source>
       <translation>%1 no es posición de un eje módulo, que tiene de 0 a &lt;360</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/targets.py" />
+      <location filename="core/interpreter/sinumerik/third_axis.py" />
       <source>%1 needs a modulo rotary axis</source>
       <translation>%1 necesita un eje giratorio módulo</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/targets.py" />
+      <location filename="core/interpreter/sinumerik/third_axis.py" />
       <source>the end point %1 lies beyond -360 to +360 of the machine</source>
       <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/travel.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>%1: %2 needs a rotary axis.</source>
       <translation>%1: %2 necesita un eje giratorio.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/travel.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>C of this machine counts -360 to +360; write AC( ) or IC( ).</source>
       <translation>El C de esta máquina cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/travel.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Correct the target or the offset of C.</source>
       <translation>Corrija el destino o el desplazamiento de C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/travel.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Write %1=AC( ) or %2=IC( ).</source>
       <translation>Escriba %1=AC( ) o %2=IC( ).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/travel.py" />
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Write an angle from 0 to 359.999, or IC( ) for a distance.</source>
       <translation>Escriba un ángulo de 0 a 359.999, o IC( ) para una distancia.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>%1 is no surface speed that a tool can stand.</source>
       <translation>%1 no es velocidad superficial que aguante una herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>%1: the speed has no sign; M03 and M04 say the direction.</source>
       <translation>%1: la velocidad no lleva signo; M03 y M04 dicen el sentido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>Close it with M12 first.</source>
       <translation>Ciérrela primero con M12.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>Correct one of them.</source>
       <translation>Corrija uno de ellos.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>G%1 needs S, a speed in rpm.</source>
       <translation>G%1 necesita S, una velocidad en rpm.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>G76 (%1 rpm) is over G77 (%2 rpm).</source>
       <translation>G76 (%1 rpm) pasa de G77 (%2 rpm).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>M%1 starts the spindle and no S has said how fast.</source>
       <translation>M%1 arranca el husillo y ninguna S dijo qué tan rápido.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>M%1 starts the spindle with the collet open.</source>
       <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>M%1 starts the spindle, which is locked as the axis C.</source>
       <translation>M%1 arranca el husillo, que está bloqueado como eje C.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>Release it with M05 first.</source>
       <translation>Libérelo primero con M05.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/spindle.py" />
+      <location filename="core/interpreter/omniturn/spindle_speed.py" />
       <source>Write G%1Sn.</source>
       <translation>Escriba G%1Sn.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>%1 has no LF.</source>
       <translation>%1 no tiene LF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Add G75 or G78, or take it out.</source>
       <translation>Agregue G75 o G78, o quítelo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Add LF where the loop ends.</source>
       <translation>Agregue LF donde termina el lazo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Add LS with a count, or take it out.</source>
       <translation>Agregue LS con una cuenta, o quítelo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Add M99 at its end.</source>
       <translation>Agregue M99 a su final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>LF ends no loop.</source>
       <translation>LF no termina ningún lazo.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>M30 goes before the subroutines.</source>
       <translation>M30 va antes de las subrutinas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>M99 ends no subroutine here.</source>
       <translation>M99 no termina aquí ninguna subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>RF ends no contour here.</source>
       <translation>RF no termina aquí ningún contorno.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Subroutine %1 begins on line %2 already.</source>
       <translation>La subrutina %1 ya empieza en la línea %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Subroutine %1 has no M99.</source>
       <translation>La subrutina %1 no tiene M99.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Subroutine %1 is called, and no }%2 begins it.</source>
       <translation>Se llama la subrutina %1, y ningún }%2 la empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>The contour of G%1 has no RF.</source>
       <translation>El contorno de G%1 no tiene RF.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>The main program ends without M30 or M02.</source>
       <translation>El programa principal termina sin M30 ni M02.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Write RF alone on the line after it, or P with the number of a subroutine.</source>
       <translation>Escriba RF solo en la línea que sigue, o P con el número de una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Write it after M30.</source>
       <translation>Escríbalo después de M30.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/structure.py" />
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>}%1 has no M99 before this line.</source>
       <translation>}%1 no tiene M99 antes de esta línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>A comment stands on a line by itself.</source>
       <translation>Hay un comentario solo en una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>A comment stands on the line that starts a subroutine.</source>
       <translation>Hay un comentario en la línea que empieza una subrutina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Move it down a line.</source>
       <translation>Bájelo una línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Press Return after it.</source>
       <translation>Oprima Return después.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Put it on a line with a command.</source>
       <translation>Póngalo en una línea con una orden.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Save the file with the line ends of this machine.</source>
       <translation>Guarde el archivo con los finales de línea de esta máquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Take it out for the original control.</source>
       <translation>Quítelo para el control original.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The comment holds more than letters, digits and blanks.</source>
       <translation>El comentario contiene más que letras, números y espacios.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The last line has no line end.</source>
       <translation>La última línea no tiene final de línea.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The line is blank.</source>
       <translation>La línea está en blanco.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The lines end in a carriage return.</source>
       <translation>Las líneas terminan en retorno de carro.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The tool number has a leading zero.</source>
       <translation>El número de herramienta lleva un cero delante.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Use plain text.</source>
       <translation>Use texto simple.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/style.py" />
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Write T1 for T01.</source>
       <translation>Escriba T1 en vez de T01.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>%1 leaves nothing to cut: %2.</source>
       <translation>%1 no deja nada que cortar: %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>%1 lies on the other side of the spindle axis: %2.</source>
       <translation>%1 está del otro lado del eje del husillo: %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>%1: %2 stands without a number here.</source>
       <translation>%1: aquí %2 está sin número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
       <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>%1: the lead must be above 0 and at most %2.</source>
       <translation>%1: el paso debe ser mayor que 0 y a lo más %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>At %1 rpm this lead is %2; %3 is the most.</source>
       <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Correct C; bare C is 29 degrees.</source>
       <translation>Corrija C; C sola es 29 grados.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Correct Z, or move away before the G33.</source>
       <translation>Corrija Z, o aléjese antes del G33.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>G%1 is active, and a thread is cut without nose compensation.</source>
       <translation>G%1 está activo, y una rosca se corta sin compensación de punta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>G35 allows more.</source>
       <translation>G35 permite más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>G35F2 allows more.</source>
       <translation>G35F2 permite más.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>G96 is active, and a thread needs one speed from first pass to last.</source>
       <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>I is missing.</source>
       <translation>Falta I.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>I, the depth of the first pass, must be above 0.</source>
       <translation>I, la profundidad de la primera pasada, debe ser mayor que 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>K is missing, and %1 is there.</source>
       <translation>Falta K, y está %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>K, the lead, is missing.</source>
       <translation>Falta K, el paso.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Look at the sign of X and at where the tool starts.</source>
       <translation>Vea el signo de X y dónde empieza la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Start at the depth of the first pass.</source>
       <translation>Empiece a la profundidad de la primera pasada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Start farther away from Z.</source>
       <translation>Empiece más lejos de Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Start it with M03 or M04.</source>
       <translation>Arránquelo con M03 o M04.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The flank angle moves the start of the last pass beyond its end.</source>
       <translation>El ángulo de flanco lleva el inicio de la última pasada más allá de su final.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The spindle stands, and a thread is cut by its turns.</source>
       <translation>El husillo está parado, y una rosca se corta por sus vueltas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The thread ends at the Z where it starts.</source>
       <translation>La rosca termina en la Z en que empieza.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The thread would take %1 passes; %2 are the most.</source>
       <translation>La rosca haría %1 pasadas; lo más son %2.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Was K%1 meant?</source>
       <translation>¿Se quiso decir K%1?</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Write %1 alone.</source>
       <translation>Escriba sólo %1.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Write G97S before it.</source>
       <translation>Escriba antes G97S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Write I, the depth of the first pass.</source>
       <translation>Escriba I, la profundidad de la primera pasada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Write K, the lead per revolution.</source>
       <translation>Escriba K, el paso por vuelta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>X of the last pass is missing.</source>
       <translation>Falta la X de la última pasada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Z, the end of the thread, is missing.</source>
       <translation>Falta Z, el final de la rosca.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/thread_words.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>the tool stands at radius %1</source>
       <translation>la herramienta está en radio %1</translation>
     </message>
     <message>
-      <location filename="core/interpreter/threads.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
       <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/threads.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Start farther away, or lower S.</source>
       <translation>Empiece más lejos, o baje S.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/threads.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The run-up is %1; the slide needs %2 to reach the speed of the lead.</source>
       <translation>La carrera de arranque es %1; el carro necesita %2 para llegar a la velocidad del paso.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/threads.py" />
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The thread takes %1 passes.</source>
       <translation>La rosca hace %1 pasadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/told.py" />
+      <location filename="core/interpreter/diagnostic_log.py" />
       <source>The program makes more than %1 blocks or %2 executed lines.</source>
       <translation>El programa hace más de %1 bloques o %2 líneas ejecutadas.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
       <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>G%1 needs X or Z.</source>
       <translation>G%1 necesita X o Z.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
       <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>No T follows this G10, so the work shift never takes effect.</source>
       <translation>Ninguna T sigue a este G10, así que el desplazamiento nunca actúa.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Put G97 before the T.</source>
       <translation>Ponga G97 antes de la T.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Put it before a T.</source>
       <translation>Póngalo antes de una T.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set their offsets.</source>
       <translation>Ponga sus compensaciones.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/tools.py" />
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Write the coordinates.</source>
       <translation>Escriba las coordenadas.</translation>
     </message>
@@ -10104,1472 +10104,1472 @@
       <translation>%1 (%2 veces)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 A comment begins with ;.</source>
       <translation>%1 Un comentario empieza con ;.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 goes up to %2.</source>
       <translation>%1 llega hasta %2.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 has an empty name.</source>
       <translation>%1 tiene un nombre vacío.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 has no number</source>
       <translation>%1 no tiene número</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 has no value</source>
       <translation>%1 no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 needs a whole number</source>
       <translation>%1 necesita un número entero</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>; '%1' stands here</source>
       <translation>; aquí está '%1'</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>; the line ends here</source>
       <translation>; la línea termina aquí</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Correct the number.</source>
       <translation>Corrija el número.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Q parameters go up to Q%1.</source>
       <translation>Los parámetros Q llegan hasta Q%1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Take another parameter.</source>
       <translation>Use otro parámetro.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Write a number such as +10, or a Q parameter.</source>
       <translation>Escriba un número como +10, o un parámetro Q.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Write a number.</source>
       <translation>Escriba un número.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cursor.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Write the name.</source>
       <translation>Escriba el nombre.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>%1 is not supported here.</source>
       <translation>Aquí no se admite %1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Contradictory entry</source>
       <translation>Entrada contradictoria</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Entered angle not permitted</source>
       <translation>Ángulo introducido no permitido</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Excessive nesting</source>
       <translation>Demasiados niveles</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Feed rate is missing</source>
       <translation>Falta el avance</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Input value incorrect</source>
       <translation>Valor introducido incorrecto</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Label defined twice</source>
       <translation>Etiqueta definida dos veces</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Label not found</source>
       <translation>Etiqueta no encontrada</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Not permitted with M128</source>
       <translation>No permitido con M128</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Not supported</source>
       <translation>No se admite</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>PLANE not permitted with M128</source>
       <translation>PLANE no permitido con M128</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Plane wrongly defined</source>
       <translation>Plano mal definido</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Program it with L moves and PLANE, or run the program on a control that has it.</source>
       <translation>Prográmelo con movimientos L y PLANE, o corra el programa en un control que lo tenga.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Q parameter not defined</source>
       <translation>Parámetro Q sin definir</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Syntax error</source>
       <translation>Error de sintaxis</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Tool axis is missing</source>
       <translation>Falta el eje de herramienta</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Wrong axis programmed</source>
       <translation>Eje mal programado</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/faults.py" />
+      <location filename="core/language/klartext/klartext_faults.py" />
       <source>Wrong rpm</source>
       <translation>RPM incorrectas</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/feeds.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>%1 stands twice in the block.</source>
       <translation>%1 está dos veces en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/feeds.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>F has no value</source>
       <translation>F no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/feeds.py" />
+      <location filename="core/language/klartext/line_cursor.py" />
       <source>Write a number, Q, MAX or AUTO behind F.</source>
       <translation>Escriba un número, Q, MAX o AUTO tras F.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>%1 is missing</source>
       <translation>Falta %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>%1 needs a name and MM or INCH.</source>
       <translation>%1 necesita un nombre y MM o INCH.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>A corner needs X, Y and Z.</source>
       <translation>Una esquina necesita X, Y y Z.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>BLK FORM %1</source>
       <translation>BLK FORM %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>BLK FORM 0.1 needs the tool axis</source>
       <translation>BLK FORM 0.1 necesita el eje de herramienta</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>END PGM</source>
       <translation>END PGM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>It takes a tool, its axis, S, F, DL and DR.</source>
       <translation>Lleva una herramienta, su eje, S, F, DL y DR.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of BLK FORM</source>
       <translation>No es palabra de BLK FORM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of TOOL CALL</source>
       <translation>No es palabra de TOOL CALL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>TOOL CALL</source>
       <translation>TOOL CALL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write Z behind 0.1.</source>
       <translation>Escriba Z tras 0.1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/headers.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write both behind it.</source>
       <translation>Escriba los dos después.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>'%1' begins no block.</source>
       <translation>'%1' no empieza ningún bloque.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>A block begins with L, PLANE, TOOL CALL, LBL or the like.</source>
       <translation>Un bloque empieza con L, PLANE, TOOL CALL, LBL o similar.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>A block over several lines (~)</source>
       <translation>Un bloque de varias líneas (~)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>BLK FORM</source>
       <translation>BLK FORM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>Break it into lines.</source>
       <translation>Divídala en líneas.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CALL LBL</source>
       <translation>CALL LBL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CALL PGM</source>
       <translation>CALL PGM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CALL SELECTED</source>
       <translation>CALL SELECTED</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CONTOUR DEF</source>
       <translation>CONTOUR DEF</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CYCL CALL</source>
       <translation>CYCL CALL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CYCL DEF</source>
       <translation>CYCL DEF</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>PATTERN DEF</source>
       <translation>PATTERN DEF</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>SEL CONTOUR</source>
       <translation>SEL CONTOUR</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>SEL PATTERN</source>
       <translation>SEL PATTERN</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>SEL PGM</source>
       <translation>SEL PGM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>SEL TABLE</source>
       <translation>SEL TABLE</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>STOP stands alone</source>
       <translation>STOP va solo</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TCH PROBE</source>
       <translation>TCH PROBE</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TOOL DEF</source>
       <translation>TOOL DEF</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TRANS DATUM</source>
       <translation>TRANS DATUM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TRANS MIRROR</source>
       <translation>TRANS MIRROR</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TRANS ROTATION</source>
       <translation>TRANS ROTATION</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>TRANS SCALE</source>
       <translation>TRANS SCALE</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/line.py" />
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>The line has %1 characters.</source>
       <translation>La línea tiene %1 caracteres.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>An M function was expected</source>
       <translation>Se esperaba una función M</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>It takes axes, R0, a feed and M functions.</source>
       <translation>Lleva ejes, R0, un avance y funciones M.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>M128 takes a feed in numbers.</source>
       <translation>M128 lleva un avance en números.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>M140 needs MB</source>
       <translation>M140 necesita MB</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>No word of an L block</source>
       <translation>No es palabra de un bloque L</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>Radius compensation R%1</source>
       <translation>Compensación de radio R%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>The axis has no value</source>
       <translation>El eje no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>There are more than %1 M functions in the block.</source>
       <translation>Hay más de %1 funciones M en el bloque.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>Write F and a number.</source>
       <translation>Escriba F y un número.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>Write MB and a length, or MB MAX.</source>
       <translation>Escriba MB y una longitud, o MB MAX.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/moves.py" />
+      <location filename="core/language/klartext/l_block.py" />
       <source>Write a number such as +10.</source>
       <translation>Escriba un número como +10.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>'=' was expected behind Q%1</source>
       <translation>Se esperaba '=' tras Q%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>CYCL DEF %1</source>
       <translation>CYCL DEF %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>CYCL DEF 7.%1 takes one of X, Y and Z</source>
       <translation>CYCL DEF 7.%1 lleva uno de X, Y y Z</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>Call another label.</source>
       <translation>Llame otra etiqueta.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>LBL 0 ends a subprogram; it cannot be called.</source>
       <translation>LBL 0 termina un subprograma; no se puede llamar.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of CALL LBL</source>
       <translation>No es palabra de CALL LBL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of LBL</source>
       <translation>No es palabra de LBL</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of TRANS DATUM</source>
       <translation>No es palabra de TRANS DATUM</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>No word of cycle 7</source>
       <translation>No es palabra del ciclo 7</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>TRANS DATUM AXIS needs X, Y or Z</source>
       <translation>TRANS DATUM AXIS necesita X, Y o Z</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>TRANS DATUM TABLE</source>
       <translation>TRANS DATUM TABLE</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>TRANS DATUM needs AXIS or RESET</source>
       <translation>TRANS DATUM necesita AXIS o RESET</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/others.py" />
+      <location filename="core/language/klartext/structure_blocks.py" />
       <source>The formula '%1'</source>
       <translation>La fórmula '%1'</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>%1 %2 missing</source>
       <translation>%1: falta %2</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>%1 ROT</source>
       <translation>%1 ROT</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>%1 stands behind %2.</source>
       <translation>%1 está tras %2.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>All of them are needed, zeros too.</source>
       <translation>Se necesitan todos, también los ceros.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>COORD ROT or TABLE ROT</source>
       <translation>COORD ROT o TABLE ROT</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>DIST belongs to MOVE, not to %1.</source>
       <translation>DIST pertenece a MOVE, no a %1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>MOVE, TURN or STAY is missing</source>
       <translation>Falta MOVE, TURN o STAY</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>No word of a PLANE block</source>
       <translation>No es palabra de un bloque PLANE</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>PLANE %1</source>
       <translation>PLANE %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>PLANE AXIAL needs an axis angle</source>
       <translation>PLANE AXIAL necesita un ángulo de eje</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>PLANE RELATIV takes one of SPA, SPB and SPC.</source>
       <translation>PLANE RELATIV lleva uno de SPA, SPB y SPC.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET</source>
       <translation>PLANE necesita AXIAL, POINTS, SPATIAL, RELATIV o RESET</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>STAY moves nothing: no %1 here.</source>
       <translation>STAY no mueve nada: aquí no va %1.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>SYM or SEQ</source>
       <translation>SYM o SEQ</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>Say how the rotary axes are positioned.</source>
       <translation>Diga cómo se posicionan los ejes giratorios.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>Take one of them out.</source>
       <translation>Quite uno de ellos.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>Write A, B or C with its angle.</source>
       <translation>Escriba A, B o C con su ángulo.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/planes.py" />
+      <location filename="core/language/klartext/plane_block.py" />
       <source>Write one angle.</source>
       <translation>Escriba un ángulo.</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>%1 PGM %2 %3</source>
       <translation>%1 PGM %2 %3</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>BLK FORM 0.%1</source>
       <translation>BLK FORM 0.%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>CYCL DEF 7.%1</source>
       <translation>CYCL DEF 7.%1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>LBL %1</source>
       <translation>LBL %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>MB MAX</source>
       <translation>MB MAX</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>REP %1</source>
       <translation>REP %1</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>TRANS DATUM AXIS</source>
       <translation>TRANS DATUM AXIS</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/written.py" />
+      <location filename="core/language/klartext/canonical_text.py" />
       <source>TRANS DATUM RESET</source>
       <translation>TRANS DATUM RESET</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 has a decimal point and no digit.</source>
       <translation>%1 tiene punto decimal y ninguna cifra.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 has a sign and no number.</source>
       <translation>%1 tiene signo y ningún número.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 has over %2 digits.</source>
       <translation>%1 tiene más de %2 cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 is no word of the language.</source>
       <translation>%1 no es palabra del lenguaje.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 is no word of the language. %2</source>
       <translation>%1 no es una palabra del lenguaje. %2</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 is out of range: %2 goes from %3 to %4.</source>
       <translation>%1 está fuera de rango: %2 va de %3 a %4.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 is out of range: a loop runs %2 to %3 times.</source>
       <translation>%1 está fuera de rango: un lazo corre de %2 a %3 veces.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 must be a whole number without a sign.</source>
       <translation>%1 debe ser un número entero sin signo.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 takes no number.</source>
       <translation>%1 no lleva número.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: %2 takes exactly two digits.</source>
       <translation>%1: %2 lleva exactamente dos cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: a feed of 0 moves nothing; a rapid is G00 here.</source>
       <translation>%1: un avance de 0 no mueve nada; un rápido es aquí G00.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
       <translation>%1: las compensaciones van de 1 a 32.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: tools go from 1 to 32.</source>
       <translation>%1: las herramientas van de 1 a 32.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>'%1' is no part of the language.</source>
       <translation>'%1' no es parte del lenguaje.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>'%1' is text outside parentheses.</source>
       <translation>'%1' es texto fuera de paréntesis.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>')' closes no comment.</source>
       <translation>')' no cierra ningún comentario.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>'/' may only stand first on a line.</source>
       <translation>'/' sólo puede ir primero en una línea.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>A comma is not allowed anywhere.</source>
       <translation>La coma no se permite en ninguna parte.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>A number stands without a letter.</source>
       <translation>Hay un número sin letra.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>A sign stands inside a number.</source>
       <translation>Hay un signo dentro de un número.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Add '(' or take it out.</source>
       <translation>Agregue '(' o quítelo.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Comments go in parentheses.</source>
       <translation>Los comentarios van entre paréntesis.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Correct the count.</source>
       <translation>Corrija la cuenta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>D0 cancels.</source>
       <translation>D0 cancela.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Lines have no numbers here: N is not allowed.</source>
       <translation>Aquí las líneas no llevan número: N no se permite.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Look the word up in the language page.</source>
       <translation>Busque la palabra en la página del lenguaje.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Move it to the front.</source>
       <translation>Muévalo al principio.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Numbers have no exponent here.</source>
       <translation>Aquí los números no llevan exponente.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Round it.</source>
       <translation>Redondéelo.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Split it into two words.</source>
       <translation>Divídalo en dos palabras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>T0 cancels the tool.</source>
       <translation>T0 cancela la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Take the N word out.</source>
       <translation>Quite la palabra N.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>The comment has no closing parenthesis.</source>
       <translation>El comentario no tiene paréntesis de cierre.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>The letter O stands where a zero belongs.</source>
       <translation>Hay una letra O donde va un cero.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>The number has two decimal points.</source>
       <translation>El número tiene dos puntos decimales.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write %1%2.</source>
       <translation>Escriba %1%2.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write (%1).</source>
       <translation>Escriba (%1).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write a decimal point.</source>
       <translation>Escriba un punto decimal.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write it after %1.</source>
       <translation>Escríbalo después de %1.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write its letter.</source>
       <translation>Escriba su letra.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write the digits.</source>
       <translation>Escriba las cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write the feed.</source>
       <translation>Escriba el avance.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write the number after it.</source>
       <translation>Escriba después el número.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write the number out; a feed is F.</source>
       <translation>Escriba el número completo; un avance es F.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/faults.py" />
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Write two digits.</source>
       <translation>Escriba dos cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>%1 numbers a program elsewhere; here the file has a name.</source>
       <translation>%1 numera un programa en otros controles; aquí el archivo tiene nombre.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>%1: T%2 takes tool %3 with its offset here%4.</source>
       <translation>%1: aquí T%2 toma la herramienta %3 con su compensación%4.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>, and a second offset is D%1</source>
       <translation>, y una segunda compensación es D%1</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>A feed is F here, and the lead of a thread K.</source>
       <translation>Aquí un avance es F, y el paso de una rosca K.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>A line of % stands round a program that is transferred, not in it.</source>
       <translation>Una línea de % va alrededor de un programa que se transfiere, no dentro de él.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>A stop is M00 here.</source>
       <translation>Un paro es aquí M00.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>A subroutine ends with M99 here.</source>
       <translation>Una subrutina termina aquí con M99.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>A thread is G33 here, with all its passes.</source>
       <translation>Una rosca es aquí G33, con todas sus pasadas.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Boring is written out here.</source>
       <translation>El mandrinado se escribe aquí movimiento por movimiento.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Coolant is M08 here.</source>
       <translation>El refrigerante es aquí M08.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Cycles act on their own line here, and nothing has to end them.</source>
       <translation>Aquí los ciclos actúan en su propia línea, y nada tiene que terminarlos.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Drilling is G81 here, in pecks G83, and a dwell is G04.</source>
       <translation>Barrenar es aquí G81, con picoteo G83, y una pausa G04.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Feed per minute is G94 here.</source>
       <translation>El avance por minuto es aquí G94.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Feed per revolution is G95 here.</source>
       <translation>El avance por vuelta es aquí G95.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>High-speed modes have no code here.</source>
       <translation>Los modos de alta velocidad no tienen código aquí.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Inch is G70 here.</source>
       <translation>La pulgada es aquí G70.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Incremental moves are X and Z under G91 here.</source>
       <translation>Los movimientos incrementales son aquí X y Z con G91.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Machine coordinates are those of T0 here.</source>
       <translation>Las coordenadas de máquina son aquí las de T0.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Metric is G71 here.</source>
       <translation>El métrico es aquí G71.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Milling of the face ends with (END) here.</source>
       <translation>El fresado de la cara termina aquí con (END).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Milling of the face is (~PLXC) here.</source>
       <translation>El fresado de la cara es aquí (~PLXC).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Milling round the part is (~PLZC) here.</source>
       <translation>El fresado alrededor de la pieza es aquí (~PLZC).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Move to a clear X and Z.</source>
       <translation>Vaya a una X y una Z libres.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Part zero is in the tool's offset here, and a work shift is G10.</source>
       <translation>El cero de pieza está aquí en la compensación de la herramienta, y un desplazamiento es G10.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Put a comment in parentheses.</source>
       <translation>Ponga el comentario entre paréntesis.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Q is a word of other controls' cycles; here they are G33, G74, G75, G81 and G83.</source>
       <translation>Q es una palabra de los ciclos de otros controles; aquí son G33, G74, G75, G81 y G83.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>See the language page.</source>
       <translation>Vea la página del lenguaje.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>T alone changes the tool here.</source>
       <translation>Aquí T sola cambia la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>T0 takes the tool's offset away here.</source>
       <translation>Aquí T0 quita la compensación de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Take M06 out.</source>
       <translation>Quite M06.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Tapping is written out here: G95, in, M04, out.</source>
       <translation>El machueleado se escribe aquí entero: G95, entrar, M04, salir.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>The highest speed under G96 is G77Sn here, and a preset of the position G92.</source>
       <translation>La velocidad máxima con G96 es aquí G77Sn, y preajustar la posición es G92.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>The offset of a tool is T here, and a second one D.</source>
       <translation>La compensación de una herramienta es aquí T, y una segunda D.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>The offset of a tool is T here.</source>
       <translation>La compensación de una herramienta es aquí T.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>The plane is always that of X and Z here.</source>
       <translation>El plano es aquí siempre el de X y Z.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>The way of going round corners has no code here.</source>
       <translation>La forma de pasar las esquinas no tiene código aquí.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>There are no macros here; a subroutine is M98Pn.</source>
       <translation>Aquí no hay macros; una subrutina es M98Pn.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>There is no reference point to move to here.</source>
       <translation>Aquí no hay punto de referencia al que ir.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Type a point.</source>
       <translation>Escriba un punto.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write (END).</source>
       <translation>Escriba (END).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write (~PLXC) … (END).</source>
       <translation>Escriba (~PLXC) … (END).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write (~PLZC) … (END).</source>
       <translation>Escriba (~PLZC) … (END).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write F or K.</source>
       <translation>Escriba F o K.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G33XnZnInKn.</source>
       <translation>Escriba G33XnZnInKn.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G77Sn or G92.</source>
       <translation>Escriba G77Sn o G92.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G81 or G83.</source>
       <translation>Escriba G81 o G83.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G91 and X.</source>
       <translation>Escriba G91 y X.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G91 and Z.</source>
       <translation>Escriba G91 y Z.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write M98Pn.</source>
       <translation>Escriba M98Pn.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write T and the tool's number.</source>
       <translation>Escriba T y el número de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write T or D.</source>
       <translation>Escriba T o D.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write T%1.</source>
       <translation>Escriba T%1.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write T, or G10XnZn before it.</source>
       <translation>Escriba T, o antes G10XnZn.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write T0 before the move.</source>
       <translation>Escriba T0 antes del movimiento.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write the moves.</source>
       <translation>Escriba los movimientos.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write the number.</source>
       <translation>Escriba el número.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>a comma, and there are none here</source>
       <translation>una coma, y aquí no las hay</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>a variable of other controls, and there are none here</source>
       <translation>una variable de otros controles, y aquí no las hay</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>a word of other controls</source>
       <translation>una palabra de otros controles</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>how a comment or a line's end is written elsewhere</source>
       <translation>como se escribe en otros controles un comentario o el final de una línea</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>how other controls calculate, and this one does not</source>
       <translation>como calculan otros controles, y éste no</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>how other controls number programs; here the file has a name</source>
       <translation>como numeran programas otros controles; aquí el archivo tiene nombre</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/habits.py" />
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>what a transfer puts round a program, and no line of it</source>
       <translation>lo que una transferencia pone alrededor de un programa, y no es línea suya</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1 belongs to an arc, and neither G02 nor G03 is on the line.</source>
       <translation>%1 pertenece a un arco, y ni G02 ni G03 está en la línea.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1 is missing: I and J are the coordinates of the arc's centre.</source>
       <translation>Falta %1: I y J son las coordenadas del centro del arco.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1 is no word of plane switching.</source>
       <translation>%1 no es palabra del cambio de plano.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1 is out of range.</source>
       <translation>%1 está fuera de rango.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1 stands with other words.</source>
       <translation>%1 va con otras palabras.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>%1: of the G codes only G02 and G03 may stand in a plane.</source>
       <translation>%1: de los códigos G sólo G02 y G03 pueden estar en un plano.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>'%1' is no word of plane switching.</source>
       <translation>'%1' no es palabra del cambio de plano.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>An arc of a plane moves X and Y alone.</source>
       <translation>Un arco de un plano mueve sólo X y Y.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>Between the entry and (END) stand only (X Y Z F), (G02 or G03 X Y I J), (H) and (D).</source>
       <translation>Entre la entrada y (END) sólo van (X Y Z F), (G02 o G03 X Y I J), (H) y (D).</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>G02 and G03 are one shot.</source>
       <translation>G02 y G03 valen una sola vez.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>Look for a lost point.</source>
       <translation>Busque un punto perdido.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>Move Z on another line.</source>
       <translation>Mueva Z en otra línea.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>The line holds %1 twice.</source>
       <translation>La línea contiene %1 dos veces.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>The statement is empty.</source>
       <translation>La instrucción está vacía.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>This line is no statement in parentheses.</source>
       <translation>Esta línea no es una instrucción entre paréntesis.</translation>
     </message>
     <message>
-      <location filename="core/language/omniturn/plane.py" />
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>Write (%1n) alone.</source>
       <translation>Escriba sólo (%1n).</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/faults.py" />
+      <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>%1 axis %2</source>
       <translation>%1 eje %2</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/faults.py" />
+      <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>Alarm %1: %2: %3</source>
       <translation>Alarma %1: %2: %3</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/faults.py" />
+      <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>channel %1 block %2</source>
       <translation>canal %1 bloque %2</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 are the most; split it.</source>
       <translation>lo más son %1; divídalo.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 has no value in its brackets</source>
       <translation>%1 no tiene valor entre sus paréntesis</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 is no word</source>
       <translation>%1 no es una palabra</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 is nothing that %2= takes</source>
       <translation>%1 no es nada que %2= acepte</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its =</source>
       <translation>a %1 le falta su =</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lacks its brackets</source>
       <translation>a %1 le faltan sus paréntesis</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 stands behind %2</source>
       <translation>%1 está tras %2</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1%2 is no number</source>
       <translation>%1%2 no es un número</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1= has no value</source>
       <translation>%1= no tiene valor</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>A call stands alone.</source>
       <translation>Una llamada va sola.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>A comment begins with ;, and a subprogram's name stands alone.</source>
       <translation>Un comentario empieza con ;, y el nombre de un subprograma va solo.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>It takes %1.</source>
       <translation>Acepta %1.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>P%1 is no number of passes</source>
       <translation>P%1 no es un número de repeticiones</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>R parameters are R0 to R%1</source>
       <translation>Los parámetros R son de R0 a R%1</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write %1 with a number, or %2=…</source>
       <translation>Escriba %1 con un número, o %2=…</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write %1=%2(…).</source>
       <translation>Escriba %1=%2(…).</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write %1=…</source>
       <translation>Escriba %1=…</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write P1 to P%1.</source>
       <translation>Escriba de P1 a P%1.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write a number or an R parameter.</source>
       <translation>Escriba un número o un parámetro R.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write it at the start.</source>
       <translation>Escríbalo al principio.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>a number or an R parameter</source>
       <translation>un número o un parámetro R</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>in line %1</source>
       <translation>en la línea %1</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>more stands behind %1</source>
       <translation>hay más tras %1</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>syntax error: %1.</source>
       <translation>error de sintaxis: %1.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>the block has %1 characters</source>
       <translation>el bloque tiene %1 caracteres</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>the block number does not stand first</source>
       <translation>el número de bloque no va primero</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>the bracket of %1 is not closed</source>
       <translation>el paréntesis de %1 no está cerrado</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>this control does not execute it</source>
       <translation>este control no lo ejecuta</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/lexer.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>this control has no such word</source>
       <translation>este control no tiene esa palabra</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/spans.py" />
+      <location filename="core/language/sinumerik/sinumerik_colours.py" />
       <source>in line</source>
       <translation>en la línea</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/values.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 is no code</source>
       <translation>%1 no es un código</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/values.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 is out of range</source>
       <translation>%1 está fuera de rango</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/values.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>%1 lies between %2 and %3.</source>
       <translation>%1 está entre %2 y %3.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/values.py" />
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Codes are whole numbers of up to four digits.</source>
       <translation>Los códigos son números enteros de hasta cuatro cifras.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>H functions are not part of this control's SINUMERIK subset</source>
       <translation>las funciones H no son parte del SINUMERIK de este control</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>L is a subprogram only as L with a whole number</source>
       <translation>L es subprograma sólo como L con un número entero</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>P stands only behind the name of a subprogram</source>
       <translation>P va sólo tras el nombre de un subprograma</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>an R parameter stands behind = or is set with =, such as R1=10</source>
       <translation>un parámetro R va tras = o se pone con =, como R1=10</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>an arc in G18 has I and K</source>
       <translation>un arco en G18 tiene I y K</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>incremental words are written with IC( ), such as X=IC(1)</source>
       <translation>las palabras incrementales se escriben con IC( ), como X=IC(1)</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>incremental words are written with IC( ), such as Z=IC(1)</source>
       <translation>las palabras incrementales se escriben con IC( ), como Z=IC(1)</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no axis A</source>
       <translation>este torno no tiene eje A</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no axis B</source>
       <translation>este torno no tiene eje B</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no axis Y</source>
       <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>tool offsets are not part of this control's SINUMERIK subset; use G54 to G59</source>
       <translation>las compensaciones de herramienta no son parte del SINUMERIK de este control; use G54 a G59</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/vocabulary.py" />
+      <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>tools are not part of this control's SINUMERIK subset; put the offset into G54 to G59</source>
       <translation>las herramientas no son parte del SINUMERIK de este control; ponga el desplazamiento en G54 a G59</translation>
     </message>

@@ -11,7 +11,7 @@ import sys
 import time
 
 from app.compose.machine import setup_for
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 from core.proving.prove import prove

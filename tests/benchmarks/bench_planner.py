@@ -13,7 +13,7 @@ import sys
 import time
 from collections.abc import Callable
 
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import MotionLimits
 from core.motion.path import build_path
 from core.motion.plan import plan

@@ -10,7 +10,7 @@ import pytest
 from app.cli.errors import CommandError
 from app.cli.inputs_file import read_inputs
 from app.cli.offset_file import read_offsets
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
 def written(tmp_path: Path, text: str) -> Path:

@@ -8,7 +8,7 @@ from app.desk.headless import HeadlessRun, Outcome
 from core.executor.commands import Command, EnableDrives, Home
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from drivers.simulated import StepClock
 

@@ -15,8 +15,7 @@ from app.desk.settings import Units
 from app.programs.copy_rename_delete import RENAME
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import Snapshot, Starts, State
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.language.source import Dialect, Source
 from tests.interrupted import broken_off
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine

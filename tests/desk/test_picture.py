@@ -11,9 +11,8 @@ from app.desk.drawing.chords import CHORD_ERROR, arc_pieces
 from app.desk.drawing.trail import Stroke
 from app.desk.picture import Sketch, sketched
 from core.interpreter.actions import SpindleStop
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
-from core.interpreter.series import Series, TimedSeries
+from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.interpreter.modal_state import Modal
 
 TURNING = Modal(spindle=1, tool=1)
 

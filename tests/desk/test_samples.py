@@ -6,7 +6,7 @@ import pytest
 
 from app.cli.offset_file import read_offsets
 from app.compose.machine import setup_for
-from core.language.sinumerik.sections import with_subprograms
+from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import load_source
 from core.machine.load import load_machine, named_machine
 from core.proving.prove import prove

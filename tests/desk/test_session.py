@@ -15,8 +15,8 @@ from app.desk.session import Loaded, Phase, Proved, Session, Workshop
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.dialects import Reading
-from core.interpreter.setup import Setup
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
@@ -43,7 +43,7 @@ class Bench:
         return Source(path.name, "G90\nM30\n")
 
     def make(self, source: Source, block_delete: bool) -> Job:
-        return Job(source, Setup(block_delete=block_delete), f"digest of {source.name}", Reading(source))
+        return Job(source, Setup(block_delete=block_delete), f"digest of {source.name}", ReadProgram(source))
 
     def prove(self, job: Job, watch: Watch) -> Proved:
         self.proving.set()
@@ -112,7 +112,7 @@ def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
 
 def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
     source = Source("part.nc", "G90")
-    job = Job(source, Setup(), "digest", Reading(source), frozenset({1}))
+    job = Job(source, Setup(), "digest", ReadProgram(source), frozenset({1}))
     loaded = Loaded(Phase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tools=(3, 1, 2)))
     text = prompt(Snapshot(state=State.IDLE, program="part.nc"), loaded, "PRESS", "")
     assert text == "WILL NOT START: NO OFFSET WAS EVER SET FOR T2, T3 (F8 SETS THEM)"

@@ -11,7 +11,7 @@ from app.desk.readout import Readout, coordinates
 from app.desk.view import Tone, view_of
 from core.executor.alarms import told
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 
 INCH = 25.4
 AT = Snapshot(

@@ -13,8 +13,8 @@ from app.desk.picture import Picture, sketched
 from app.desk.session import Proved, Workshop
 from app.editor.versions import Bench
 from core.executor.job import Job
-from core.interpreter.dialects import Reading
-from core.interpreter.setup import ToolOffset
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove
@@ -58,7 +58,7 @@ def workshop() -> Workshop:
 
     def make_job(source: Source, block_delete: bool) -> Job:
         setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
-        return Job(source, setup, source.text, Reading(source), frozenset(TOOLS))
+        return Job(source, setup, source.text, ReadProgram(source), frozenset(TOOLS))
 
     def proved(job: Job, watch: Watch) -> Proved:
         report = prove(job.source, job.setup, lathe, watch)

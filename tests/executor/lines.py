@@ -11,11 +11,11 @@ from app.desk.searchto.leaving import now_of
 from core.executor.commands import CycleStart, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Starts, State
-from core.interpreter.begin import Begin, Checkpoint
-from core.interpreter.restart.approach import Choices, begin_at
-from core.interpreter.restart.found import Found
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.restart.restart_approach import Choices, begin_at
+from core.interpreter.restart.restart_lines import RestartPoint
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from core.proving.prove import prove
 from tests.executor.rig import Rig
@@ -67,8 +67,8 @@ def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int
     whole = rig.executor._conductor.standing.job
     assert whole is not None
     now = now_of(rig.shot, whole)
-    found = Rebuild(whole.source, whole.setup, lambda _count: None).find(line, number, now.broken)
-    if not isinstance(found, Found):
+    found = StateRebuild(whole.source, whole.setup, lambda _count: None).find(line, number, now.broken)
+    if not isinstance(found, RestartPoint):
         return None
     begin = begin_at(found, now, choices or Choices())
     return make_job(whole.source, replace(whole.setup, start=rig.shot.demand, begin=begin), whole)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from core.interpreter.actions import Action, ProgramEnd
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 
 
 class Maker:

@@ -43,8 +43,8 @@ from core.executor.feed import Pass
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import Setup, ToolOffset
 from core.ports import DriverError
 from core.proving.prove import prove
 from tests.executor.lines import line_job, restart_job

@@ -16,8 +16,8 @@ from core.executor.interpret import interpret
 from core.executor.interrupted import Interrupted
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Event, Snapshot, State
-from core.interpreter.blocks import Block
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 from core.machine.model import Machine

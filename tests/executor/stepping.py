@@ -12,9 +12,9 @@ from core.executor.interpret import interpret
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State
 from core.interpreter.actions import Dwell, ProgramEnd
-from core.interpreter.blocks import Block, Kind
 from core.interpreter.dialects import interpretation
-from core.interpreter.setup import Setup
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from core.machine.model import Machine

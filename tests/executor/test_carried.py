@@ -9,9 +9,8 @@ import pytest
 from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import State
-from core.interpreter.carried import RAPID, UNITS, carried
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
+from core.language.source import Dialect, Source
 from core.machine.load import load_machine
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
@@ -30,11 +29,11 @@ NAMES_NONE = "G90G94F300\nX.1\nM30\n"
     ],
 )
 def test_what_the_first_line_does_not_say_is_carried_over(first: str, carries: set[str]) -> None:
-    assert carried(Source("PART", f"{first}\nX1\nM30\n")) == carries
+    assert inherited_settings(Source("PART", f"{first}\nX1\nM30\n")) == carries
 
 
 def test_other_dialects_say_all_themselves() -> None:
-    assert carried(Source("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
+    assert inherited_settings(Source("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
 
 
 def after_a_metric_job() -> Rig:

@@ -12,8 +12,8 @@ from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.geometry.travel import FloatArray, Travel
 from core.interpreter.actions import ProgramEnd
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 from core.machine.load import parse_machine
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL

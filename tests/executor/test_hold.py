@@ -9,8 +9,8 @@ import pytest
 
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, TICK, Rig, off_line
 
 RAPID = "G90G94F300\nX3Z-4\nX0Z0\nM30\n"

@@ -10,9 +10,9 @@ import pytest
 from core.block_port import ArcOp, LineOp, RapidOp, ThreadOp
 from core.executor.alarms import TroubleError
 from core.executor.blockwise.pieces import LONGEST, Turning, pieces_of
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
-from core.interpreter.needs import first_needs, needs_of
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.machine_requirements import first_needs, needs_of
+from core.interpreter.modal_state import Modal
 
 FULL = Turning(1.0, 3500.0)
 

@@ -20,8 +20,8 @@ from core.executor.commands import (
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
 from core.executor.states import TRANSITIONS, TransitionError, demand_allowed
-from core.interpreter.needs import THREAD, Need
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.machine_requirements import THREAD, Need
 from core.language.source import Source
 from core.machine.load import load_machine
 from tests.executor.rig import Rig, unhomed_machine

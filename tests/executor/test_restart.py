@@ -12,8 +12,8 @@ from app.desk.searchto.search import WAY_OUT
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.restart.approach import Choices
-from core.interpreter.restart.rebuild import Rebuild
+from core.interpreter.restart.restart_approach import Choices
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from core.proving.prove import prove
 from tests.executor import lines
@@ -284,7 +284,7 @@ def way_out_alone(rig: Rig) -> None:
     rig.run(0.4)
     whole = rig.executor._conductor.standing.job
     assert whole is not None
-    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
     assert not out.trouble, out.trouble
     setup = replace(whole.setup, start=rig.shot.demand, begin=out.begin)
@@ -397,7 +397,7 @@ def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
     rig.run(0.5)
     whole = rig.executor._conductor.standing.job
     assert whole is not None
-    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
     assert not out.trouble
     assert [leg.label for leg in out.legs] == ["", "1 X", "2 Z", "3 Z"]
@@ -410,7 +410,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     whole = rig.executor._conductor.standing.job
     assert whole is not None
     assert rig.shot.interrupted_line == 7
-    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
     assert out.trouble.startswith("HOW T1 CAME TO STAND HERE IS NOT KNOWN")
     assert not out.begin.way
@@ -422,7 +422,7 @@ def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
     rig.run(0.4)
     whole = rig.executor._conductor.standing.job
     assert whole is not None
-    cut = Rebuild(whole.source, whole.setup, lambda _count: None).cut
+    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
     job = make_job(Source("WAY OUT", WAY_OUT), replace(whole.setup, start=rig.shot.demand, begin=out.begin))
     report = prove(job.reading, job.setup, rig.machine)

@@ -7,8 +7,8 @@ import pytest
 from app.compose.machine import setup_for
 from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source
 from core.motion.limits import MotionLimits
 from core.motion.path import build_path

@@ -6,7 +6,7 @@ import pytest
 
 from core.executor.commands import FeedHold, ForceOutput, Reset, SpindleLimit, SpindleStop, UseOffsets
 from core.executor.snapshot import State
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from tests.executor.rig import INCH, Rig
 
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}

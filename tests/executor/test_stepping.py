@@ -10,8 +10,8 @@ from app.cli.offset_file import read_offsets
 from app.compose.machine import setup_for
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
-from core.interpreter.setup import SecondaryOffset, Setup, ToolOffset
-from core.language.sinumerik.sections import with_subprograms
+from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import Source, load_source
 from core.machine.load import load_machine, shipped_machine
 from core.machine.model import Machine

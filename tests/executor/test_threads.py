@@ -14,7 +14,7 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Snapshot, State
 from core.executor.turns import Turns
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
 from core.motion.limits import FloatArray
 from tests.executor.rig import INCH, CreepingClock, Rig
 

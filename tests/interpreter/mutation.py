@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from core.interpreter.book import CHAPTERS
+from core.interpreter.omniturn.code_table import CHAPTERS
 
 SEEDS = tuple(entry.program for _, entries in CHAPTERS for entry in entries)
 _LETTERS = "GMXZCIKRPSFTDLUAOQN()/}.-+,~0123456789 "

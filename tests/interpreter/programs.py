@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from core.interpreter.actions import Action
-from core.interpreter.blocks import Block
-from core.interpreter.program import Program, read_program
-from core.interpreter.run import Interpreter
-from core.interpreter.setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 

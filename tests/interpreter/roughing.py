@@ -8,7 +8,7 @@ from itertools import pairwise
 from core.geometry.arcs import Point
 from core.geometry.contour import Arc, Element, Line, arc_between
 from core.geometry.meet import distance
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 
 def element_of(block: Block) -> Element:

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine import setup_for
-from core.interpreter import codes
-from core.interpreter.book import CHAPTERS, Entry
-from core.interpreter.book_page import page
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import CHAPTERS, Entry
+from core.interpreter.omniturn.language_page import page
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from core.machine.load import load_machine
@@ -22,9 +22,9 @@ NOSE = 0.015 * 25.4
 
 
 def test_every_code_of_the_tables_has_its_entry_and_none_has_two() -> None:
-    known = {f"G{number:02d}" for number in (*codes.MODAL_GROUPS, *codes.ONE_SHOT)}
-    known |= {f"M{number:02d}" for number in codes.M_KNOWN}
-    known |= {name for name in codes.FLOW_WORDS if not name.startswith("M")}
+    known = {f"G{number:02d}" for number in (*code_table.MODAL_GROUPS, *code_table.ONE_SHOT)}
+    known |= {f"M{number:02d}" for number in code_table.M_KNOWN}
+    known |= {name for name in code_table.FLOW_WORDS if not name.startswith("M")}
     known |= {"C", "CA", "CI", "R", "T", "D", "F", "S", "/", "()", "~PLXC", "~PLZC"}
     written = [entry.code for entry in ENTRIES]
     assert sorted(written) == sorted(known)
@@ -48,5 +48,5 @@ def test_the_example_proves_and_uses_its_code(entry: Entry) -> None:
 
 def test_the_page_is_written_from_the_book() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), (
-        "python -m core.interpreter.book_page > docs/language.md"
+        "python -m core.interpreter.omniturn.language_page > docs/language.md"
     )

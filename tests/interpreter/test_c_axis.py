@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.actions import SpindleLock, SpindleRun
-from core.interpreter.blocks import Kind
-from core.interpreter.setup import ControlLimits
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import ControlLimits
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
 HEAD = "G90G94F300"

@@ -6,7 +6,7 @@ from math import sqrt
 
 import pytest
 
-from core.interpreter.blocks import Kind
+from core.interpreter.elementary_blocks import Kind
 from tests.interpreter.programs import INCH, Pass, body, passed, setup
 
 SHAFT = ("X.2Z0", "Z-.5", "X.4")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.actions import AskInput
-from core.interpreter.run import Interpreter
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from tests.interpreter.programs import body, lines, passed, setup
 
 SUBS = ("}1", "X1", "X2", "M99", "}2", "Z5", "M98P1", "M99")

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine import setup_for
-from core.interpreter.blocks import Block
-from core.interpreter.setup import ToolOffset
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import Source
 from core.machine.load import load_machine

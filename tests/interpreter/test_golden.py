@@ -18,10 +18,10 @@ from pathlib import Path
 import pytest
 
 from core.interpreter import actions
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from tests.interpreter.programs import ALL_TOOLS, INCH, in_feed, setup

@@ -16,7 +16,7 @@ from core.interpreter.actions import (
     SpindleStop,
     WaitInput,
 )
-from core.interpreter.setup import ControlLimits
+from core.interpreter.job_setup import ControlLimits
 from tests.interpreter.programs import body, lines, passed, setup
 
 

@@ -9,10 +9,10 @@ import pytest
 
 from core.geometry.offset import WINDOW
 from core.interpreter.actions import Dwell, ProgramStop
-from core.interpreter.blocks import Kind
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
-from core.interpreter.setup import Setup
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import Setup
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from core.geometry.arcs import Point, centre_from_radius
 from core.geometry.contour import Element
 from core.geometry.meet import distance
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.remade import element_of
+from core.interpreter.adjusted_moves import element_of
+from core.interpreter.elementary_blocks import Block, Kind
 from tests.geometry.contours import sampled
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 

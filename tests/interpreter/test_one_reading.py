@@ -6,13 +6,12 @@ from itertools import zip_longest
 
 import pytest
 
-from core.interpreter import program
-from core.interpreter.columns import columns_of
-from core.interpreter.dialects import Reading
-from core.interpreter.program import LONG
-from core.interpreter.reading import statement
-from core.interpreter.setup import Setup, ToolOffset
-from core.interpreter.steps import LongSteps
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.omniturn import omniturn_program
+from core.interpreter.omniturn.omniturn_program import LONG
+from core.interpreter.omniturn.omniturn_statement import statement
+from core.interpreter.omniturn.plain_moves import LongProgram, columns_of
 from core.language.omniturn import lex_line
 from core.language.source import Source
 
@@ -23,14 +22,14 @@ TEXT = "\n".join(["G90G94F300G72", "T1", *MOVES[:-20], *RARE, *MOVES[-20:], "M30
 SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)})
 
 
-def told(reading: Reading) -> list[str]:
+def told(reading: ReadProgram) -> list[str]:
     """Every field of every block of one whole pass."""
     return [repr(block) for block in reading.begin(SETUP).blocks()]
 
 
 def test_two_passes_side_by_side_are_as_one_alone() -> None:
-    alone = told(Reading(Source("part", TEXT)))
-    reading = Reading(Source("part", TEXT))
+    alone = told(ReadProgram(Source("part", TEXT)))
+    reading = ReadProgram(Source("part", TEXT))
     first, second = reading.begin(SETUP).blocks(), reading.begin(SETUP).blocks()
     pairs = list(zip_longest(first, second))
     assert len(alone) > LONG
@@ -39,37 +38,37 @@ def test_two_passes_side_by_side_are_as_one_alone() -> None:
 
 
 def test_a_pass_that_was_given_up_leaves_nothing() -> None:
-    reading = Reading(Source("part", TEXT))
+    reading = ReadProgram(Source("part", TEXT))
     given_up = reading.begin(SETUP).blocks()
     for _ in range(LONG):
         next(given_up)
-    assert told(reading) == told(Reading(Source("part", TEXT)))
+    assert told(reading) == told(ReadProgram(Source("part", TEXT)))
 
 
 def test_the_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     read = list[str]()
-    before = program.read_program
+    before = omniturn_program.read_program
 
-    def counted(source: Source, strict: bool = False) -> program.Program:
+    def counted(source: Source, strict: bool = False) -> omniturn_program.Program:
         read.append(source.name)
         return before(source, strict)
 
-    monkeypatch.setattr(program, "read_program", counted)
-    reading = Reading(Source("part", "G90\nM30\n"))
+    monkeypatch.setattr(omniturn_program, "read_program", counted)
+    reading = ReadProgram(Source("part", "G90\nM30\n"))
     for _ in range(3):
         list(reading.begin(SETUP).blocks())
     assert read == ["part"]
 
 
 def test_what_is_wrong_with_the_text_is_told_by_every_pass() -> None:
-    reading = Reading(Source("part", "G90\nG1X\nM30\n"))
+    reading = ReadProgram(Source("part", "G90\nG1X\nM30\n"))
     first, second = ([d.code for d in reading.begin(SETUP).diagnostics] for _ in range(2))
     assert first
     assert first == second
 
 
 def test_what_a_pass_notes_of_a_line_is_its_own() -> None:
-    steps = LongSteps(columns_of([(1.0, 0.0), (1.0, -1.0), (1.0, -2.0)]), {})
+    steps = LongProgram(columns_of([(1.0, 0.0), (1.0, -1.0), (1.0, -2.0)]), {})
     own = steps.copy()
     own[1] = statement(lex_line(2, "X1Z-1"))
     assert not isinstance(own[1], tuple)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
-from core.interpreter.setup import ControlLimits
+from core.interpreter.job_setup import ControlLimits
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source
 from tests.interpreter.programs import body, lines, passed, setup
 

@@ -15,14 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine import setup_for
-from core.interpreter.blocks import Block
-from core.interpreter.columns import columns_of, read_columns
-from core.interpreter.plain import read_move
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
-from core.interpreter.series import Series
-from core.interpreter.setup import Setup, ToolOffset
-from core.interpreter.steps import LongSteps
+from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.omniturn.plain_moves import LongProgram, columns_of, read_columns, read_move
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.load import load_machine
@@ -39,12 +36,12 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
     """Series from ``least`` moves on, of ``most`` at most; every program is read into columns."""
     long = NEVER if least == NEVER else 1
     with (
-        patch("core.interpreter.program.LONG", long),
-        patch("core.interpreter.run.LONG", long),
-        patch("core.interpreter.ahead.LEAST", least),
-        patch("core.interpreter.ahead.MOST", most),
-        patch("core.interpreter.steps.MOST", most),
-        patch("core.interpreter.columns._FEW", 1),
+        patch("core.interpreter.omniturn.omniturn_program.LONG", long),
+        patch("core.interpreter.omniturn.omniturn_interpreter.LONG", long),
+        patch("core.interpreter.omniturn.move_series.LEAST", least),
+        patch("core.interpreter.omniturn.move_series.MOST", most),
+        patch("core.interpreter.omniturn.plain_moves.MOST", most),
+        patch("core.interpreter.omniturn.plain_moves._FEW", 1),
     ):
         yield
 
@@ -117,7 +114,7 @@ def test_any_lines(moves: list[str], most: int) -> None:
 @settings(max_examples=60, deadline=None)
 @given(st.lists(MOVE, min_size=1, max_size=30))
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
-    with patch("core.interpreter.columns._FEW", 1):
+    with patch("core.interpreter.omniturn.plain_moves._FEW", 1):
         read = read_columns(moves)
     alone = columns_of([read_move(text) for text in moves])
     for many, one in zip(read, alone, strict=True):
@@ -179,10 +176,10 @@ def test_words_off_the_step_are_told_until_there_are_too_many() -> None:
 
 
 def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.interpreter.run.MOST_BLOCKS", 77)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MOST_BLOCKS", 77)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
-    monkeypatch.setattr("core.interpreter.run.MOST_LINES", 50)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MOST_LINES", 50)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
 
@@ -206,7 +203,7 @@ def test_lines_of_a_long_program_are_those_of_a_short_one() -> None:
     texts = ["X1.5Z-2", "", "G01X1F.003", "X1.23456", "M08", "Z3"] * 500
     with at_once(2):
         steps = read_program(Source("A", lines(*texts))).steps
-    assert isinstance(steps, LongSteps)
+    assert isinstance(steps, LongProgram)
     assert [read_move(text) for text in texts] == [s if isinstance(s, tuple) else None for s in steps]
     changed = steps[5]
     steps[5] = None

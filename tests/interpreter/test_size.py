@@ -7,9 +7,9 @@ from itertools import islice
 
 import pytest
 
-from core.interpreter import run
-from core.interpreter.program import read_program
-from core.interpreter.run import Interpreter
+from core.interpreter.omniturn import omniturn_interpreter
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.omniturn import Line, lex_line
 from core.language.source import Source
 from tests.interpreter.programs import body, lines, passed, setup
@@ -49,7 +49,7 @@ def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) ->
     answers = iter([False])  # when counted; afterwards the input is on
     text = lines("G90F300", "M95", "M30", "}1", "LS200", "X1", "LF", "M99")
     given = setup(inputs=lambda _terminal: next(answers, True))
-    monkeypatch.setattr(run, "MOST_BLOCKS", 50)
+    monkeypatch.setattr(omniturn_interpreter, "MOST_BLOCKS", 50)
     interpreter = Interpreter(read_program(Source("A", text)), given)
     blocks = list(interpreter.blocks())
     assert len(blocks) == 50
@@ -57,7 +57,7 @@ def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_lines_without_blocks_are_bounded_while_running(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run, "MOST_LINES", 50)
+    monkeypatch.setattr(omniturn_interpreter, "MOST_LINES", 50)
     result = passed(lines("G90F300", "LS100", "F20", "LF", "M30"))
     assert [code for _, _, code in result.errors] == ["too-many-blocks"]
 
@@ -87,7 +87,7 @@ def test_lines_are_not_lexed_again_in_a_loop(monkeypatch: pytest.MonkeyPatch) ->
         lexed.append(number)
         return lex_line(number, text)
 
-    monkeypatch.setattr("core.interpreter.moves.lex_line", counted)
-    monkeypatch.setattr(run, "lex_line", counted)
+    monkeypatch.setattr("core.interpreter.omniturn.straight_moves.lex_line", counted)
+    monkeypatch.setattr(omniturn_interpreter, "lex_line", counted)
     assert sum(1 for _ in Interpreter(program, setup()).blocks()) == 252
     assert len(lexed) == len(set(lexed))

@@ -9,9 +9,8 @@ import numpy.typing as npt
 import pytest
 
 from app.compose.machine import setup_for
-from core.interpreter.setup import ToolOffset
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Dialect, Source
 from core.machine.load import shipped_machine
 from core.machine.model import Machine
 from core.proving.prove import prove

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.language.klartext import line as long_way
+from core.language.klartext import klartext_line as long_way
 from core.language.klartext import read_line
-from core.language.klartext.nodes import KlartextLine
-from core.language.klartext.plain import read_plain
+from core.language.klartext.klartext_line import read_plain
+from core.language.klartext.klartext_nodes import KlartextLine
 
 WORDS = st.sampled_from(
     (

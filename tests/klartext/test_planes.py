@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.geometry.kinematics import Kinematics
-from core.interpreter.blocks import Kind
+from core.interpreter.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, C, limited
 

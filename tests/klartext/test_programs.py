@@ -14,10 +14,10 @@ from core.interpreter.actions import (
     SpindleStop,
     ToolChange,
 )
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.setup import ToolOffset
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import ToolOffset
 from core.language.klartext import read_line
-from core.language.klartext.written import written
+from core.language.klartext.canonical_text import written
 from tests.klartext.chamfers import AXIAL, POINTS, SYM_MINUS
 from tests.klartext.running import Ran, run, run_file
 from tests.klartext.test_frames import STANDS

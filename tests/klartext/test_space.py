@@ -16,8 +16,8 @@ from app.desk.swivel.scene import Ink, Scene
 from app.desk.swivel.telling import Instant, at_line, plane_words, running
 from app.desk.view import view_of
 from core.executor.snapshot import Snapshot
-from core.interpreter.blocks import Block
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.modal_state import Modal
 from tests.klartext.chamfers import AXIAL
 from tests.klartext.running import run, run_file
 from tests.klartext.table import AC

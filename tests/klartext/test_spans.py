@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.language.ink import Ink
-from core.language.klartext.spans import spans
+from core.language.klartext.klartext_colours import spans
+from core.language.syntax_colours import Ink
 
 CODE, KEY, POSITION, RUN, CALL = Ink.CODE, Ink.KEY, Ink.POSITION, Ink.RUN, Ink.CALL
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine import setup_for
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
 from core.language.source import Source

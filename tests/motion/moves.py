@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 from core.motion.limits import MotionLimits
 
 Point = tuple[float, float]

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.interpreter.blocks import Kind
+from core.interpreter.elementary_blocks import Kind
 from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.path import build_path

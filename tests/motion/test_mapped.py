@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from core.geometry.face import Face
 from core.geometry.mill import PlaneMove, Spot
 from core.geometry.side import Side
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 from core.motion.errors import MotionError
 from core.motion.limits import FloatArray, MotionLimits
 from core.motion.mapped import CHORD_ERROR, chords

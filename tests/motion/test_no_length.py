@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.limits import FloatArray, MotionLimits
 from core.motion.path import Path, PathBuilder, build_path
 from core.motion.plan import plan

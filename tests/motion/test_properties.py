@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.limits import FloatArray
 from core.motion.minima import reachable_backward, reachable_forward
 from core.motion.path import Path, build_path

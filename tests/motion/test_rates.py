@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from core.geometry.spindle import surface_rpm
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 from core.motion.errors import MotionError
 from core.motion.path import build_path
 from core.motion.plan import plan

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.errors import MotionError
 from core.motion.path import PathBuilder, build_path
 from core.motion.plan import plan

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import FloatArray
 from core.motion.path import Path, PathBuilder, build_path
 from core.motion.plan import plan, settled_joints

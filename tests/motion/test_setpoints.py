@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.limits import FloatArray, MotionLimits
 from core.motion.path import build_path
 from core.motion.plan import plan

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.errors import MotionError
 from core.motion.path import build_path
 from core.motion.plan import plan

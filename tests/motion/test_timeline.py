@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.blocks import Block
+from core.interpreter.elementary_blocks import Block
 from core.motion.errors import MotionError
 from core.motion.limits import MotionLimits
 from core.motion.path import build_path

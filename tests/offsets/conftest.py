@@ -17,7 +17,7 @@ from app.offsets.secondary_offsets import SeccmpDesk
 from app.offsets.tool_offsets import ToolGrid
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from core.store.store import Store
 

@@ -13,7 +13,7 @@ from app.desk.latest import Watch
 from app.desk.picture import Picture
 from app.offsets.effect import Effect, Tables
 from core.executor.job import Job, make_job
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 

@@ -9,7 +9,7 @@ import pytest
 from app.desk.prompts import NOT_HERE, STALE
 from core.executor.commands import Command, CycleStart, UseOffsets
 from core.executor.snapshot import State
-from core.interpreter.setup import SecondaryOffset
+from core.interpreter.job_setup import SecondaryOffset
 from core.store.rows import Kind
 from tests.offsets.conftest import LIMIT, Room
 

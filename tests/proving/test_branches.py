@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from app.cli.offset_file import read_offsets
 from app.compose.machine import setup_for
-from core.interpreter.dialects import Reading
-from core.interpreter.run import Interpreter
-from core.interpreter.setup import Setup, ToolOffset
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving import branches
@@ -164,7 +164,7 @@ def test_block_delete_counts_in_the_range() -> None:
 
 
 def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
-    reading = Reading(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
+    reading = ReadProgram(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
     assert branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
     report = proved("Z-1", "M30")
     assert (report.ways.gone, report.ways.left) == (1, 0)
@@ -238,7 +238,7 @@ def text_of(main: list[str], one: list[str], two: list[str], three: list[str]) -
 
 def by_every_answer(text: str, questions: int) -> Iterator[int]:
     """The lines that leave the travel, with each set of answers to so many questions in turn."""
-    reading = Reading(Source("A", text))
+    reading = ReadProgram(Source("A", text))
     for deleted, answers in product((False, True), product((False, True), repeat=questions)):
         interpreter = reading.begin(replace(circumstances(), block_delete=deleted))
         assert isinstance(interpreter, Interpreter)

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli.main import main
 from app.compose.machine import setup_for
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 from core.machine.model import Machine

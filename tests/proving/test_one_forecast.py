@@ -8,7 +8,7 @@ import pytest
 
 from app.cli.offset_file import read_offsets
 from app.compose.machine import setup_for
-from core.interpreter.setup import SecondaryOffset, Setup
+from core.interpreter.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove

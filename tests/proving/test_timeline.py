@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine import setup_for
-from core.interpreter.blocks import Kind
-from core.interpreter.setup import ToolOffset
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Dialect, Source
 from core.machine.load import load_machine
 from core.proving.prove import prove
 from core.proving.timeline import Timeline, timed_blocks

@@ -19,8 +19,8 @@ from app.editor.editor import Editor
 from app.editor.versions import Archive, Bench, NoArchive
 from app.offsets.effect import Effect
 from core.executor.job import Job
-from core.interpreter.dialects import Reading
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove
@@ -45,7 +45,7 @@ def desk_on(
 
     def make_job(source: Source, block_delete: bool) -> Job:
         setup = setup_for(lathe, tools=TOOLS, secondary=_secondary(built[0]), block_delete=block_delete)
-        return Job(source, setup, f"{source.name}{block_delete}", Reading(source), frozenset(TOOLS))
+        return Job(source, setup, f"{source.name}{block_delete}", ReadProgram(source), frozenset(TOOLS))
 
     def proved(job: Job, watch: Watch) -> Proved:
         report = prove(job.source, job.setup, lathe, watch)

@@ -21,7 +21,7 @@ from core.executor.commands import (
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.interpreter.actions import ProgramEnd, ProgramStop
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
 

@@ -12,7 +12,7 @@ from app.compose.journal import Journal
 from app.compose.offsets import book_of, chosen_offsets, stored_offsets
 from app.compose.screen import build_desk
 from core.executor.snapshot import Event
-from core.interpreter.setup import SecondaryOffset
+from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Source
 from core.store.rows import Kind
 from core.store.store import Store

@@ -15,7 +15,7 @@ from app.screen.look import Look
 from app.screen.theme import DARK
 from app.screen.window import MainWindow
 from core.executor.snapshot import State
-from core.interpreter.setup import SecondaryOffset, ToolOffset
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.machine.load import load_machine
 from core.proving.prove import prove

@@ -20,9 +20,9 @@ from app.screen.path.aspects import Aspect, Tip
 from app.screen.pathview import PathView
 from app.screen.theme import DARK
 from core.executor.snapshot import State
-from core.interpreter.blocks import Block
-from core.interpreter.blocks import Kind as BlockKind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.elementary_blocks import Kind as BlockKind
+from core.interpreter.modal_state import Modal
 from tests.desk.drawing.made import turned
 from tests.screen.hands import Hands
 

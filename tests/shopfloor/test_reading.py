@@ -11,7 +11,7 @@ from app.shopfloor.conditions import PLACES
 from app.shopfloor.reading import FloorReader, Value
 from core.executor.alarms import TroubleError, alarm_of, told
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 from core.machine.load import load_machine
 from core.machine.model import InputModel, Machine
 from tests.interrupted import broken_off

@@ -7,12 +7,11 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from app.compose.machine import setup_for
-from core.interpreter.blocks import Block
 from core.interpreter.dialects import interpretation
-from core.interpreter.setup import Setup, ZeroOffset
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import Setup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.language.source import Dialect, Source
 from core.machine.load import shipped_machine
 from core.machine.model import Machine
 from core.proving.timeline import Timeline, timed_blocks

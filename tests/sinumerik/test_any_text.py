@@ -7,7 +7,7 @@ import random
 import numpy as np
 import pytest
 
-from core.language.sinumerik.spans import spans
+from core.language.sinumerik.sinumerik_colours import spans
 from core.machine.model import Machine
 from core.motion.limits import MotionLimits
 from core.motion.path import build_path

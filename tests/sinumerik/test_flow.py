@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from core.interpreter.actions import ProgramEnd
-from core.language.dialect import Dialect
-from core.language.sinumerik.sections import with_subprograms
-from core.language.source import Source, load_source
+from core.language.sinumerik.subprogram_files import with_subprograms
+from core.language.source import Dialect, Source, load_source
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
 NUT = Source("NUT.spf", "N10 G0 Z=IC(1)\nN20 C=IC(90)\nN30 M17\nN40 G0 Z99\n", Dialect.SINUMERIK)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.language.ink import Ink
 from core.language.sinumerik import Form, lex_line
-from core.language.sinumerik.spans import spans
+from core.language.sinumerik.sinumerik_colours import spans
+from core.language.syntax_colours import Ink
 
 
 def words(text: str) -> list[tuple[str, float | None]]:

@@ -14,10 +14,9 @@ from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import make_job
 from core.executor.snapshot import Event, Snapshot, State
-from core.interpreter.blocks import Block
-from core.interpreter.setup import ZeroOffset
-from core.language.dialect import Dialect
-from core.language.source import Source
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import ZeroOffset
+from core.language.source import Dialect, Source
 from core.machine.model import Machine
 from core.proving.prove import prove
 from core.proving.stretches import Moved

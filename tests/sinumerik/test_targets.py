@@ -6,9 +6,9 @@ import random
 
 import pytest
 
-from core.interpreter.sinumerik import targets
-from core.interpreter.sinumerik.targets import TargetError, check_reach, linear_travel, modulo_travel
-from core.language.sinumerik.words import Form
+from core.interpreter.sinumerik import third_axis
+from core.interpreter.sinumerik.third_axis import TargetError, check_reach, linear_travel, modulo_travel
+from core.language.sinumerik.sinumerik_words import Form
 from tests.sinumerik.lathe import LINEAR, good, refused, setup
 
 TABLE = [  # start, target, AC, DC, ACP, ACN
@@ -145,7 +145,7 @@ def test_the_linear_axis(start: float, word: str, travel: float) -> None:
 )
 def test_beyond_the_range_of_the_linear_axis(start: float, text: str) -> None:
     error = refused(text, setup(LINEAR, (0.0, 0.0, start)))
-    assert error.code == str(targets.WRONG_RANGE)
+    assert error.code == str(third_axis.WRONG_RANGE)
     assert "axis C" in error.message
 
 

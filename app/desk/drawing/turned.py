@@ -19,11 +19,11 @@ from app.desk.drawing.chords import mill_way, turn_pieces
 from app.desk.drawing.trail import Floats, Pencil, Stroke, Trail, bounds_of
 from core.geometry.face import Face
 from core.geometry.side import Side
-from core.interpreter.blocks import Kind
+from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
     from core.geometry.mill import PlaneMove, Spot
-    from core.interpreter.blocks import Block
+    from core.interpreter.elementary_blocks import Block
 
 STILL = 1e-9  # mm, degrees
 LEAST = 1.0  # mm: the radius that a side is unrolled at when nothing tells one

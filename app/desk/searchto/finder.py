@@ -10,30 +10,30 @@ from typing import TYPE_CHECKING
 from app.desk.latest import AbandonedError, Watch
 from app.desk.session import Proved
 from core.executor.job import Job
-from core.interpreter.restart.cut import Cut
-from core.interpreter.restart.found import BrokenOff, Found, NotGood
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
 
 if TYPE_CHECKING:
-    from core.interpreter.restart.rebuild import Rebuild
+    from core.interpreter.restart.state_rebuild import StateRebuild
 
-Answer = Found | NotGood | Cut | tuple[Job, Proved]
+Answer = RestartPoint | NoRestart | CutRecord | tuple[Job, Proved]
 
 
 @dataclass(slots=True)
 class Finder:
     """``rebuild`` and ``prove`` are called on the worker; a later line goes on from an earlier one."""
 
-    rebuild: Callable[[Job, Watch], Rebuild]
+    rebuild: Callable[[Job, Watch], StateRebuild]
     prove: Callable[[Job, Watch], Proved]
     reached: int = 0  # blocks that the work has come to
-    _rebuild: tuple[Job, Rebuild] | None = None  # the worker's alone
+    _rebuild: tuple[Job, StateRebuild] | None = None  # the worker's alone
     _future: Future[Answer] | None = None
     _ticket: int = 0
     _pool: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="loading-search")
     )
 
-    def find(self, job: Job, line: int, visit: int = 0, broken: BrokenOff | None = None) -> None:
+    def find(self, job: Job, line: int, visit: int = 0, broken: Interruption | None = None) -> None:
         """Have a line of this job's program found; 0: in the pass that was interrupted, or in the first."""
         watch = self._watch()
         self._future = self._pool.submit(self._with, job, watch, lambda one: one.find(line, visit, broken))
@@ -71,7 +71,7 @@ class Finder:
         self.give_up()
         self._pool.shutdown(wait=True, cancel_futures=True)
 
-    def _with(self, job: Job, watch: Watch, ask: Callable[[Rebuild], Answer]) -> Answer:
+    def _with(self, job: Job, watch: Watch, ask: Callable[[StateRebuild], Answer]) -> Answer:
         """Work that is given up leaves nothing behind: a pass stopped within a line is worth nothing."""
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:

@@ -10,11 +10,11 @@ from app.desk.words import tr
 from core.executor.interrupted import CONTROL_LOST
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
-from core.interpreter.begin import Begin, Checkpoint, Leg, Step
-from core.interpreter.restart.approach import Choices, Now, standing, way_out
-from core.interpreter.restart.cut import Cut
-from core.interpreter.restart.found import BrokenOff
-from core.interpreter.restart.retract import Lies, Retract
+from core.interpreter.checkpoint import ApproachStep, Begin, Checkpoint, Leg
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work, way_out
+from core.interpreter.restart.restart_lines import Interruption
+from core.interpreter.restart.restart_retract import Retract, ToolPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,10 +27,10 @@ class Leaving:
     trouble: str = ""
 
 
-def leaving_of(cut: Cut, snapshot: Snapshot, job: Job, choices: Choices) -> Leaving:
+def leaving_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -> Leaving:
     """The way out from where the tool stands now."""
     now = now_of(snapshot, job)
-    found, tool = standing(cut, now)
+    found, tool = retract_from_work(cut, now)
     steps = way_out(cut, now, choices) if found.known else ()
     begin = Begin(Checkpoint(snapshot.modal), single=True, way=steps)
     metric = snapshot.modal.metric
@@ -41,7 +41,7 @@ def leaving_of(cut: Cut, snapshot: Snapshot, job: Job, choices: Choices) -> Leav
     return Leaving(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
 
 
-def now_of(snapshot: Snapshot, job: Job) -> Now:
+def now_of(snapshot: Snapshot, job: Job) -> MachineNow:
     """The machine of this instant, and what of the loaded program was interrupted.
 
     In a text that was changed since, the number of a block tells nothing any more.
@@ -51,11 +51,13 @@ def now_of(snapshot: Snapshot, job: Job) -> Now:
     same = found is not None and found.program == job.source.name and found.text == job.text_digest
     if found is not None and same and found.block:
         stale = found.why == CONTROL_LOST
-        broken = BrokenOff(found.block, found.tool, found.where, found.begun, stale)
-    return Now(snapshot.demand, snapshot.modal, broken)
+        broken = Interruption(found.block, found.tool, found.where, found.begun, stale)
+    return MachineNow(snapshot.demand, snapshot.modal, broken)
 
 
-def drawn(steps: tuple[Step, ...], snapshot: Snapshot, offset: tuple[float, float]) -> tuple[Drawn, ...]:
+def drawn(
+    steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
+) -> tuple[Drawn, ...]:
     """The legs of a way in the frame of one tool; the first is where that stands now."""
     x, z = snapshot.demand[0], snapshot.demand[1]
     legs = [Drawn(z - offset[1], x - offset[0])]
@@ -70,11 +72,11 @@ def jog_words(found: Retract, tool: int) -> str:
     """What the operator has to do by hand where no way out is sure; empty where one is."""
     if found.known:
         return ""
-    if found.lies is Lies.TAP:
+    if found.lies is ToolPlace.TAP:
         words = tr("T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING")
-    elif found.lies is Lies.THREAD:
+    elif found.lies is ToolPlace.THREAD:
         words = tr("T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z")
-    elif found.lies is Lies.TURNED:
+    elif found.lies is ToolPlace.TURNED:
         words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
     else:
         words = _towards(*found.away)

@@ -18,13 +18,13 @@ from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, Starts
 from core.executor.states import CYCLE
-from core.interpreter.restart.approach import Choices
-from core.interpreter.restart.cut import Cut
-from core.interpreter.restart.found import NotGood
-from core.language.dialect import Dialect
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_approach import Choices
+from core.interpreter.restart.restart_lines import NoRestart
+from core.language.source import Dialect
 
 if TYPE_CHECKING:
-    from core.interpreter.restart.rebuild import Rebuild
+    from core.interpreter.restart.state_rebuild import StateRebuild
 
 
 @dataclass(slots=True)
@@ -36,12 +36,12 @@ class SearchOpening:
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
-    rebuild: Callable[[Job, Watch], Rebuild]  # what goes through a program; called on the worker
+    rebuild: Callable[[Job, Watch], StateRebuild]  # what goes through a program; called on the worker
     choices: Choices = field(default_factory=Choices)
     cursor: Cursor = field(default_factory=Cursor)
     stage: Stage = Stage.CHOOSE
     open: bool = False
-    answer: NotGood | None = None
+    answer: NoRestart | None = None
     plan: Plan | None = None
     leaving: Leaving | None = None  # the way out alone
     number: int = 0  # of the pass in which the line is meant; 0: the one that was interrupted, or the first
@@ -52,7 +52,7 @@ class SearchOpening:
     _job: Job | None = None
     _of: Job | None = None  # the program's job that was searched
     _accepted: bool = False
-    _cut: Cut | None = None
+    _cut: CutRecord | None = None
     _going_out: bool = False
 
     def __post_init__(self) -> None:

@@ -12,9 +12,9 @@ from app.desk.words import tr
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
-from core.interpreter.begin import Begin, Checkpoint, Step
-from core.interpreter.restart.approach import Choices, begin_at, standing, starting
-from core.interpreter.restart.found import Called, Found, LoopPass
+from core.interpreter.checkpoint import ApproachStep, Begin, Checkpoint
+from core.interpreter.restart.restart_approach import Choices, begin_at, retract_from_work, starting
+from core.interpreter.restart.restart_lines import Called, LoopPass, RestartPoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Beside:
 class Plan:
     """A restart as the operator sees it before he confirms it."""
 
-    found: Found
+    found: RestartPoint
     begin: Begin
     rows: tuple[Beside, ...]
     starts: tuple[str, ...]  # what will turn, flow or switch on
@@ -44,12 +44,12 @@ class Plan:
     warning: str = ""  # what is left out
 
 
-def plan_of(found: Found, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
+def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
     """The plan from where the machine stands now."""
     now = now_of(snapshot, job)
     begin = begin_at(found, now, choices)
     modal = begin.checkpoint.modal
-    out = jog_words(*standing(found.cut, now)) if found.cut is not None else ""
+    out = jog_words(*retract_from_work(found.cut, now)) if found.cut is not None else ""
     return Plan(
         found=found,
         begin=begin,
@@ -61,7 +61,7 @@ def plan_of(found: Found, snapshot: Snapshot, job: Job, choices: Choices) -> Pla
     )
 
 
-def _passes(found: Found) -> tuple[Beside, ...]:
+def _passes(found: RestartPoint) -> tuple[Beside, ...]:
     """The passes and calls in which the line is, beside those that were interrupted."""
     was = found.was.within if found.was is not None else ()
     return tuple(
@@ -84,7 +84,7 @@ def _of(loop: LoopPass) -> str:
     return tr("{number} OF {count}").format(number=loop.number, count=loop.of)
 
 
-def _left_out(found: Found) -> str:
+def _left_out(found: RestartPoint) -> str:
     first, last = found.left_out
     if not first:
         return ""
@@ -114,7 +114,7 @@ def _places(point: Checkpoint, x: float, z: float) -> tuple[InForce, ...]:
     )
 
 
-def _words(step: Step, point: Checkpoint) -> str:
+def _words(step: ApproachStep, point: Checkpoint) -> str:
     action = getattr(step, "action", None)
     modal = point.modal
     match action:

@@ -17,9 +17,9 @@ from core.executor.commands import Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot, Starts, State
 from core.executor.states import CYCLE
-from core.interpreter.restart.approach import Choices
-from core.interpreter.restart.cut import Cut
-from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_approach import Choices
+from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
 from core.language.source import Source
 
 WAY_OUT = "(WAY OUT OF THE PART)"
@@ -134,7 +134,7 @@ class SearchDesk(SearchOpening):
         self.stage = Stage.PROVING
         self.finder.check(make_job(whole.source, setup, whole))
 
-    def _confirm_out(self, snapshot: Snapshot, cut: Cut, whole: Job) -> None:
+    def _confirm_out(self, snapshot: Snapshot, cut: CutRecord, whole: Job) -> None:
         if snapshot.state is not State.IDLE:
             self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
             return
@@ -218,22 +218,22 @@ class SearchDesk(SearchOpening):
             self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=error))
             return
         answer = future.result()
-        if isinstance(answer, Found):
+        if isinstance(answer, RestartPoint):
             self.number, self.count = answer.visit.number, answer.visit.of
             self._show(answer)
-        elif isinstance(answer, Cut):
+        elif isinstance(answer, CutRecord):
             self._show_out(answer)
-        elif isinstance(answer, NotGood):
+        elif isinstance(answer, NoRestart):
             self.stage, self.answer = Stage.REFUSED, answer
         else:
             self._made_ready(*answer)
 
-    def _show(self, found: Found) -> None:
+    def _show(self, found: RestartPoint) -> None:
         if self._of is not None:
             self.stage = Stage.SHOWN
             self.plan = plan_of(found, self.snapshot(), self._of, self.choices)
 
-    def _show_out(self, cut: Cut) -> None:
+    def _show_out(self, cut: CutRecord) -> None:
         if self._of is not None:
             self.stage, self._cut = Stage.SHOWN, cut
             self.leaving = leaving_of(cut, self.snapshot(), self._of, self.choices)

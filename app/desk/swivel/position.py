@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.desk import formats
 from app.desk.words import tr
 from core.executor.snapshot import Snapshot
-from core.interpreter.swivel import Swivel
+from core.interpreter.working_plane import Swivel
 
 ANGLE_PLACES = 3  # the display step of a rotary table
 _SLIDES = 3

@@ -15,13 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry.frames import applied, plus
-from core.interpreter.blocks import Kind
+from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
     from core.geometry.frames import Vector
     from core.geometry.kinematics import Kinematics
-    from core.interpreter.blocks import Block
-    from core.interpreter.swivel import Corners, Swivel
+    from core.interpreter.elementary_blocks import Block
+    from core.interpreter.working_plane import Corners, Swivel
 
 FloatArray = npt.NDArray[np.float64]
 _EMPTY: Corners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))

@@ -11,7 +11,7 @@ from app.desk.swivel.position import angle, system_words
 if TYPE_CHECKING:
     from app.desk.swivel.scene import Scene
     from core.executor.snapshot import Snapshot
-    from core.interpreter.swivel import Swivel
+    from core.interpreter.working_plane import Swivel
 
 _AXES = ("A", "B", "C")
 

@@ -17,7 +17,7 @@ from app.screen.mdi.line import LinePanel
 from app.screen.pages import Doings, Host, Page
 from core.executor.snapshot import Snapshot, Starts
 from core.executor.states import CYCLE
-from core.interpreter.begin import Checkpoint
+from core.interpreter.checkpoint import Checkpoint
 
 LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
 

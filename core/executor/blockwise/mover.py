@@ -13,7 +13,7 @@ from core.executor.blockwise.pieces import Piece, Turning, pieces_of
 from core.executor.feed import BlockFeed
 from core.executor.moving import Progress
 from core.executor.stretch import Scales
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 _CUT = 1.0  # s of motion that lie ready in pieces
 _SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that

@@ -15,7 +15,7 @@ from core.executor.alarms import TroubleError
 from core.executor.feed import nominal
 from core.geometry.extent import arc_sweep
 from core.geometry.spindle import surface_rpm
-from core.interpreter.blocks import Block, Kind
+from core.interpreter.elementary_blocks import Block, Kind
 
 LONGEST = 0.2  # s of a piece at its programmed speed
 _SHORTEST = 0.05  # mm; a slow feed is not cut up finer

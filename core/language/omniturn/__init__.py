@@ -1,6 +1,6 @@
 """The OmniTurn dialect as text: words, lines and what is wrong with them."""
 
-from core.language.omniturn.lexer import lex_line
-from core.language.omniturn.words import Line, Word
+from core.language.omniturn.omniturn_lexer import lex_line
+from core.language.omniturn.omniturn_words import Line, Word
 
 __all__ = ["Line", "Word", "lex_line"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.desk.drawing.trail import Stroke, Trail
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
 
 LOCKED = Modal(c_locked=True, tool=1)
 

@@ -16,9 +16,9 @@ from app.desk.picture import Picture, Sketch, sketched
 from core.geometry.face import Face
 from core.geometry.mill import PlaneMove
 from core.geometry.side import Side
-from core.interpreter.blocks import Block, Kind
-from core.interpreter.modal import Modal
-from core.interpreter.setup import ToolOffset
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.modal_state import Modal
 from core.language.source import load_source
 from core.proving.timeline import Timeline, timed_blocks
 from tests.desk.drawing.made import LOCKED, turned

@@ -10,7 +10,7 @@ from app.desk.jogging.hold import JogHold
 from app.desk.jogging.speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 from core.machine.load import load_machine
 
 INCH = 25.4

@@ -12,7 +12,7 @@ from app.desk.jogging.speeds import CONTINUOUS, Speeds
 from app.desk.jogging.wheel import WheelHold
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
-from core.interpreter.modal import Modal
+from core.interpreter.modal_state import Modal
 from core.machine.hardware.model import AnalogModel
 from core.machine.load import load_machine
 from core.machine.model import InputModel

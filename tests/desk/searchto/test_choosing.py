@@ -11,7 +11,7 @@ from app.desk.searchto.cursor import Cursor
 from app.desk.searchto.finder import Finder
 from app.desk.session import Proved
 from core.executor.job import Job, Proof, make_job
-from core.interpreter.restart.found import Found, NotGood
+from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
 from core.language.source import Source
 from tests.interpreter.programs import setup
 
@@ -87,12 +87,12 @@ def answer(finder: Finder) -> object:
 def test_lines_are_found_one_after_the_other(finder: Finder) -> None:
     part = job("\n".join(LINES) + "\n")
     finder.find(part, 4)
-    assert isinstance(answer(finder), Found)
+    assert isinstance(answer(finder), RestartPoint)
     finder.find(part, 2)
-    assert isinstance(answer(finder), NotGood)
+    assert isinstance(answer(finder), NoRestart)
     finder.find(part, 5)
     found = answer(finder)
-    assert isinstance(found, Found)
+    assert isinstance(found, RestartPoint)
     assert found.line == 5
     finder.close()
 
@@ -103,7 +103,7 @@ def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: Find
     finder.give_up()
     finder.find(long, 3)
     found = answer(finder)
-    assert isinstance(found, Found)
+    assert isinstance(found, RestartPoint)
     assert found.line == 3
     finder.close()
 

@@ -10,11 +10,11 @@ from app.desk.searchto.leaving import jog_words, leaving_of
 from core.executor.interrupted import CONTROL_LOST, Interrupted
 from core.executor.job import make_job
 from core.executor.snapshot import Snapshot
-from core.interpreter.modal import Modal
-from core.interpreter.restart.approach import Choices, Now, standing
-from core.interpreter.restart.found import BrokenOff
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.restart.retract import Hop, Lies, Retract
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work
+from core.interpreter.restart.restart_lines import Interruption
+from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.interrupted import broken_off
@@ -23,23 +23,26 @@ from tests.interrupted import broken_off
 @pytest.mark.parametrize(
     ("found", "words"),
     [
-        (Retract(Lies.CLEAR), ""),
-        (Retract(Lies.WORK, (Hop(1.0, 0.0),), (1, 0)), ""),
-        (Retract(Lies.UNKNOWN, away=(1, 0)), "T3 STANDS IN THE PART: JOG X+ OUT OF IT FIRST, NOT Z"),
-        (Retract(Lies.UNKNOWN, away=(-1, 0)), "T3 STANDS IN THE PART: JOG X- OUT OF IT FIRST, NOT Z"),
-        (Retract(Lies.UNKNOWN, away=(0, 1)), "T3 STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X"),
+        (Retract(ToolPlace.CLEAR), ""),
+        (Retract(ToolPlace.WORK, (RetractLeg(1.0, 0.0),), (1, 0)), ""),
+        (Retract(ToolPlace.UNKNOWN, away=(1, 0)), "T3 STANDS IN THE PART: JOG X+ OUT OF IT FIRST, NOT Z"),
+        (Retract(ToolPlace.UNKNOWN, away=(-1, 0)), "T3 STANDS IN THE PART: JOG X- OUT OF IT FIRST, NOT Z"),
+        (Retract(ToolPlace.UNKNOWN, away=(0, 1)), "T3 STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X"),
         (
-            Retract(Lies.UNKNOWN, away=(1, 1)),
+            Retract(ToolPlace.UNKNOWN, away=(1, 1)),
             "T3 STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, X+ AND Z+ TOGETHER",
         ),
         (
-            Retract(Lies.UNKNOWN),
+            Retract(ToolPlace.UNKNOWN),
             "HOW T3 CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME",
         ),
-        (Retract(Lies.THREAD), "T3 STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z"),
-        (Retract(Lies.TAP), "T3 IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING"),
+        (Retract(ToolPlace.THREAD), "T3 STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z"),
         (
-            Retract(Lies.TURNED, away=(1, 0)),
+            Retract(ToolPlace.TAP),
+            "T3 IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING",
+        ),
+        (
+            Retract(ToolPlace.TURNED, away=(1, 0)),
             "C HAS TURNED SINCE T3 WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T3 OUT",
         ),
     ],
@@ -52,13 +55,15 @@ PART = Source("PART", "G90G94F300\nT1\nX.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\nF300X.
 
 
 def test_a_cross_hole_is_left_only_while_c_stands_as_it_stood() -> None:
-    cut = Rebuild(PART, setup(), lambda _count: None).cut
+    cut = StateRebuild(PART, setup(), lambda _count: None).cut
     row = next(n for n, line in zip(cut.n.tolist(), cut.line.tolist(), strict=True) if line == 7)
     at = (0.6 * INCH, -0.3 * INCH, 30.0)
-    broken = BrokenOff(row, 1, at, row)
-    assert standing(cut, Now(at, Modal(), broken))[0].known
-    assert standing(cut, Now((*at[:2], 390.2), Modal(), broken))[0].known  # a whole turn, as C counts
-    found, tool = standing(cut, Now((*at[:2], 35.0), Modal(), broken))
+    broken = Interruption(row, 1, at, row)
+    assert retract_from_work(cut, MachineNow(at, Modal(), broken))[0].known
+    assert retract_from_work(cut, MachineNow((*at[:2], 390.2), Modal(), broken))[
+        0
+    ].known  # a whole turn, as C counts
+    found, tool = retract_from_work(cut, MachineNow((*at[:2], 35.0), Modal(), broken))
     assert not found.known
     assert jog_words(found, tool).startswith("C HAS TURNED SINCE T1 WENT IN")
 
@@ -74,7 +79,7 @@ def interrupted(block: int, **changes: object) -> tuple[Snapshot, Interrupted]:
 
 
 def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_there() -> None:
-    cut = Rebuild(PART, setup(), lambda _count: None).cut
+    cut = StateRebuild(PART, setup(), lambda _count: None).cut
     row = next(n for n, line in zip(cut.n.tolist(), cut.line.tolist(), strict=True) if line == 7)
     snapshot, _ = interrupted(row)
     out = leaving_of(cut, snapshot, make_job(PART, setup()), Choices())
@@ -88,7 +93,7 @@ def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_
 
 
 def test_a_note_of_a_second_ago_is_told_from_a_place_at_rest() -> None:
-    cut = Rebuild(PART, setup(), lambda _count: None).cut
+    cut = StateRebuild(PART, setup(), lambda _count: None).cut
     before, _ = interrupted(3, why=CONTROL_LOST, where=(0.75 * INCH, -0.1 * INCH, 30.0))
     assert leaving_of(cut, before, make_job(PART, setup()), Choices()).trouble == ""
     moved, _ = interrupted(3, where=(0.75 * INCH, -0.1 * INCH, 30.0))

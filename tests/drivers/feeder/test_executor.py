@@ -6,7 +6,7 @@ import pytest
 
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
 from drivers.feeder.client import Line
 from drivers.feeder.ports import feeder_ports
 from drivers.feeder.server import Feeder

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.interpreter.begin import Begin
-from core.interpreter.blocks import Block
+from core.interpreter.checkpoint import Begin
 from core.interpreter.dialects import interpretation
-from core.interpreter.modal import Modal
-from core.interpreter.restart.approach import Choices, Now, begin_at
-from core.interpreter.restart.found import Found, NotGood
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.setup import Setup
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
+from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.diagnostics import Severity
 from core.language.source import Source
 
@@ -28,7 +28,7 @@ def all_of(source: Source, setup: Setup) -> list[Block]:
     return blocks
 
 
-def begun(setup: Setup, found: Found) -> Setup:
+def begun(setup: Setup, found: RestartPoint) -> Setup:
     """The circumstances of a restart from where the slides stand.
 
     A spindle that is no axis has been turned by hand to the same angle: M19 would turn it from there.
@@ -39,22 +39,22 @@ def begun(setup: Setup, found: Found) -> Setup:
     return replace(setup, start=at, begin=beginning(found, at))
 
 
-def beginning(found: Found, at: tuple[float, ...]) -> Begin:
+def beginning(found: RestartPoint, at: tuple[float, ...]) -> Begin:
     """A restart at a machine that stands still with its collet as it was."""
-    return begin_at(found, Now(at, Modal()), Choices())
+    return begin_at(found, MachineNow(at, Modal()), Choices())
 
 
-def of_each_line(source: Source, setup: Setup, passes: int = 0) -> list[Found | NotGood]:
+def of_each_line(source: Source, setup: Setup, passes: int = 0) -> list[RestartPoint | NoRestart]:
     """What SEARCHTO says of every line, in order; of one in a loop or a subroutine, of all its passes.
 
     ``passes``: of so many first ones and of the last.
     """
-    rebuild = Rebuild(source, setup, lambda _count: None)
-    said: list[Found | NotGood] = []
+    rebuild = StateRebuild(source, setup, lambda _count: None)
+    said: list[RestartPoint | NoRestart] = []
     for line in range(1, len(source.lines) + 1):
         answer = rebuild.find(line, 1)
         said.append(answer)
-        count = answer.visit.of if isinstance(answer, Found) else 1
+        count = answer.visit.of if isinstance(answer, RestartPoint) else 1
         later = [n for n in range(2, count + 1) if not passes or n <= passes or n == count]
         said += [rebuild.find(line, number) for number in later]
     return said

@@ -7,28 +7,36 @@ from dataclasses import replace
 import pytest
 
 from core.interpreter.actions import Coolant, Output, SpindleRun, SpindleStop
-from core.interpreter.begin import Checkpoint, Do, Leg, Step, Turn
-from core.interpreter.modal import Modal
-from core.interpreter.restart.approach import Choices, Now, begin_at, standing, starting, way, way_out
-from core.interpreter.restart.found import BrokenOff, Found
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.restart.retract import Hop, Lies, Retract
-from core.interpreter.setup import ToolOffset
+from core.interpreter.checkpoint import ApproachStep, Checkpoint, CTurn, FunctionStep, Leg
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.restart_approach import (
+    Choices,
+    MachineNow,
+    begin_at,
+    retract_from_work,
+    starting,
+    way,
+    way_out,
+)
+from core.interpreter.restart.restart_lines import Interruption, RestartPoint
+from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 
 MODAL = Modal(tool=1, tool_x=-10.0, tool_z=-50.0)
 AT = Checkpoint(MODAL._replace(spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
-BACK = Retract(Lies.WORK, (Hop(15.0, -12.0), Hop(15.0, 2.0)), (1, 0))
-FOUND = Found(9, AT, BACK)
-STANDS = Now((30.0, -48.0, 0.0), MODAL)
+BACK = Retract(ToolPlace.WORK, (RetractLeg(15.0, -12.0), RetractLeg(15.0, 2.0)), (1, 0))
+FOUND = RestartPoint(9, AT, BACK)
+STANDS = MachineNow((30.0, -48.0, 0.0), MODAL)
 
 
-def legs(steps: tuple[Step, ...]) -> list[tuple[float | None, float | None, bool]]:
+def legs(steps: tuple[ApproachStep, ...]) -> list[tuple[float | None, float | None, bool]]:
     return [(step.x, step.z, step.rapid) for step in steps if isinstance(step, Leg)]
 
 
-def order(steps: tuple[Step, ...]) -> list[str]:
+def order(steps: tuple[ApproachStep, ...]) -> list[str]:
     return [step.text for step in steps]
 
 
@@ -42,21 +50,21 @@ def test_the_way_in_is_the_way_back_the_other_way_round() -> None:
 
 
 def test_a_line_that_begins_clear_of_the_work_is_gone_to_by_rapid() -> None:
-    found = replace(FOUND, back=Retract(Lies.CLEAR))
+    found = replace(FOUND, back=Retract(ToolPlace.CLEAR))
     assert legs(way(found, STANDS, Choices())) == [(-2.0, None, True), (None, -62.0, True)]
 
 
 def test_what_must_not_run_is_stopped_before_anything_moves() -> None:
-    now = Now(STANDS.at, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"})))
+    now = MachineNow(STANDS.at, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"})))
     found = replace(FOUND, checkpoint=AT._replace(modal=AT.modal._replace(coolant=False)))
     steps = way(found, now, Choices())
     assert order(steps)[:3] == ["M05", "M09", "LIVE1 OFF"]
-    actions = [step.action for step in steps if isinstance(step, Do)]
+    actions = [step.action for step in steps if isinstance(step, FunctionStep)]
     assert actions[:3] == [SpindleStop(), Coolant(False), Output("live1", False)]
 
 
 def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
-    told = [step.action for step in starting(FOUND, STANDS, Choices()) if isinstance(step, Do)]
+    told = [step.action for step in starting(FOUND, STANDS, Choices()) if isinstance(step, FunctionStep)]
     assert told == [SpindleRun(800.0, None), Coolant(True)]
     without = begin_at(FOUND, STANDS, Choices(coolant=False))
     assert not without.checkpoint.modal.coolant
@@ -66,8 +74,8 @@ def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
 def test_c_is_locked_and_turned_to_its_angle_by_the_short_way_clear_of_the_part() -> None:
     modal = AT.modal._replace(spindle=0, c_locked=True, coolant=False, offset_c=720.0)
     found = replace(FOUND, checkpoint=AT._replace(modal=modal, c=90.0))
-    begin = begin_at(found, Now((30.0, -48.0, 1000.0), MODAL), Choices())
-    turn = next(step for step in begin.way if isinstance(step, Turn))
+    begin = begin_at(found, MachineNow((30.0, -48.0, 1000.0), MODAL), Choices())
+    turn = next(step for step in begin.way if isinstance(step, CTurn))
     assert turn.c == pytest.approx(1170.0)  # 90 degrees and three turns: the nearest to 1000
     assert begin.checkpoint.modal.offset_c == pytest.approx(1080.0)
     assert order(begin.way) == ["X", "M89", "C", "Z", "X"]
@@ -80,14 +88,14 @@ TWO = (
 TOOLS = {1: ToolOffset(-10.0, -50.0), 2: ToolOffset(90.0, -20.0)}
 
 
-def two(line: int, broken: BrokenOff | None = None) -> Found:
+def two(line: int, broken: Interruption | None = None) -> RestartPoint:
     """T1 cuts a groove at Z-.3 from X.5 (a radius), then T2, whose offset is another, bores at X.2."""
-    found = Rebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(line, 0, broken)
-    assert isinstance(found, Found), found
+    found = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(line, 0, broken)
+    assert isinstance(found, RestartPoint), found
     return found
 
 
-def spots(steps: tuple[Step, ...], tool: int) -> list[tuple[float | None, float | None, bool]]:
+def spots(steps: tuple[ApproachStep, ...], tool: int) -> list[tuple[float | None, float | None, bool]]:
     """Ends of the legs as this tool would read them, inches."""
     off = TOOLS[tool]
     return [
@@ -100,11 +108,11 @@ def spots(steps: tuple[Step, ...], tool: int) -> list[tuple[float | None, float 
     ]
 
 
-def in_the_groove(x: float = 0.42) -> tuple[Now, BrokenOff]:
+def in_the_groove(x: float = 0.42) -> tuple[MachineNow, Interruption]:
     """T1 was stopped on line 6, in its groove; the fifth elementary block is that cut."""
     at = (-10.0 + x * INCH, -50.0 - 0.3 * INCH, 0.0)
-    broken = BrokenOff(5, 1, at, 5)
-    return Now(at, MODAL, broken), broken
+    broken = Interruption(5, 1, at, 5)
+    return MachineNow(at, MODAL, broken), broken
 
 
 def test_the_way_out_is_that_of_the_tool_that_was_interrupted_whatever_the_line_works_with() -> None:
@@ -137,7 +145,7 @@ def test_a_tool_that_was_jogged_elsewhere_in_the_part_is_asked_to_be_jogged_on()
     cut = two(6).cut
     assert cut is not None
     moved = replace(now, at=(now.at[0], now.at[1] + 3.0, 0.0))
-    found, tool = standing(cut, moved)
+    found, tool = retract_from_work(cut, moved)
     assert not found.known
     assert tool == 1
     assert found.away == (1, 0)  # X, and not Z
@@ -148,21 +156,21 @@ def test_a_tool_jogged_clear_needs_no_way_out_but_z() -> None:
     cut = two(6).cut
     assert cut is not None
     clear = replace(now, at=(-10.0 + 0.8 * INCH, now.at[1], 0.0))
-    assert standing(cut, clear)[0].lies is Lies.CLEAR
+    assert retract_from_work(cut, clear)[0].lies is ToolPlace.CLEAR
     assert all(rapid for _, _, rapid in legs(way_out(cut, clear, Choices())))
 
 
 def test_where_nothing_is_known_to_be_interrupted_every_tool_has_to_stand_clear() -> None:
     cut = two(6).cut
     assert cut is not None
-    unknown = Now((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), Modal())
-    assert not standing(cut, unknown)[0].known
-    assert standing(cut, Now((40.0, cut.clear_z, 0.0), Modal()))[0].known
+    unknown = MachineNow((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), Modal())
+    assert not retract_from_work(cut, unknown)[0].known
+    assert retract_from_work(cut, MachineNow((40.0, cut.clear_z, 0.0), Modal()))[0].known
 
 
 def test_a_control_that_was_cut_off_may_stand_a_little_farther_on() -> None:
     now, _ = in_the_groove()
-    noted = BrokenOff(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, stale=True)
+    noted = Interruption(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, stale=True)
     cut = two(6).cut
     assert cut is not None
     assert spots(way_out(cut, replace(now, broken=noted), Choices()), 1)[0] == (0.5, None, False)
@@ -179,7 +187,7 @@ def test_a_tool_that_the_program_has_not_named_yet_is_brought_in_clear_of_the_wh
 
 def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> None:
     _, broken = in_the_groove()
-    answer = Rebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
-    assert not isinstance(answer, Found)
+    answer = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
+    assert not isinstance(answer, RestartPoint)
     assert answer.why == "Line 12 begins in metal that line 11 would have had to cut."
     assert two(9, broken).left_out == (0, 0)  # the groove itself is begun

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from core.interpreter.actions import AskInput
-from core.interpreter.program import read_program
-from core.interpreter.restart.found import Found
-from core.interpreter.setup import Setup
+from core.interpreter.job_setup import Setup
+from core.interpreter.omniturn.omniturn_program import read_program
+from core.interpreter.restart.restart_lines import RestartPoint
 from core.language.diagnostics import Severity
 from core.language.source import Source, load_source
 from tests.interpreter.programs import ALL_TOOLS, setup
@@ -38,7 +38,7 @@ def runs(source: Source, given: Setup) -> bool:
 def check(source: Source, given: Setup) -> int:
     """Compare every good line; how many there were."""
     full = all_of(source, given)
-    good = [each for each in of_each_line(source, given) if isinstance(each, Found)]
+    good = [each for each in of_each_line(source, given) if isinstance(each, RestartPoint)]
     for found in good:
         begin = begun(given, found)
         assert begin.begin is not None

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.restart.found import BrokenOff, Found, NotGood
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.setup import ToolOffset
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 
 
-def find(text: str, line: int, **given: object) -> Found | NotGood:
-    return Rebuild(Source("PART", text), setup(**given), lambda _count: None).find(line)  # type: ignore[arg-type]
+def find(text: str, line: int, **given: object) -> RestartPoint | NoRestart:
+    return StateRebuild(Source("PART", text), setup(**given), lambda _count: None).find(line)  # type: ignore[arg-type]
 
 
 PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
@@ -27,7 +27,7 @@ PLANE = "G90G94F300\nX-.5Z.1\nM19\n(~PLXC)\n(X.5Y.1)\n(END)\nM05\nM30\n"
 
 def test_everything_that_a_line_inherits() -> None:
     found = find(PLAIN, 7, tools={1: ToolOffset(-10.0, -20.0)})
-    assert isinstance(found, Found)
+    assert isinstance(found, RestartPoint)
     point, modal = found.checkpoint, found.checkpoint.modal
     assert point.machine == pytest.approx((-10.0 + 0.5 * INCH, -20.0 - 0.5 * INCH))
     assert (modal.diameter, modal.tool, modal.spindle, modal.rpm, modal.coolant) == (True, 1, 1, 900.0, True)
@@ -58,7 +58,7 @@ def test_lines_that_are_not_good_and_the_nearest_that_are(
     text: str, line: int, why: str, before: int, after: int
 ) -> None:
     answer = find(text, line, secondary={1: (-0.015, -0.015, 0.015)})
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert answer.why == why
     assert (answer.before, answer.after) == ((0 if before == 2 else before), after)
 
@@ -66,7 +66,7 @@ def test_lines_that_are_not_good_and_the_nearest_that_are(
 @pytest.mark.parametrize("line", [1, 2])
 def test_nothing_has_moved_yet(line: int) -> None:
     answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert answer.why.startswith(f"Nothing has moved before line {line}")
     assert (answer.before, answer.after) == (0, 4)
 
@@ -76,60 +76,60 @@ def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are
     said = {line: find(text, line) for line in range(3, 9)}
     for line in (3, 4, 5, 6):
         answer = said[line]
-        assert isinstance(answer, NotGood)
+        assert isinstance(answer, NoRestart)
         assert "depends on where they stood at Cycle Start" in answer.why
         assert answer.after == 7
-    assert isinstance(said[7], Found)
-    assert isinstance(said[8], Found)  # incremental, from a place that is known
+    assert isinstance(said[7], RestartPoint)
+    assert isinstance(said[8], RestartPoint)  # incremental, from a place that is known
 
 
 def test_a_preset_at_an_unknown_place_stays_unknown() -> None:
     text = "G90G94F300\nG92X0Z0\nX1Z1\nX2\nT1\nX1Z1\nX2\nM30\n"
     answer = find(text, 4)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert answer.after == 7
-    assert isinstance(find(text, 7), Found)
+    assert isinstance(find(text, 7), RestartPoint)
 
 
 def test_what_an_input_answered_is_not_guessed() -> None:
     sub = "}1\nZ.5\nM99\n"
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert answer.why == "Line 4 depends on the input that line 3 asks."
     assert (answer.before, answer.after) == (3, 6)  # behind Z2 both answers lead to one place
-    assert isinstance(find(text, 3), Found)
-    assert isinstance(find(text, 6), Found)
+    assert isinstance(find(text, 3), RestartPoint)
+    assert isinstance(find(text, 6), RestartPoint)
 
 
 def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert "what the input of line 4 answered is not known" in answer.why
 
 
 def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     assert "what input 3 answered on line 4 is not known" in answer.why
 
 
 def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
     answer = find("G90G94F300\nX1Z1\nM97I3C0P1\nX2\nM30\n}1\nM30\nM99\n", 4)
-    assert isinstance(answer, NotGood)
+    assert isinstance(answer, NoRestart)
     broken = find("G90G94F300\nX1Z1\nX1R9\nX2\nX3\nM30\n", 5)
-    assert isinstance(broken, NotGood)
+    assert isinstance(broken, NoRestart)
     assert broken.why == "The program has errors before line 5."
 
 
 def test_loops_are_gone_through_and_asks_go_on_from_each_other() -> None:
     text = "G90G94F300\nX1Z1\nLS50\nG91X-.01\nZ-.01\nLF\nG90\nX1Z1\nM30\n"
-    rebuild = Rebuild(Source("PART", text), setup(), lambda _count: None)
+    rebuild = StateRebuild(Source("PART", text), setup(), lambda _count: None)
     first, later, earlier = rebuild.find(3), rebuild.find(7), rebuild.find(3)
-    assert isinstance(first, Found)
-    assert isinstance(later, Found)
+    assert isinstance(first, RestartPoint)
+    assert isinstance(later, RestartPoint)
     assert later.checkpoint.x == pytest.approx(0.5 * INCH)
     assert later.checkpoint.blocks == 101
     assert earlier == first
@@ -145,15 +145,15 @@ def test_the_work_is_given_up_when_nobody_wants_it_any_more() -> None:
 
     text = "G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n"
     with pytest.raises(GivenUpError):
-        Rebuild(Source("PART", text), setup(), watch).find(7)
+        StateRebuild(Source("PART", text), setup(), watch).find(7)
 
 
 NESTED = "G90G94F300\nX1Z1\nLS2\nG91X-.1\nLS3\nZ-.1\nLF\nM98P1\nLF\nG90\nX1Z1\nM30\n}1\nX.05\nM99\n"
 
 
-def visit(text: str, line: int, number: int, broken: BrokenOff | None = None) -> Found:
-    found = Rebuild(Source("PART", text), setup(), lambda _count: None).find(line, number, broken)
-    assert isinstance(found, Found), found
+def visit(text: str, line: int, number: int, broken: Interruption | None = None) -> RestartPoint:
+    found = StateRebuild(Source("PART", text), setup(), lambda _count: None).find(line, number, broken)
+    assert isinstance(found, RestartPoint), found
     return found
 
 
@@ -190,10 +190,10 @@ def test_the_work_shift_of_a_pass_is_what_the_passes_before_it_have_added_up() -
 
 def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
     # X1Z1 is block 1, the first outer pass 2 to 6, the second 7 to 11: in that line 6 is 8, 9, 10.
-    found = visit(NESTED, 6, 0, BrokenOff(9, 0, (0.0, 0.0, 0.0), 9))
+    found = visit(NESTED, 6, 0, Interruption(9, 0, (0.0, 0.0, 0.0), 9))
     assert found.visit.number == 5
     assert found.was == found.visit
-    other = visit(NESTED, 6, 2, BrokenOff(9, 0, (0.0, 0.0, 0.0), 9))
+    other = visit(NESTED, 6, 2, Interruption(9, 0, (0.0, 0.0, 0.0), 9))
     assert (other.visit.number, other.was) == (2, found.visit)
 
 
@@ -217,6 +217,6 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
     ],
 )  # fmt: skip
 def test_passes_that_are_no_place_to_go_on(text: str, line: int, number: int, why: str) -> None:
-    answer = Rebuild(Source("PART", text), setup(), lambda _count: None).find(line, number)
-    assert isinstance(answer, NotGood)
+    answer = StateRebuild(Source("PART", text), setup(), lambda _count: None).find(line, number)
+    assert isinstance(answer, NoRestart)
     assert answer.why == why

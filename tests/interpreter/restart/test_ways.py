@@ -12,13 +12,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.interpreter.begin import Leg, Step
-from core.interpreter.modal import Modal
-from core.interpreter.restart.approach import Choices, Now, way, way_out
-from core.interpreter.restart.cut import FACE, FEED, SIDE, Cut
-from core.interpreter.restart.found import BrokenOff, Found
-from core.interpreter.restart.rebuild import Rebuild
-from core.interpreter.setup import ControlLimits, Setup
+from core.interpreter.checkpoint import ApproachStep, Leg
+from core.interpreter.job_setup import ControlLimits, Setup
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.cut_record import FACE, FEED, SIDE, CutRecord
+from core.interpreter.restart.restart_approach import Choices, MachineNow, way, way_out
+from core.interpreter.restart.restart_lines import Interruption, RestartPoint
+from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source, load_source
 from tests.interpreter.programs import ALL_TOOLS, OUTPUTS, setup
 from tests.interpreter.restart.again import of_each_line
@@ -47,7 +47,7 @@ def between(x0: float, z0: float, x: float, z: float) -> Points:
     return np.array([[x0, z0]]) + share * np.array([[x - x0, z - z0]])
 
 
-def off(points: Points, cut: Cut, rows: npt.NDArray[np.bool_]) -> Points:
+def off(points: Points, cut: CutRecord, rows: npt.NDArray[np.bool_]) -> Points:
     """How far each point lies off the nearest of these rows, mm."""
     known = rows & ~np.isnan(cut.x0) & ~np.isnan(cut.z0) & ~np.isnan(cut.x) & ~np.isnan(cut.z)
     if not known.any() or not len(points):
@@ -63,7 +63,7 @@ def off(points: Points, cut: Cut, rows: npt.NDArray[np.bool_]) -> Points:
 class Metal:
     """What the program tells of the bar when its blocks up to ``done`` are cut."""
 
-    def __init__(self, cut: Cut, tool: int, row: int) -> None:
+    def __init__(self, cut: CutRecord, tool: int, row: int) -> None:
         self.cut, self.tool = cut, tool
         index = np.arange(len(cut))
         feeds = ((cut.how & FEED) != 0) & ((cut.how & (FACE | SIDE)) == 0)
@@ -101,7 +101,7 @@ class Metal:
 
 
 def spoiled(
-    metal: Metal, steps: tuple[Step, ...], at: tuple[float, float], offset: tuple[float, float]
+    metal: Metal, steps: tuple[ApproachStep, ...], at: tuple[float, float], offset: tuple[float, float]
 ) -> str:
     """The first leg that goes where it must not, in words; empty: none does."""
     x, z = at
@@ -118,7 +118,7 @@ def spoiled(
 
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: path.stem)
 def test_the_way_out_from_every_block_and_from_within_it(path: Path) -> None:
-    cut = Rebuild(load_source(path), given_for(path), lambda _count: None).cut
+    cut = StateRebuild(load_source(path), given_for(path), lambda _count: None).cut
     known = asked = 0
     for row in range(0, len(cut), max(1, len(cut) // MOST)):
         tool, n = int(cut.tool[row]), int(cut.n[row])
@@ -130,7 +130,7 @@ def test_the_way_out_from_every_block_and_from_within_it(path: Path) -> None:
             if np.isnan(x) or np.isnan(z):
                 continue
             at = (x, z, 0.0)
-            steps = way_out(cut, Now(at, Modal(), BrokenOff(n, tool, at, n)), Choices())
+            steps = way_out(cut, MachineNow(at, Modal(), Interruption(n, tool, at, n)), Choices())
             known, asked = known + bool(steps), asked + 1
             wrong = spoiled(metal, steps, (x, z), (off_x, off_z))
             assert not wrong, (int(cut.line[row]), share, wrong)
@@ -144,7 +144,7 @@ FEW = {"tapping"}
 def ways_in(source: Source, given: Setup) -> tuple[int, int]:
     """Checks the way to every good line, in its first passes and the last; how many there were."""
     said = of_each_line(source, given, 3)
-    good = [each for each in said if isinstance(each, Found)]
+    good = [each for each in said if isinstance(each, RestartPoint)]
     for found in good:
         cut, modal = found.cut, found.checkpoint.modal
         assert cut is not None
@@ -153,7 +153,7 @@ def ways_in(source: Source, given: Setup) -> tuple[int, int]:
             continue
         tool = int(cut.tool[row])
         clear = (found.checkpoint.machine[0], cut.clear_z + 1.0, 0.0)
-        steps = way(found, Now(clear, Modal()), Choices())
+        steps = way(found, MachineNow(clear, Modal()), Choices())
         wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.offsets[tool])
         assert not wrong, (found.line, found.visit, wrong)
         assert modal.tool in cut.offsets or not cut.offsets

@@ -20,7 +20,7 @@ from app.editor.text_view import TextField
 from app.editor.versions_view import local_time
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
-from core.language.dialect import Dialect
+from core.language.source import Dialect
 from tests.editor.shop import GOOD
 
 

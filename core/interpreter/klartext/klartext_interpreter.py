@@ -1,0 +1,157 @@
+"""The interpreter of Klartext: a program and its circumstances to elementary blocks, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.geometry.frames import Vector
+from core.geometry.kinematics import Kinematics
+from core.interpreter.actions import ProgramEnd, ProgramStop
+from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import Setup
+from core.interpreter.klartext import m_functions, word_values
+from core.interpreter.klartext.klartext_program import Flow, Program
+from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
+from core.interpreter.klartext.l_moves import move
+from core.interpreter.klartext.plane_functions import plane
+from core.interpreter.klartext.tool_call import ToolUse, tool_call
+from core.language.diagnostics import ProgramError
+from core.language.klartext.klartext_nodes import (
+    Assign,
+    Call,
+    Codes,
+    Datum,
+    KlartextLine,
+    Label,
+    MCode,
+    Move,
+    Plane,
+    Stop,
+    ToolCall,
+)
+
+MOST_Q = 999_999_999.999999
+
+
+class Interpreter(PassReport):
+    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    No block comes after an error, but the pass goes on as well as it can to find the other errors.
+    """
+
+    _state: State
+    _tools: ToolUse
+
+    def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
+        super().__init__(Log(program.problems))
+        self._program = program
+        self._state = State(setup, kinematics, self._log, inch=program.inch)
+        self._state.blank = program.corners
+        self._tools = ToolUse()
+        self._flow = Flow(program)
+
+    @property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        return self._program.blocks
+
+    @property
+    def state(self) -> State:
+        """Where everything stands after the last block that was taken."""
+        return self._state
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once.
+
+        At the first error the blocks end. What is left of the program is then still gone through for its
+        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        """
+        flow, lines = self._flow, self._program.lines
+        left = MOST_LINES
+        while flow.at < flow.end:
+            line = lines[flow.at]
+            flow.at += 1
+            left -= 1
+            if left < 0 or self._state.blocks >= MOST_BLOCKS:
+                self._too_much(line.number, "Lower the counts of the repeats.")
+                return
+            for block in self._guarded(line):
+                if not self._stopped:
+                    yield block
+            if self._stopped and (to_first_error or self._log.full):
+                return
+        if not self._stopped and flow.at == flow.end < len(lines):
+            yield m_functions.end(self._state, flow.end + 1, self._program.text(lines[flow.end]))
+
+    def _guarded(self, line: KlartextLine) -> Iterator[Block]:
+        """The blocks of a line; an error of it is kept and ends them."""
+        if line.skip and self._state.setup.block_delete:
+            return
+        if line.error is not None:
+            self._stopped = True
+            return
+        try:
+            yield from self._line(line)
+        except ProgramError as problem:
+            self._log.add(problem.diagnostic)
+            self._stopped = True
+
+    def _line(self, line: KlartextLine) -> Iterator[Block]:
+        state, number, node = self._state, line.number, line.node
+        match node:
+            case Move():
+                yield from self._move(line, node)
+            case Codes():
+                yield from self._codes(line, node)
+            case Plane():
+                yield from plane(state, number, self._program.text(line), node)
+            case ToolCall():
+                yield from tool_call(state, number, self._program.text(line), node, self._tools)
+            case Datum():
+                _datum(state, number, node)
+            case Label():
+                self._flow.label(node)
+            case Call():
+                self._flow.call(number, node)
+            case Assign():
+                state.q[node.q] = word_values.number(state, number, node.value, f"Q{node.q}", MOST_Q)
+            case Stop():
+                yield state.action(number, "STOP", ProgramStop(optional=False, message=line.comment or ""))
+
+    def _move(self, line: KlartextLine, node: Move) -> Iterator[Block]:
+        state, number, text = self._state, line.number, self._program.text(line)
+        m_functions.check(state, number, node.codes)
+        yield from m_functions.before(state, number, text, node.codes)
+        machine = any(code.number == m_functions.M91 for code in node.codes)
+        yield from move(state, number, text, node, machine=machine)
+        yield from self._behind(line, text, node.codes)
+
+    def _codes(self, line: KlartextLine, node: Codes) -> Iterator[Block]:
+        text = self._program.text(line)
+        m_functions.check(self._state, line.number, node.codes)
+        yield from m_functions.before(self._state, line.number, text, node.codes)
+        yield from self._behind(line, text, node.codes)
+
+    def _behind(self, line: KlartextLine, text: str, codes: tuple[MCode, ...]) -> Iterator[Block]:
+        for block in m_functions.behind(self._state, line.number, text, codes, line.comment or ""):
+            yield block
+            if isinstance(block.action, ProgramEnd):
+                self._flow.at = len(self._program.lines)  # behind END PGM: nothing ends twice
+
+
+def _datum(state: State, line: int, node: Datum) -> None:
+    """TRANS DATUM and cycle 7: in the workpiece's system, within the plane while one is in force."""
+    if node.reset:
+        state.datum = state.shift = ORIGIN
+    elif node.axes:
+        now = dict(zip(SLIDES, state.shift if state.plane is not None else state.datum, strict=True))
+        for word in node.axes:
+            value = word_values.coordinate(state, line, word)
+            now[word.axis] = now[word.axis] + value if word.incremental else value
+        made: Vector = (now["X"], now["Y"], now["Z"])
+        if state.plane is not None:
+            state.shift = made
+        else:
+            state.datum = made
+    state.derive()

@@ -1,0 +1,237 @@
+"""Everything that changes while a Klartext program is gone through."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from core.geometry.frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
+from core.geometry.kinematics import Kinematics, Place
+from core.geometry.travel import CurvedWay, Travel
+from core.interpreter.actions import Action, Dwell
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+from core.interpreter.units import MM_PER_INCH
+from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
+
+# --- Where the machine and the workpiece stand while a Klartext program is gone through.
+
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkingPlane:
+    """The plane in force. ``frame`` in the machine-parallel system; ``targets`` by axis, as shown."""
+
+    frame: Matrix
+    targets: Mapping[str, float]
+    line: int
+
+
+class MachinePosition:
+    """``at`` holds all axes by name, ``there`` in the machine's order; mm and degrees, rotary counted on.
+
+    ``datum`` is the workpiece datum in the workpiece's system, ``shift`` what TRANS DATUM has added within
+    the plane in force. ``frame`` and ``origin`` are the working plane's axes and origin in the workpiece's
+    system, ``place`` takes its points to machine positions of the slides; ``point`` is where the tip stands
+    in it, mm.
+    """
+
+    def __init__(self, kinematics: Kinematics, start: Sequence[float]) -> None:
+        self.kinematics = kinematics
+        self.names = kinematics.names
+        self.rotary_names = tuple(axis.name for axis in kinematics.rotaries)
+        self.at = dict(zip(self.names, start, strict=True))
+        self.there = tuple(start)
+        self.plane: WorkingPlane | None = None
+        self.datum = self.shift = self.origin = ORIGIN
+        self.frame = IDENTITY
+        self.tool_length = 0.0
+        self._shown: Angles | None = None  # worked out again when a rotary axis has turned
+        self.place = self._place()
+        self.point = self.place.point(self.slides)
+
+    def go(self, goal: dict[str, float]) -> None:
+        """Stand there; ``goal`` holds every axis."""
+        if any(goal[name] != self.at[name] for name in self.rotary_names):
+            self._shown = None
+        self.at, self.there = goal, tuple([goal[name] for name in self.names])
+        self.point = self.place.point(self.slides)
+
+    @property
+    def shown(self) -> Angles:
+        """A B C as they are displayed, None for axes the machine lacks."""
+        if self._shown is None:
+            axes = {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+            self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
+        return self._shown
+
+    @property
+    def slides(self) -> Vector:
+        """Machine X Y Z, mm."""
+        return self.at["X"], self.at["Y"], self.at["Z"]
+
+    @property
+    def rotary(self) -> dict[str, float]:
+        """Rotary axes by name, degrees, counted on."""
+        return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
+
+    @property
+    def targets(self) -> dict[str, float]:
+        """The effective angle of each rotary axis: that of the plane in force, else where it stands."""
+        if self.plane is not None:
+            return dict(self.plane.targets)
+        return {axis.name: axis.shown(self.at[axis.name]) for axis in self.kinematics.rotaries}
+
+    def derive(self) -> None:
+        """Work out again what follows from plane, datum and tool."""
+        self.frame = IDENTITY
+        if self.plane is not None:
+            self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
+        self.origin = plus(self.datum, applied(self.frame, self.shift))
+        self.place = self._place()
+        self.point = self.place.point(self.slides)
+
+    def set_plane(self, plane: WorkingPlane | None) -> None:
+        """Another plane, or none. The datum's point on the workpiece stays where it is."""
+        self.datum, self.shift = self.origin, ORIGIN
+        self.plane = plane
+        self.derive()
+
+    def _place(self) -> Place:
+        angles = self.plane.targets if self.plane is not None else {}
+        frame = self.plane.frame if self.plane is not None else self.kinematics.basic
+        datum = applied(self.kinematics.basic, self.origin)
+        return self.kinematics.place(angles, frame, datum, self.tool_length)
+
+
+SLIDES = "XYZ"
+ROTARY = "ABC"
+Q_TARGETS = (120, 121, 122)
+SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
+
+
+class State(MachinePosition):
+    """Where everything stands, and what a line inherits from the lines before it."""
+
+    def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
+        super().__init__(kinematics, setup.start)
+        self.setup = setup
+        self.log = log
+        self.scale = MM_PER_INCH if inch else 1.0
+        self.blocks = 0
+        self.tool_axis = ""
+        self.feed: float | None = None  # F in force, as programmed
+        self.tool_feed: float | None = None  # F of the last TOOL CALL
+        self.q: dict[int, float] = {}
+        self.m128 = False
+        self.table_known = False  # the program has positioned it, so it no longer matters where it stood
+        self.blank: Corners | None = None
+        self.told: set[object] = set()  # warnings that would otherwise repeat
+        self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
+        self._c = self.names.index("C") if "C" in self.at else -1
+        self._shared: PlaneSystem | None = None
+
+    def derive(self) -> None:
+        """Work out again what follows from plane, datum and tool."""
+        super().derive()
+        self._shared = None
+
+    # --- numbers ------------------------------------------------------------------------------------------
+
+    def path_feed(self, word: float) -> float:
+        """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
+        return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
+
+    # --- blocks -------------------------------------------------------------------------------------------
+
+    def move(
+        self,
+        line: int,
+        text: str,
+        kind: Kind,
+        end: Mapping[str, float],
+        feed: float | None,
+        way: CurvedWay | None = None,
+    ) -> Block:
+        """Go to ``end`` (axes that it lacks stay) and tell it. ``feed`` None is rapid.
+
+        The feed counts mm of the slides, or degrees where only rotary axes turn or lead (``way``).
+        """
+        before, start, goal = self.point, self.at, {**self.at, **end}
+        away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
+        linear = away > SAME_POINT and way is None
+        length = away
+        if not linear:
+            turn = math.hypot(*(goal[name] - start[name] for name in self.rotary_names))
+            length = turn if turn > SAME_POINT else 0.0
+        rate = feed if feed is not None else self._rapid(start, goal, length, slides=linear)
+        from_here = self.there
+        self.go(goal)
+        if self.modal.rapid != (feed is None):
+            self.modal = self.modal._replace(rapid=feed is None)
+        return self._block(
+            line, text, kind, before, Travel(from_here, self.there, length, way, away > SAME_POINT), rate
+        )
+
+    def action(self, line: int, text: str, action: Action) -> Block:
+        """A block in which no axis moves."""
+        here = Travel(self.there, self.there, 0.0, slides=False)
+        kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
+        return self._block(line, text, kind, self.point, here, 0.0, action)
+
+    def _block(
+        self,
+        line: int,
+        text: str,
+        kind: Kind,
+        before: Vector,
+        travel: Travel,
+        feed: float,
+        action: Action | None = None,
+    ) -> Block:
+        self.blocks += 1
+        end, slides, c = self.point, self.slides, self._c
+        return Block(
+            n=self.blocks,
+            line=line,
+            kind=kind,
+            text=text,
+            x0=before[0], z0=before[2], c0=travel.start[c] if c >= 0 else 0.0,
+            x=end[0], z=end[2], c=travel.end[c] if c >= 0 else 0.0,
+            offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
+            modal=self.modal,
+            feed=feed,
+            rpm=self.modal.rpm * self.modal.spindle,
+            action=action,
+            travel=travel,
+            swivel=Swivel(before, end, slides, self.shown, self._system()),
+        )  # fmt: skip
+
+    def _system(self) -> PlaneSystem:
+        if self._shared is None:
+            q120, q121, q122 = (self.q.get(q, 0.0) for q in Q_TARGETS)
+            self._shared = PlaneSystem(
+                place=self.place,
+                kinematics=self.kinematics,
+                frame=self.frame,
+                datum=self.origin,
+                tilted=self.plane is not None,
+                targets=(q120, q121, q122),
+                line=self.plane.line if self.plane is not None else 0,
+                tool_length=self.tool_length,
+                blank=self.blank,
+            )
+        return self._shared
+
+    def _rapid(
+        self, start: Mapping[str, float], goal: Mapping[str, float], length: float, *, slides: bool
+    ) -> float:
+        """Path speed at which the slowest axis goes its fastest, mm/s or degrees/s."""
+        axes = (*(self.kinematics.slides if slides else ()), *self.kinematics.rotaries)
+        seconds = max((abs(goal[axis.name] - start[axis.name]) / axis.vmax for axis in axes), default=0.0)
+        return length / seconds if seconds > 0.0 and length > 0.0 else self.setup.last_rapid

@@ -1,0 +1,118 @@
+"""G02 and G03."""
+
+from __future__ import annotations
+
+from math import dist
+
+from core.geometry.arcs import Point, arc_length, centre_from_radius
+from core.interpreter import units
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.feeds import check_move
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
+from core.language.diagnostics import ProgramError
+
+_TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
+_SAME = 1e-9  # mm
+
+
+def arc_move(state: State, made: Statement) -> Block:
+    """The arc of a line. Raises ProgramError where its words give no arc."""
+    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    start, programmed = (state.x, state.z), (state.px, state.pz)
+    go(state, x, z)  # before any refusal, so that the lines after it are judged from the right point
+    check_tool(state, made.line, x, z)
+    clockwise = made.one_shot == 2
+    if "R" in made.words:
+        centre = _centre_by_radius(state, made, start, clockwise=clockwise)
+    else:
+        centre = _centre_by_words(state, made, programmed)
+        _check_radii(state, made, dist(start, centre), dist((state.x, state.z), centre))
+    length = arc_length(start, (state.x, state.z), centre, clockwise=clockwise)
+    check_move(state, made.line, start[0], state.x, length)
+    warn_of_title_rapid(state, made.line)
+    return _block(state, made, start, centre, clockwise=clockwise)
+
+
+def _block(state: State, made: Statement, start: Point, centre: Point, *, clockwise: bool) -> Block:
+    modal = state.modal
+    state.blocks += 1
+    return Block(
+        n=state.blocks, line=made.line, kind=Kind.ARC, text=made.part("move"),
+        x0=start[0], z0=start[1], c0=state.c, x=state.x, z=state.z, c=state.c,
+        offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
+        feed=state.feed, per_rev=state.per_rev, rpm=rpm_at(state, state.x),
+        css=modal.surface_speed if modal.css else None,
+        cx=centre[0], cz=centre[1], clockwise=clockwise,
+    )  # fmt: skip
+
+
+def _centre_by_radius(state: State, made: Statement, start: Point, *, clockwise: bool) -> Point:
+    _check_mode(state, made)
+    for letter in ("I", "K"):
+        if letter in made.words:
+            raise _refused(made, letter, "arc-both", f"The arc has R and {letter}.", "Keep one way.")
+    radius = on_step(state, made, "R")
+    if radius is None or radius <= 0:
+        raise _refused(made, "R", "arc-r-sign", "R must be a number over 0.", "Give larger arcs I and K.")
+    chord = dist(start, (state.x, state.z))
+    if chord <= _SAME:
+        text = "The arc by R ends where it starts."
+        raise _refused(made, "R", "arc-no-chord", text, "A full circle takes I and K.")
+    if chord > 2 * radius + _TOLERANCE:
+        metric = state.modal.metric
+        shown, half = units.length(radius, metric=metric), units.length(chord / 2, metric=metric)
+        text = f"R is {shown}, and the ends are so far apart that it takes {half} at least."
+        raise _refused(made, "R", "arc-radius", text, "Correct R or the end point.")
+    return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
+
+
+def _centre_by_words(state: State, made: Statement, start: Point) -> Point:
+    """Centre by I and K: coordinates under G90 G73, else distances from the start of the arc."""
+    _check_mode(state, made)
+    i, k = on_step(state, made, "I"), on_step(state, made, "K")
+    if i is None and k is None:
+        column = made.code.column if made.code else 0
+        text = "The arc has neither R nor I and K."
+        raise ProgramError(refusal(made.line, column, "arc-centre-missing", text, "Add R, or I and K."))
+    if state.modal.diameter or not state.absolute:
+        return start[0] + (i or 0.0) + state.dx, start[1] + (k or 0.0) + state.dz
+    if i is None or k is None:
+        letter = "I" if i is None else "K"
+        given = "K" if i is None else "I"
+        text = f"{letter} is missing: under G90 and G73, I and K are the centre's coordinates."
+        raise _refused(made, given, "arc-coordinate-missing", text, f"Add {letter}.")
+    return i + state.dx, k + state.dz
+
+
+def _check_mode(state: State, made: Statement) -> None:
+    if state.modal.diameter and not state.absolute:
+        column = made.code.column if made.code else 0
+        text = "Arcs cannot be incremental in diameter mode."
+        raise ProgramError(refusal(made.line, column, "arc-mode", text, "Use G90 or G73 for the arc."))
+
+
+def _check_radii(state: State, made: Statement, first: float, last: float) -> None:
+    metric = state.modal.metric
+    column = made.code.column if made.code else 0
+    if first <= _SAME:
+        text = "The centre of the arc is its start point."
+        raise ProgramError(refusal(made.line, column, "arc-no-radius", text, "Correct I and K."))
+    if abs(first - last) <= _TOLERANCE:
+        return
+    text = (
+        f"The arc's radius is {units.length(first, metric=metric)} at its start"
+        f" and {units.length(last, metric=metric)} at its end."
+    )
+    if state.modal.diameter or not state.absolute:
+        hint = "I and K are distances from the start here."
+    else:
+        hint = "I and K are the centre's coordinates here."
+    raise ProgramError(refusal(made.line, column, "arc-radius", text, hint))
+
+
+def _refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(refusal(made.line, made.column(letter), code, text, hint))

@@ -1,0 +1,167 @@
+"""Spindle positioning: M19, M89 and G89 make the spindle the axis C; CA, CI and C turn it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import copysign, hypot
+
+from core.interpreter import units
+from core.interpreter.actions import SpindleLock
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.dwell import mind_arrival, warn_of_short_dwell
+from core.interpreter.omniturn.feeds import check_move
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
+from core.language.diagnostics import ProgramError
+from core.language.omniturn import Word
+
+C_WORDS = ("C", "CA", "CI")
+_TURN = 360.0
+_SAME = 1e-9  # degrees, mm
+
+
+def positions(state: State, made: Statement) -> bool:
+    """Whether S on this line is the speed of C and not of the spindle."""
+    return made.locks or (made.turns and state.modal.c_locked)
+
+
+def lock(state: State, made: Statement) -> Iterator[Block]:
+    """M19, M89, G89: stop and lock; M19 then turns to 0 and counts from there."""
+    word = made.m_word if made.m in {19, 89} else made.code
+    column = word.column if word else 0
+    name = word.text.upper() if word else "M19"
+    if not state.setup.limits.c_enabled:
+        text = f"{name} needs a C axis, and the machine file switches it off."
+        raise ProgramError(refusal(made.line, column, "c-disabled", text, "Set axis.C.enabled."))
+    if made.one_shot == 89 and made.m is not None:
+        text = "G89 locks the spindle and stands without M codes."
+        raise ProgramError(refusal(made.line, column, "not-alone", text, "Split the line."))
+    rpm = speed_of_c(state, made)
+    modal = state.modal
+    state.adopt(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
+    yield state.action(made.line, made.part("m"), SpindleLock(orient=made.m == 19), 0.0)
+    if made.m == 19:
+        yield from _to_zero(state, made)
+
+
+def speed_of_c(state: State, made: Statement) -> float | None:
+    """S of the line in rpm, unsigned; None without S. Raises ProgramError beyond what C can do."""
+    word = made.words.get("S")
+    if word is None or word.value is None:
+        return None
+    most = state.setup.limits.c_max_rpm
+    if not 0.0 < abs(word.value) <= most * (1.0 + 1e-9):
+        text = f"{word.text}: C turns at more than 0 and at most {most:g} rpm."
+        raise ProgramError(refusal(made.line, word.column, "speed-range", text, "Correct S."))
+    return abs(word.value)
+
+
+def _to_zero(state: State, made: Statement) -> Iterator[Block]:
+    """Turn to 0 by the sign of S, without S by the short way. C then counts from 0 again."""
+    at = state.c + state.modal.offset_c
+    over = at % _TURN
+    if min(over, _TURN - over) <= _SAME:
+        over = 0.0
+    sign = made.value("S") or 0.0
+    back = sign < 0.0 or (sign == 0.0 and over < _TURN / 2)
+    whole = at - over + (0.0 if back or over == 0.0 else _TURN)
+    offset = round(whole / _TURN) * _TURN
+    state.adopt(state.modal._replace(offset_c=offset))
+    state.c = at - offset
+    if over:
+        yield rotation(state, made.line, made.part("m"), 0.0)
+    state.c = 0.0
+
+
+def c_move(state: State, made: Statement) -> Iterator[Block]:
+    """A line with C: alone it turns C, with X or Z it is one move of all of them."""
+    word = _c_word(state, made)
+    warn_of_short_dwell(state)
+    c0, x0, z0 = state.c, state.x, state.z
+    goal = _goal(state, made, word)
+    if made.moves:
+        x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+        go(state, x, z)
+        check_tool(state, made.line, x, z)
+    rpm = speed_of_c(state, made)
+    if rpm is not None:
+        state.adopt(state.modal._replace(c_rpm=rpm))
+    way = hypot(state.x - x0, state.z - z0)
+    if way <= _SAME:
+        yield rotation(state, made.line, made.part("move"), goal)
+        mind_arrival(state, made.line, word.column, abs(goal - c0))
+        return
+    state.c = goal
+    if state.per_rev and state.modal.feed is not None:
+        _check_turns(state, made, word, way, abs(goal - c0))
+        rpm = copysign(state.modal.c_rpm or 0.0, goal - c0)
+    else:
+        check_move(state, made.line, x0, state.x, way)
+        rpm = 0.0
+    warn_of_title_rapid(state, made.line)
+    state.blocks += 1
+    yield Block(
+        state.blocks, made.line, state.kind, made.part("move"), x0, z0, c0, state.x, state.z, goal,
+        state.offset_x, state.offset_z, state.modal, state.feed, state.per_rev, rpm,
+    )  # fmt: skip
+
+
+def rotation(state: State, line: int, text: str, goal: float) -> Block:
+    """C alone turns to ``goal`` (degrees) at the speed in force; the state stands there afterwards."""
+    rpm = state.modal.c_rpm or state.setup.limits.c_max_rpm
+    c0, state.c = state.c, goal
+    state.blocks += 1
+    return Block(
+        state.blocks, line, Kind.ROTATE, text, state.x, state.z, c0, state.x, state.z, goal,
+        state.offset_x, state.offset_z, state.modal, rpm * 6.0, False, copysign(rpm, goal - c0),
+    )  # fmt: skip
+
+
+def _c_word(state: State, made: Statement) -> Word:
+    found = [made.words[letter] for letter in C_WORDS if letter in made.words]
+    if len(found) > 1:
+        text = f"The line holds {found[0].text} and {found[1].text}."
+        raise ProgramError(refusal(made.line, found[1].column, "word-twice", text, "Keep one of them."))
+    if not state.modal.c_locked:
+        text = f"{found[0].text} turns the spindle, which is not locked."
+        raise ProgramError(
+            refusal(made.line, found[0].column, "c-unlocked", text, "Write M19 or M89 before.")
+        )
+    if found[0].value is None:
+        text = f"{found[0].text} has no number."
+        raise ProgramError(refusal(made.line, found[0].column, "number-missing", text, "Write the degrees."))
+    return found[0]
+
+
+def _goal(state: State, made: Statement, word: Word) -> float:
+    """Where C shall stand, degrees, on its step."""
+    step, value = state.setup.limits.c_step, word.value or 0.0
+    count = round(value / step)
+    if abs(value / step - count) > 1e-6:
+        text = f"{word.text} is finer than the step of {step:g} degrees; {count * step:g} is used."
+        state.log.warn(made.line, word.column, "finer-than-step", text, "Round the number.")
+        value = count * step
+    absolute = word.letter == "CA" or (word.letter == "C" and state.absolute)
+    return value if absolute else state.c + value
+
+
+def _check_turns(state: State, made: Statement, word: Word, way: float, turn: float) -> None:
+    """A slide fed by the turns of C: C must turn far enough, at a speed that somebody has given."""
+    modal, limits = state.modal, state.setup.limits
+    feed = modal.feed or 0.0
+    if modal.c_rpm is None:
+        text = "The slide is fed by the turns of C, and no S has said how fast it turns."
+        raise ProgramError(refusal(made.line, word.column, "speed-missing", text, "Write S on the line."))
+    needed = way / feed * _TURN
+    if turn < needed * (1.0 - 1e-9):
+        text = f"C turns {turn:g} degrees; the way of the slide at this feed needs {round(needed, 4):g}."
+        hint = "Turn C further, or raise F: the slide would stop on its way."
+        raise ProgramError(refusal(made.line, word.column, "c-too-little", text, hint))
+    speed = feed * modal.c_rpm / 60.0
+    if speed > limits.max_feed * (1.0 + 1e-9):
+        shown = units.feed(speed, per_rev=False, metric=modal.metric)
+        most = units.feed(limits.max_feed, per_rev=False, metric=modal.metric)
+        text = f"At {modal.c_rpm:g} rpm of C this feed is {shown}; {most} is the most."
+        raise ProgramError(refusal(made.line, 0, "feed-over-speed", text, "Lower F or S."))

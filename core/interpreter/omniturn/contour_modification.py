@@ -1,0 +1,85 @@
+"""From the moves of the lines to the blocks handed out: corners are cut, then the nose is compensated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.omniturn.corners import Corners
+from core.interpreter.omniturn.nose_compensation import (
+    Compensation,
+    check_approach,
+    check_under_nose,
+    nose_radius,
+)
+from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
+from core.interpreter.omniturn.omniturn_statement import Statement
+
+
+class ContourModifier:
+    """Blocks go through it while a corner waits for its second line or nose compensation is on.
+
+    It holds no more than one corner and the moves that compensation looks ahead; the blocks that come out
+    are counted on without a gap.
+    """
+
+    def __init__(self, state: State) -> None:
+        self._state = state
+        max_rpm = state.setup.limits.max_rpm
+        self._corners = Corners(state.log, max_rpm)
+        self._nose = Compensation(state.log, max_rpm)
+        self._count: int | None = None  # number of the last block handed out, while active
+
+    def take(self, block: Block) -> Iterator[Block]:
+        """Takes a block as its line made it; yields those that are sure. Raises ProgramError."""
+        state = self._state
+        corner, state.shape.corner = state.shape.corner, None
+        self._begin(block.n - 1)
+        if block.moves and state.shape.approach:
+            check_approach(state, block)
+            self._nose.radius = nose_radius(state)
+        yield from self._put(block, corner)
+
+    def check(self, made: Statement) -> None:
+        """Whether a line may follow what is held. Raises ProgramError."""
+        if self._state.shape.active:
+            self._corners.check(made)
+            check_under_nose(self._state, made)
+
+    def mark(self, mark: CompensationSwitch) -> Iterator[Block]:
+        """G41, G42 or G40, and the blocks that are sure by it. Raises ProgramError."""
+        self._begin(self._state.blocks)
+        yield from self._put(mark, None)
+
+    def end(self) -> Iterator[Block]:
+        """The program is over: nothing comes. Raises ProgramError where a corner is left."""
+        self._corners.end()
+        yield from ()
+
+    def drop(self) -> None:
+        """After an error nothing that is held may come out."""
+        self._corners.drop()
+        self._nose.drop()
+        self._count = None
+        self._state.shape.active = False
+        self._state.shape.corner = None
+        self._state.shape.approach = 0
+
+    def _begin(self, count: int) -> None:
+        if self._count is None:
+            self._count = count
+
+    def _put(self, item: Item, corner: Corner | None) -> Iterator[Block]:
+        state = self._state
+        count = self._count or 0
+        for shaped in self._corners.take(item, corner):
+            for block in self._nose.take(shaped):
+                count += 1
+                block.n = count
+                self._count = count
+                yield block
+        state.shape.active = self._corners.active or self._nose.active
+        if not state.shape.active:
+            state.blocks = count
+            state.shape.approach = 0  # a T may have ended what had not begun
+            self._count = None

@@ -1,0 +1,236 @@
+"""C and R on a straight move: a chamfer or a radius where it meets the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from core.geometry.contour import Element, Line
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
+from core.interpreter import units
+from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
+from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at
+from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.straight_moves import on_step
+from core.language.diagnostics import ProgramError
+from core.language.omniturn import Word
+
+STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})
+_OTHER_MOTION = code_table.CYCLES | code_table.THREADS
+_PARTS = ProgramEnd | ToolChange | Preset | AskInput
+"""Actions across which no corner reaches: the program ends, its numbers mean another
+point, or all motion before it must have ended."""
+
+
+def read_corner(state: State, made: Statement) -> None:
+    """Note the corner of a line whose straight move has been made. Raises ProgramError for a bad size.
+
+    A C word is a corner unless C is an axis at the moment.
+    """
+    word = made.words.get("R")
+    chamfers = None if state.modal.c_locked else made.words.get("C")
+    if word is not None and chamfers is not None:
+        text = "The line has both C and R."
+        raise ProgramError(refusal(made.line, chamfers.column, "corner-both", text, "Keep one of them."))
+    word = word or chamfers
+    if word is None:
+        return
+    size = on_step(state, made, word.letter)
+    if size is None or size <= 0:
+        text = f"{word.text}: a corner's size must be a number over 0."
+        raise ProgramError(refusal(made.line, word.column, "corner-size", text, "Write the size in full."))
+    state.shape.corner = Corner(word.letter, size, word.column)
+    state.shape.active, state.fast = True, False
+
+
+def refuse_radius(made: Statement) -> None:
+    """Raises ProgramError for R on a line without a straight move of X and Z alone."""
+    word = made.words.get("R")
+    if word is not None:
+        text = f"{word.text} makes a corner at the end of a straight move, and the line has none."
+        hint = "Put it on the line with X or Z."
+        raise ProgramError(refusal(made.line, word.column, "corner-without-move", text, hint))
+
+
+@dataclass(slots=True)
+class _Held:
+    """A move that waits for the next one, and what happens between them."""
+
+    block: Block
+    corner: Corner
+    between: list[Item] = field(default_factory=list)
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Line and column of the corner's word."""
+        return self.block.line, self.corner.column
+
+
+class Corners:
+    """Holds a move with a corner until the next one is known, and cuts both."""
+
+    def __init__(self, log: Log, max_rpm: float) -> None:
+        self._log = log
+        self._max_rpm = max_rpm
+        self._held: _Held | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether a move is held."""
+        return self._held is not None
+
+    def drop(self) -> None:
+        """Forget what is held."""
+        self._held = None
+
+    def take(self, item: Item, corner: Corner | None) -> Iterator[Item]:
+        """Passes on what is sure. Raises ProgramError where the corner cannot be made."""
+        held = self._held
+        if held is None:
+            yield from self._pass_on(item, corner)
+        elif isinstance(item, CompensationSwitch):
+            if item.code == 40:
+                raise _refused(held, "corner-next", "nose compensation ends before the next move")
+            held.between.append(item)
+        elif item.action is not None:
+            if isinstance(item.action, _PARTS):
+                raise _refused(held, "corner-next", f"no move follows before {item.text}")
+            held.between.append(item)
+        else:
+            self._held = None
+            yield from self._cut(held, item, corner)
+
+    def check(self, made: Statement) -> None:
+        """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
+        held = self._held
+        if held is not None and made.one_shot in _OTHER_MOTION:
+            what = made.code.text if made.code is not None else "another motion"
+            raise _refused(held, "corner-next", f"{what} on line {made.line} is no straight move")
+
+    def end(self) -> None:
+        """No block comes any more. Raises ProgramError where a corner is left."""
+        held, self._held = self._held, None
+        if held is not None:
+            raise _refused(held, "corner-next", "no move follows")
+
+    def _pass_on(self, item: Item, corner: Corner | None) -> Iterator[Item]:
+        if corner is not None and isinstance(item, Block) and item.moves:
+            self._held = _Held(item, corner)
+        else:
+            yield item
+
+    def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Item]:
+        if after.kind not in STRAIGHT or after.c != after.c0:
+            what = "an arc" if after.kind is Kind.ARC else "no straight line"
+            raise _refused(held, "corner-next", f"the next move, on line {after.line}, is {what}")
+        block, point = held.block, (held.block.x, held.block.z)
+        first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
+        try:
+            made = chamfer if held.corner.letter == "C" else fillet
+            cut, between, rest = made(first, last, held.corner.size)
+        except NoCornerError:
+            text = f"Lines {block.line} and {after.line} run in one direction: there is no corner to cut."
+            self._log.warn(*held.place, "corner-straight", text, "Take C or R out.")
+            yield from (block, *held.between)
+            yield from self._pass_on(after, corner)
+            return
+        except CornerTooLargeError as problem:
+            raise self._too_large(held, after, problem) from None
+        except CornerError as problem:
+            raise _refused(held, "corner-next", f"{problem} (line {after.line})") from None
+        yield moved_along(block, cut, self._max_rpm)
+        yield inserted_after(block, between, self._max_rpm)
+        for item in held.between:
+            yield (
+                item
+                if isinstance(item, CompensationSwitch)
+                else standstill_at(item, between.end, self._max_rpm)
+            )
+        yield from self._pass_on(moved_along(after, rest, self._max_rpm), corner)
+
+    def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
+        metric = held.block.modal.metric
+        of = held.block if problem.first else after
+        left = units.length(Line((of.x0, of.z0), (of.x, of.z)).length, metric=metric)
+        if not problem.needed:
+            return _refused(held, "corner-too-large", f"the move on line {of.line} has no length")
+        needed = units.length(problem.needed, metric=metric)
+        return _refused(
+            held,
+            "corner-too-large",
+            f"it takes {needed} of the move on line {of.line}, which has {left} left",
+        )
+
+
+def _refused(held: _Held, code: str, why: str) -> ProgramError:
+    name = f"{held.corner.letter} cannot make a corner: {why}."
+    hint = "Make it smaller." if code == "corner-too-large" else "A corner needs two straight moves in a row."
+    return ProgramError(refusal(*held.place, code, name, hint))
+
+
+# --- Corners C and R between the lines of a contour that a cycle reads.
+
+
+_SHORTEST = 1e-6  # mm
+
+
+class ContourPiece(NamedTuple):
+    """An element of a contour, and the corner of ``size`` mm that its line asks for at its end."""
+
+    element: Element
+    line: int
+    corner: Word | None = None
+    size: float = 0.0
+    metric: bool = False
+
+
+def cut_corners(pieces: Sequence[ContourPiece], log: Log) -> list[Element]:
+    """The elements with their corners cut. Raises ProgramError for a corner that cannot be made."""
+    done: list[Element] = []
+    asked: ContourPiece | None = None
+    for piece in pieces:
+        element = piece.element
+        if asked is not None:
+            *cut, element = _corner(asked, done.pop(), element, log)
+            done += [each for each in cut if each.length > _SHORTEST]
+        done.append(element)
+        asked = piece if piece.corner is not None else None
+    if asked is not None:
+        raise _refused_contour_corners(asked, "corner-next", "the contour ends here")
+    return [element for element in done if element.length > _SHORTEST]
+
+
+def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> Sequence[Element]:
+    if not isinstance(before, Line) or not isinstance(after, Line):
+        raise _refused_contour_corners(asked, "corner-next", "the next move is an arc")
+    make = chamfer if asked.corner is not None and asked.corner.letter == "C" else fillet
+    try:
+        return make(before, after, asked.size)
+    except NoCornerError:
+        text = "The two moves run in one direction: there is no corner to cut."
+        log.warn(asked.line, _column(asked), "corner-straight", text, "Take C or R out.")
+        return before, after
+    except CornerTooLargeError as problem:
+        needed = units.length(problem.needed, metric=asked.metric)
+        left = units.length((before if problem.first else after).length, metric=asked.metric)
+        which = "this move" if problem.first else "the next move"
+        why = f"it takes {needed} of {which}, which has {left} left"
+        raise _refused_contour_corners(asked, "corner-too-large", why) from None
+    except CornerError as problem:
+        raise _refused_contour_corners(asked, "corner-next", str(problem)) from None
+
+
+def _column(asked: ContourPiece) -> int:
+    return asked.corner.column if asked.corner else 0
+
+
+def _refused_contour_corners(asked: ContourPiece, code: str, why: str) -> ProgramError:
+    name = asked.corner.letter if asked.corner else "C"
+    hint = "Make it smaller." if code == "corner-too-large" else "A corner needs two straight moves in a row."
+    text = f"{name} cannot make a corner: {why}."
+    return ProgramError(refusal(asked.line, _column(asked), code, text, hint))

@@ -1,0 +1,158 @@
+"""The lines that describe a contour to G75 and G78: only what places the contour counts in them."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+
+from core.geometry.arcs import Point
+from core.geometry.contour import Element, Line, arc_between
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.arc_moves import arc_move
+from core.interpreter.omniturn.corners import ContourPiece, cut_corners
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
+from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
+from core.interpreter.omniturn.tools_and_offsets import frame
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Word
+
+_SAME = 1e-6  # mm
+_MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
+_NOSE = frozenset({40, 41, 42})
+_TURNS = frozenset({"CA", "CI"})
+_CORNERS = frozenset({"C", "R"})
+
+
+def read_contour(state: State, made: Statement, lines: Sequence[Statement]) -> list[Element]:
+    """The contour from its first point on, in the frame of the cycle's line ``made``; mm.
+
+    The state in force stays as it is. Raises ProgramError for a line that no contour can hold.
+    """
+    reader = _Reader(state, made)
+    for each in lines:
+        if not (each.block_delete and state.setup.block_delete):
+            reader.take(each)
+    elements = reader.finish()
+    if not elements:
+        text = f"The contour of G{made.one_shot} has no line or arc."
+        raise ProgramError(
+            refusal(made.line, _column(made), "cycle-contour-empty", text, "Write its points.")
+        )
+    return elements
+
+
+class _Reader:
+    """Goes through the lines on a state of its own, so that what they change ends with the contour."""
+
+    def __init__(self, state: State, made: Statement) -> None:
+        self._state, self._made = state, made
+        self._own = copy.copy(state)
+        # A rapid needs no feed and no spindle, which do not count here.
+        self._own.adopt(state.modal._replace(rapid=True))
+        self._own.told = set()
+        self._own.title_rapid = self._own.tool_line = 0
+        self._begun = False
+        self._told = False
+        self._pieces: list[ContourPiece] = []
+
+    def take(self, line: Statement) -> None:
+        if line.flow == UNREADABLE:
+            raise _refused(line, 1, "The contour cannot be read here", "Correct the line.")
+        idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
+        if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
+            what = f"{line.text} cannot stand in a contour"
+            raise _refused(line, 1, what, "A contour holds moves, arcs and corners written out.")
+        if line.one_shot not in {None, 4, 10, 92, *code_table.ARCS}:
+            column = line.code.column if line.code else 1
+            raise _refused(line, column, f"G{line.one_shot} cannot stand in a contour", "Take it out.")
+        if not _NOSE.isdisjoint(line.modal):
+            what = "Nose compensation cannot be switched in a contour"
+            raise _refused(line, 1, what, "Finish with a contour of its own.", "cycle-nose-comp")
+        self._tell_ignored(line)
+        geometry_modes(self._own, line)
+        if line.one_shot == 92:
+            frame(self._own, line)
+        elif line.moves:
+            self._move(line)
+
+    def finish(self) -> list[Element]:
+        """The elements. Warns where the modes at the end of the contour are not those of its start."""
+        for mode in _MODES:
+            if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
+                text = "The contour changes modes or coordinates; after the cycle those before it hold again."
+                self._state.log.warn(self._made.line, _column(self._made), "cycle-modes", text)
+                break
+        return cut_corners(self._pieces, self._state.log)
+
+    def _tell_ignored(self, line: Statement) -> None:
+        words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot != 4]
+        words += [line.m_word] if line.m_word else []
+        words += [line.code] if line.code and line.one_shot in {4, 10} else []
+        if words and not self._told:
+            self._told = True
+            text = f"{words[0].text} and its like do not count in the contour of G{self._made.one_shot}."
+            found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
+            self._state.log.add(found)
+
+    def _move(self, line: Statement) -> None:
+        corner = None if line.one_shot in code_table.ARCS else line.words.get("C") or line.words.get("R")
+        if not self._begun:
+            self._begin(line, corner)
+            return
+        element = self._arc(line) if line.one_shot in code_table.ARCS else self._line(line)
+        size = 0.0 if corner is None else self._size(line, corner)
+        if corner is not None or element.length > _SAME:
+            metric = self._own.modal.metric
+            self._pieces.append(ContourPiece(element, line.line, corner, size, metric))
+
+    def _size(self, line: Statement, corner: Word) -> float:
+        if line.words.keys() >= _CORNERS:
+            text = "The line has both C and R."
+            raise ProgramError(refusal(line.line, corner.column, "corner-both", text, "Keep one of them."))
+        size = on_step(self._own, line, corner.letter)
+        if size is None or size <= 0:
+            text = f"{corner.text}: a corner's size must be a number over 0."
+            hint = "Write the size in full."
+            raise ProgramError(refusal(line.line, corner.column, "corner-size", text, hint))
+        return size
+
+    def _begin(self, line: Statement, corner: Word | None) -> None:
+        """The first line is the way from the start point to the first point of the contour."""
+        if line.one_shot in code_table.ARCS or corner is not None:
+            column = corner.column if corner else 1
+            what = "The first line of a contour is its first point, which takes no arc and no corner"
+            raise _refused(line, column, what, "Write X and Z of the point alone.")
+        self._line(line)
+        self._begun = True
+
+    def _line(self, line: Statement) -> Line:
+        own, start = self._own, self._point()
+        go(own, on_step(own, line, "X"), on_step(own, line, "Z"))
+        return Line(start, self._point())
+
+    def _arc(self, line: Statement) -> Element:
+        block = arc_move(self._own, line)
+        dx, dz = self._shift()
+        start, end = (block.x0 + dx, block.z0 + dz), (block.x + dx, block.z + dz)
+        return arc_between(start, end, (block.cx + dx, block.cz + dz), clockwise=block.clockwise)
+
+    def _shift(self) -> Point:
+        """From the frame at this place of the contour to that of the cycle's line."""
+        own, state = self._own, self._state
+        return own.offset_x - state.offset_x, own.offset_z - state.offset_z
+
+    def _point(self) -> Point:
+        dx, dz = self._shift()
+        return self._own.x + dx, self._own.z + dz
+
+
+def _column(made: Statement) -> int:
+    return made.code.column if made.code else 0
+
+
+def _refused(
+    line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line"
+) -> ProgramError:
+    return ProgramError(refusal(line.line, column, code, f"{what}.", hint))

@@ -1,0 +1,94 @@
+"""G81 and G83: a hole along Z from the start point, in one go or in pecks."""
+
+from __future__ import annotations
+
+from math import ceil
+
+from core.interpreter import units
+from core.interpreter.omniturn.cycle_motions import LIFT, Move, check_count, name, positive, refused
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.straight_moves import on_step
+
+_RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
+_WHOLE = 1e-6  # of a peck: what a decimal fraction lacks in binary
+
+
+def drill_moves(state: State, made: Statement) -> list[Move]:
+    """G81: feed to Z, rapid back to the start. Raises ProgramError for words that drill nothing."""
+    moves = _position(state, made)
+    x = moves[-1].x if moves else state.x
+    depth = _depth(state, made)
+    return [*moves, Move(x, depth), Move(x, state.z, state.modal.rapid_rate)]
+
+
+def peck_moves(state: State, made: Statement) -> list[Move]:
+    """G83: pecks of K, each followed by a way out to R and back to C before the depth that was reached.
+
+    The last peck is what is left. The cycle ends at the start point. Raises ProgramError.
+    """
+    moves = _position(state, made)
+    x = moves[-1].x if moves else state.x
+    start, depth = state.z, _depth(state, made)
+    peck = positive(state, made, "K", "the depth of a peck")
+    count = ceil((start - depth) / peck - _WHOLE)
+    check_count(made, "K", count, "pecks")
+    rate, clear = _rate(state, made), LIFT
+    if "C" in made.words:
+        clear = positive(state, made, "C", "the distance before the cut at which the feed begins")
+    out = _retract(state, made, max(start - peck, depth))
+    for k in range(1, count + 1):
+        reached = depth if k == count else start - k * peck
+        moves += [Move(x, reached), Move(x, out, rate)]
+        if k < count and reached + clear < out:
+            moves.append(Move(x, reached + clear, rate))
+    return [*moves, Move(x, start, rate)]
+
+
+def _position(state: State, made: Statement) -> list[Move]:
+    """An X word is a place to go to before the hole."""
+    x = on_step(state, made, "X")
+    if x is None:
+        return []
+    return [Move(x + (state.dx if state.absolute else state.x), state.z, state.modal.rapid_rate)]
+
+
+def _depth(state: State, made: Statement) -> float:
+    z = on_step(state, made, "Z")
+    if z is None:
+        text = f"{name(made)} needs Z, the bottom of the hole."
+        raise refused(made, "Z", "word-missing", text, "Add Z.")
+    depth = z + (state.dz if state.absolute else state.z)
+    if depth >= state.z:
+        metric = state.modal.metric
+        text = (
+            f"The bottom of the hole at {units.length(depth, metric=metric)} is not beyond the start point"
+            f" at {units.length(state.z, metric=metric)}."
+        )
+        raise refused(made, "Z", "cycle-depth", text, "Correct Z, or start farther out.")
+    return depth
+
+
+def _retract(state: State, made: Statement, first: float) -> float:
+    """R, the Z to which the drill comes out; the start without the word."""
+    r = on_step(state, made, "R")
+    if r is None:
+        return state.z
+    out = r + (state.dz if state.absolute else state.z)
+    if out <= first:
+        text = f"{made.words['R'].text} lies in the hole, not before the depth of the first peck."
+        raise refused(made, "R", "cycle-retract", text, "R is where the drill comes out of the hole.")
+    return out
+
+
+def _rate(state: State, made: Statement) -> float:
+    """L, the rate of the ways out and back, mm/s."""
+    value, most = made.value("L"), state.setup.limits.max_feed
+    if value is None:
+        return min(_RETRACT_RATE, most)
+    rate = value * units.per_unit(metric=state.modal.metric) / 60
+    if not 0 < rate <= most * (1 + 1e-9):
+        shown = units.feed(most, per_rev=False, metric=state.modal.metric)
+        text = f"{made.words['L'].text}: the rate of the retract goes from over 0 to {shown}."
+        raise refused(made, "L", "cycle-rate", text, "Correct L.")
+    return rate

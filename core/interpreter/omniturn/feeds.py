@@ -1,0 +1,174 @@
+"""Feed words: G94 G95, F, G00 G01, and what a feed move needs before it may run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.interpreter import units
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.omniturn.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
+from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.language.diagnostics import ProgramError
+
+_LEAST = 0.00005 * units.MM_PER_INCH  # per minute or per revolution
+_MOST_PER_REV = 0.2 * units.MM_PER_INCH, 1.0 * units.MM_PER_INCH, 2.0 * units.MM_PER_INCH
+_SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
+_TAPPING_LINES = 6  # so soon after the feed the spindle turns back
+_ROUNDING = 1 + 1e-9
+
+
+def feed_words(state: State, made: Statement, *, first: bool) -> None:
+    """G94, G95, G00, G01 and F of a line. ``first``: it is the program's first line."""
+    modes = {0, 1, 94, 95}.intersection(made.modal)
+    word = None if made.one_shot == 4 else made.words.get("F")
+    if not modes and word is None:
+        return
+    if 0 in modes and not first and (word is not None or modes - {0}):
+        message = "G00 stands with F, G94 or G95, each of which ends the rapid."
+        raise ProgramError(refusal(made.line, 1, "rapid-and-feed", message, "Split the line."))
+    if modes:
+        _modes(state, made, modes, has_feed=word is not None)
+    if word is not None and word.value is not None:
+        _feed(state, made, word.value, word.column, first=first)
+    if 0 in modes:
+        _rapid(state, made)
+
+
+def _modes(state: State, made: Statement, modes: set[int], *, has_feed: bool) -> None:
+    modal = state.modal
+    per_rev, feed = modal.per_rev, modal.feed
+    if 1 in modes and not modes & {94, 95}:
+        if modal.cut_feed is not None:
+            per_rev, feed = modal.cut_per_rev, modal.cut_feed
+        elif not has_feed:
+            state.adopt(state.modal._replace(rapid=False))
+            message = "G01 goes back to the last cutting feed, and none has been set after the first line."
+            raise ProgramError(refusal(made.line, 1, "no-cut-feed", message, "Set one with G95Fn or G94Fn."))
+    elif modes & {94, 95} and per_rev != (95 in modes):
+        per_rev = 95 in modes
+        feed = modal.cut_feed if 1 in modes and modal.cut_per_rev == per_rev else None
+    if modes - {0}:
+        state.title_rapid = 0
+        state.told.discard("feed-missing")
+    if modes - {0} and (modal.rapid, modal.per_rev, modal.feed) != (False, per_rev, feed):
+        state.adopt(state.modal._replace(rapid=False, per_rev=per_rev, feed=feed))
+
+
+def _rapid(state: State, made: Statement) -> None:
+    modal = state.modal
+    if modal.rapid:
+        state.title_rapid = 0 if made.moves else state.title_rapid
+        return
+    titled = made.comment is not None and not made.moves
+    cutting = state.cut and modal.feed is not None
+    state.title_rapid = made.line if titled and cutting else 0
+    state.adopt(state.modal._replace(rapid=True))
+
+
+def _feed(state: State, made: Statement, value: float, column: int, *, first: bool) -> None:
+    modal = state.modal
+    feed = state.feed_word(value)
+    most = _MOST_PER_REV[modal.coarse] if modal.per_rev else state.setup.limits.max_feed
+    state.title_rapid = 0
+    state.told.discard("feed-missing")
+    least = _LEAST if modal.per_rev else _LEAST / 60
+    kept = min(max(feed, least), most)  # after an error too, so that the rest can be judged
+    if first and not modal.per_rev:
+        state.first_feed = kept
+        state.adopt(state.modal._replace(feed=kept, rapid=False, rapid_rate=kept))
+        state.derive()
+    elif (modal.feed, modal.cut_feed, modal.cut_per_rev, modal.rapid) == (kept, kept, modal.per_rev, False):
+        pass
+    elif first:
+        state.adopt(state.modal._replace(feed=kept, rapid=False))
+    else:
+        state.adopt(state.modal._replace(feed=kept, rapid=False, cut_feed=kept, cut_per_rev=modal.per_rev))
+    if not least / _ROUNDING <= feed <= most * _ROUNDING:
+        low = units.feed(least, per_rev=modal.per_rev, metric=modal.metric)
+        high = units.feed(most, per_rev=modal.per_rev, metric=modal.metric)
+        shown = units.feed(feed, per_rev=modal.per_rev, metric=modal.metric)
+        message = f"Feed {shown} is out of range: {low} to {high}."
+        otherwise = "Lower F." if feed > most else "Raise F."
+        hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else otherwise
+        raise ProgramError(refusal(made.line, column, "feed-range", message, hint))
+
+
+def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
+    """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
+    modal, word = state.modal, made.words.get("F")
+    if word is None or made.one_shot == 4 or not modal.per_rev or modal.coarse or modal.feed is None:
+        return
+    if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
+        return
+    shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
+    hint = "Look for a lost decimal point."
+    state.log.warn(made.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
+
+
+def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:
+    back = {1: 4, -1: 3}.get(spindle)
+    return back is not None and any(
+        isinstance(step, Statement) and step.m == back for step in ahead[:_TAPPING_LINES]
+    )
+
+
+def check_move(state: State, line: int, x0: float, x: float, length: float) -> None:
+    """Whether a straight move or arc from radius ``x0`` to ``x`` may run at the feed in force.
+
+    Raises ProgramError with code feed-missing, spindle-stopped or feed-over-speed.
+    """
+    if state.turning is not None:
+        warn_of_short_dwell(state)
+    modal = state.modal
+    if modal.rapid:
+        return
+    if modal.feed is None:
+        _once(state, line, "feed-missing", "The move has no feed.", "Write F on this line or before it.")
+        return
+    if not (modal.per_rev or (modal.css and state.cut)):
+        _warn_slow(state, line, length, modal.feed)
+        return
+    if modal.css and modal.spindle and not modal.surface_speed:
+        text = "G96 is active and no S has given a surface speed."
+        _once(state, line, "surface-speed-missing", text, "Write S beside G96.")
+        return
+    rpm = max(abs(rpm_at(state, x0)), abs(rpm_at(state, x)))
+    if x0 * x < 0:  # over the centre
+        rpm = max(rpm, abs(rpm_at(state, 0.0)))
+    if not rpm:
+        why = "a feed per revolution" if modal.per_rev else "constant surface speed"
+        text = f"The spindle stands, and the move runs at {why}."
+        _once(state, line, "spindle-stopped", text, "Start it with M03 or M04, or use G94.")
+        return
+    speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
+    most = state.setup.limits.max_feed
+    if speed > most * _ROUNDING:
+        limit = units.feed(most, per_rev=False, metric=modal.metric)
+        if modal.per_rev:
+            shown = units.feed(modal.feed, per_rev=True, metric=modal.metric)
+            most_per_rev = units.feed(most * 60 / rpm, per_rev=True, metric=modal.metric)
+            message = f"Feed {shown} is over {most_per_rev} at {rpm:.0f} rpm, which is {limit}."
+        else:
+            shown = units.feed(speed, per_rev=False, metric=modal.metric)
+            message = f"Feed {shown} is over {limit}."
+        raise ProgramError(refusal(line, 0, "feed-over-speed", message, "Lower F or S."))
+    _warn_slow(state, line, length, speed)
+
+
+def _once(state: State, line: int, code: str, message: str, hint: str) -> None:
+    """Refuse a move; the moves after it that lack the same thing say nothing new."""
+    if code not in state.told:
+        state.told.add(code)
+        raise ProgramError(refusal(line, 0, code, message, hint))
+
+
+def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
+    state.slow_length = speed * _SLOW_MOVE
+    if length > state.slow_length:
+        seconds = length / speed
+        modal = state.modal
+        shown = units.feed(modal.feed or 0.0, per_rev=modal.per_rev, metric=modal.metric)
+        text = f"This move takes {seconds:.0f} s at {shown}."
+        state.log.warn(line, 0, "feed-low", text, "Look at F and at G94/G95.")

@@ -1,0 +1,348 @@
+"""Loops, subroutines and the end of a program: found once before anything runs, then followed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from copy import copy
+from typing import NamedTuple
+
+from core.interpreter.checkpoint import FlowLevel, FlowPlace
+from core.interpreter.diagnostic_log import DEEPEST_CALL, refusal
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+
+_CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
+
+
+class Structure(NamedTuple):
+    """Where the flow of a program goes; all positions are indices of lines, from 0."""
+
+    loop_ends: dict[int, int]  # index of LS → index of its LF
+    loop_starts: dict[int, int]
+    subroutines: dict[int, int]  # number → index of its }n
+    subroutine_ends: dict[int, int]  # number → index of its M99
+    main_end: int  # one past the last line of the main program
+    contours: dict[int, int]  # index of a G75 or G78 without P → index of its RF
+
+
+class _Finder:
+    """Goes once through the statements that matter for structure."""
+
+    def __init__(self, length: int) -> None:
+        self.found = Structure({}, {}, {}, {}, length, {})
+        self.problems: list[Diagnostic] = []
+        self._loops: list[Statement] = []
+        self._inside: int | None = None  # subroutine being read
+        self._job_end: int | None = None  # M30 or M02 in it after which nothing else has come, index of line
+        self._ended = False
+        self._stray = False  # a line that nothing reaches has been told
+        self._contour: Statement | None = None  # G75 or G78 whose RF is still to come
+        self._contour_lost = False  # it is on a line that cannot be read
+
+    def take(self, made: Statement) -> None:
+        if self._in_contour(made):
+            return
+        if made.flow == "}":
+            self._open_subroutine(made)
+            return
+        ends_job = _ends(made) and not made.block_delete
+        self._job_end = made.line - 1 if ends_job and self._inside is not None else None
+        if made.flow == "M99":
+            self._close_subroutine(made)
+        elif self._ended and self._inside is None:
+            self._unreachable(made)
+        elif made.flow == "LS" or _unread(made, "LS"):
+            self._loops.append(made)
+        elif made.flow == "LF":
+            self._close_loop(made)
+        elif _unread(made, "LF") and self._loops:
+            self._loops.pop()
+        elif self._inside is None and ends_job:
+            self._end_main(made.line)
+
+    def _in_contour(self, made: Statement) -> bool:
+        """Whether the line is one of a contour, or its RF; it steers nothing then."""
+        if made.flow == "RF":
+            if self._contour is None and not self._contour_lost:
+                self._refuse(made, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out.")
+            elif self._contour is not None:
+                self.found.contours[self._contour.line - 1] = made.line - 1
+            self._contour, self._contour_lost = None, False
+            return True
+        if made.flow == UNREADABLE and _CONTOUR_CYCLE.search(made.text):
+            self._contour_lost = True  # told already; its RF is no second mistake
+        if made.flow in {"}", "M99"} or made.m in code_table.ENDS:
+            self._open_contour()
+        inside = self._contour is not None
+        if not inside and made.one_shot in code_table.CONTOUR_CYCLES and "P" not in made.words:
+            self._contour = made
+        return inside
+
+    def _open_contour(self) -> None:
+        made, self._contour = self._contour, None
+        if made is not None:
+            text = f"The contour of G{made.one_shot} has no RF."
+            hint = "Write RF alone on the line after it, or P with the number of a subroutine."
+            self._refuse(made, "contour-open", text, hint)
+
+    def _end_main(self, line: int) -> None:
+        self._ended = True
+        self._unclosed_loops()
+        self.found = self.found._replace(main_end=min(line, self.found.main_end))
+
+    def _open_subroutine(self, made: Statement) -> None:
+        if self._inside is not None and not self._closed_by_job_end(self._inside):
+            self._refuse(
+                made, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
+            )
+        elif not self._ended:
+            self._no_end(made.line - 1)
+        self._unclosed_loops()
+        self._job_end = None
+        number = int(made.value("}") or 0)
+        if number in self.found.subroutines:
+            first = self.found.subroutines[number] + 1
+            text = f"Subroutine {number} begins on line {first} already."
+            self._refuse(made, "subroutine-twice", text, "Give it another number.")
+        else:
+            self.found.subroutines[number] = made.line - 1
+        self._inside, self._stray = number, False
+
+    def _close_subroutine(self, made: Statement) -> None:
+        if self._inside is None:
+            self._refuse(made, "m99-outside", "M99 ends no subroutine here.", "Take it out.")
+            return
+        self._unclosed_loops()
+        self.found.subroutine_ends.setdefault(self._inside, made.line - 1)
+        self._inside = None
+
+    def _closed_by_job_end(self, number: int) -> bool:
+        """An M30 or M02 ends the job from inside a subroutine, so one that ends with it needs no M99."""
+        if self._job_end is None:
+            return False
+        self.found.subroutine_ends.setdefault(number, self._job_end)
+        return True
+
+    def _close_loop(self, made: Statement) -> None:
+        if not self._loops:
+            self._refuse(made, "loop-unopened", "LF ends no loop.", "Add LS with a count, or take it out.")
+            return
+        start = self._loops.pop().line - 1
+        self.found.loop_ends[start] = made.line - 1
+        self.found.loop_starts[made.line - 1] = start
+
+    def _unclosed_loops(self) -> None:
+        for made in self._loops:
+            if made.flow == UNREADABLE:
+                continue  # told already
+            self._refuse(made, "loop-open", f"{made.text} has no LF.", "Add LF where the loop ends.")
+        self._loops.clear()
+
+    def _unreachable(self, made: Statement) -> None:
+        late_end = made.m in code_table.ENDS and any(each.code == "no-end" for each in self.problems)
+        if not self._stray and not late_end:
+            self._stray = True
+            text = "This line stands after the end of the program and is in no subroutine."
+            self._refuse(made, "after-end", text, "Move it before M30, or start a subroutine with }n.")
+
+    def _no_end(self, line: int) -> None:
+        self._ended = True
+        text = "The main program ends without M30 or M02."
+        self.problems.append(
+            Diagnostic(line, 0, Severity.ERROR, "no-end", text, "M30 goes before the subroutines.")
+        )
+        self.found = self.found._replace(main_end=line)
+
+    def finish(self, length: int) -> None:
+        self._open_contour()
+        self._unclosed_loops()
+        if not self._ended:
+            self._no_end(length)
+        elif self._inside is not None and not self._closed_by_job_end(self._inside):
+            text = f"Subroutine {self._inside} has no M99."
+            line = self.found.subroutines[self._inside] + 1
+            self.problems.append(
+                Diagnostic(line, 1, Severity.ERROR, "subroutine-open", text, "Add M99 at its end.")
+            )
+
+    def _refuse(self, made: Statement, code: str, text: str, hint: str) -> None:
+        self.problems.append(Diagnostic(made.line, 1, Severity.ERROR, code, text, hint))
+
+
+def _ends(made: Statement) -> bool:
+    """Whether the line ends the job, or was meant to."""
+    return made.m in code_table.ENDS or _unread(made, "M30") or _unread(made, "M02")
+
+
+def _unread(made: Statement, word: str) -> bool:
+    """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
+    return made.flow == UNREADABLE and made.text.lstrip(" /").upper().startswith(word)
+
+
+def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
+    """The structure of a program of ``length`` lines, and what is wrong with it.
+
+    ``statements``: its lines that are more than X and Z, in order.
+    """
+    finder = _Finder(length)
+    calls: list[Statement] = []
+    for made in statements:
+        finder.take(made)
+        if made.flow in code_table.CALLS or (made.one_shot in code_table.CONTOUR_CYCLES and made.value("P")):
+            calls.append(made)
+    finder.finish(length)
+    for made in calls:
+        number = call_target(made)
+        if number not in finder.found.subroutines:
+            column = made.column("P") or 1
+            text = f"Subroutine {number} is called, and no }}{number} begins it."
+            finder.problems.append(
+                Diagnostic(
+                    made.line, column, Severity.ERROR, "subroutine-missing", text, "Write it after M30."
+                )
+            )
+    return finder.found, finder.problems
+
+
+def call_target(made: Statement) -> int:
+    """Number of the subroutine that a call names; M95 always means 1."""
+    return 1 if made.flow == "M95" else int(made.value("P") or 0)
+
+
+# --- Where a program goes next: loops, subroutine calls, the end.
+
+
+class Flow:
+    """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.at = 0
+        self.end = self._run_end = structure.main_end  # the latter of the subroutine under way, if any
+        self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
+        self._structure = structure
+        self._loops: list[list[int]] = []  # index of LS, passes left
+        self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
+
+    def twin(self) -> Flow:
+        """The same place, to go on from there by itself."""
+        twin = copy(self)
+        twin._loops = [loop[:] for loop in self._loops]
+        twin._calls = [(at, end, [loop[:] for loop in loops]) for at, end, loops in self._calls]
+        return twin
+
+    def stop(self) -> None:
+        """Nothing comes any more."""
+        self._stop = None
+        self.end = self.at
+
+    @property
+    def called(self) -> bool:
+        """Whether the place is in a subroutine."""
+        return bool(self._calls)
+
+    def until(self, line: int) -> None:
+        """Stop before this line, counted from 1, in whatever pass or call it comes next."""
+        self._stop = line - 1
+        self._bound()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the line of ``until`` is what would be executed next."""
+        return self._stop is not None and self.at == self._stop
+
+    def pass_stop(self) -> None:
+        """Execute the line of ``until`` this time, and stop when it comes again."""
+        self.end = self._run_end
+
+    @property
+    def place(self) -> FlowPlace:
+        """The line, and the loops and calls under way, outermost first: equal where all to come is."""
+        runs = [
+            FlowLevel(back, end, tuple((start, left) for start, left in loops))
+            for back, end, loops in self._calls
+        ]
+        here = FlowLevel(self.at, self._run_end, tuple((start, left) for start, left in self._loops))
+        return (*runs, here)
+
+    def resume(self, line: int, place: FlowPlace) -> None:
+        """Be before this line, counted from 1, with these loops and calls under way."""
+        self.at = line - 1
+        if place:
+            self._calls = [(run.back, run.end, [list(each) for each in run.loops]) for run in place[:-1]]
+            self._loops = [list(each) for each in place[-1].loops]
+            self.end = self._run_end = place[-1].end
+
+    def _bound(self) -> None:
+        """The run goes to its end, or to where it has to stop before."""
+        stop = self._stop
+        self.end = stop if stop is not None and self.at <= stop < self._run_end else self._run_end
+
+    def passes_left(self, start: int) -> int:
+        """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
+        return self._loops[-1][1] if self._loops and self._loops[-1][0] == start else 0
+
+    def passed(self, times: int) -> None:
+        """The inner loop has been gone through so often, each time back to its first line."""
+        self._loops[-1][1] -= times
+
+    def steer(self, made: Statement) -> None:
+        """Follow a line that steers. Raises ProgramError for calls nested too deep."""
+        flow = made.flow
+        here = made.line - 1
+        self.at = here + 1
+        if flow == "LS" and here in self._structure.loop_ends:
+            self._loops.append([here, int(made.value("LS") or 1) - 1])
+        elif flow == "LF":
+            self._loop_end(here)
+        elif flow == "M99":
+            self._return()
+        self._bound()
+
+    def call(self, made: Statement) -> None:
+        """Go to the subroutine that the line names."""
+        number = call_target(made)
+        self.at = made.line
+        if number not in self._structure.subroutines:
+            return  # told when the program was read
+        if len(self._calls) >= DEEPEST_CALL:
+            text = f"Subroutines call each other more than {DEEPEST_CALL} deep."
+            raise ProgramError(
+                refusal(made.line, made.column("P"), "recursion", text, "A subroutine must not call itself.")
+            )
+        self._calls.append((made.line, self._run_end, self._loops))
+        self._loops = []
+        self.at = self._structure.subroutines[number] + 1
+        self._run_end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+        self._bound()
+
+    def contour(self, made: Statement) -> range | None:
+        """Indices of the lines that describe the contour of a G75 or G78, which the flow passes by.
+
+        None where there are none; that has been told when the program was read.
+        """
+        if "P" not in made.words:
+            end = self._structure.contours.get(made.line - 1)
+            if end is None:
+                return None
+            self.at = end + 1
+            return range(made.line, end)
+        number = int(made.value("P") or 0)
+        start = self._structure.subroutines.get(number)
+        return None if start is None else range(start + 1, self._structure.subroutine_ends.get(number, start))
+
+    def _loop_end(self, here: int) -> None:
+        start = self._structure.loop_starts.get(here)
+        if start is None or not self._loops or self._loops[-1][0] != start:
+            return
+        loop = self._loops[-1]
+        if loop[1] > 0:
+            loop[1] -= 1
+            self.at = start + 1
+        else:
+            self._loops.pop()
+
+    def _return(self) -> None:
+        if self._calls:
+            self.at, self._run_end, self._loops = self._calls.pop()

@@ -1,0 +1,378 @@
+"""G41, G42 and G40: where they may stand, and the nose's path beside the programmed contour between them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from math import dist
+from typing import NamedTuple
+
+from core.geometry.arcs import Point
+from core.geometry.contour import Element, Line
+from core.geometry.extent import SAME_POINT
+from core.geometry.meet import clearance, distance
+from core.geometry.offset import NEARER, WINDOW, GougeError, Offset, Piece
+from core.interpreter import units
+from core.interpreter.actions import ToolChange
+from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
+from core.interpreter.diagnostic_log import Log, refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.corners import STRAIGHT
+from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.language.diagnostics import ProgramError
+
+# --- The way to a compensated contour and off it again: far enough from the part, and clear of it.
+
+
+# An approach of one nose radius along the first move itself passes its start at .71 of the radius.
+_BESIDE = 0.5
+
+
+class ApproachOrDeparture(NamedTuple):
+    """An approach or a departure. ``contour``: the moves that it leads to or from, the nearest first."""
+
+    block: Block
+    departs: bool
+    code: int  # 41 or 42
+    radius: float  # of the nose, mm
+    contour: Sequence[Element]
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return "departure" if self.departs else "approach"
+
+    def refused(self, why: str, text: str, hint: str) -> ProgramError:
+        """An error of this way."""
+        return ProgramError(refusal(self.block.line, 0, f"comp-{self.name}{why}", text, hint))
+
+
+def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: Log) -> None:
+    """The end off the part, as programmed, must be R or more from it, and better 2R: else a warning.
+
+    ``corner`` is where the contour begins or ends. Raises ProgramError.
+    """
+    metric, radius = lead.block.modal.metric, lead.radius
+    nose = units.length(radius, metric=metric)
+    if dist(free, corner) < radius - SAME_POINT:
+        length = units.length(dist(free, corner), metric=metric)
+        text = f"The {lead.name} is {length} long, less than the nose radius {nose}."
+        raise lead.refused("-short", text, "Move farther off the part.")
+    off = min(distance(element, free) for element in lead.contour)
+    shown = units.length(off, metric=metric)
+    text = f"The {lead.name} {'ends' if lead.departs else 'starts'} {shown} off the part"
+    hint = "Keep twice the nose radius off the part."
+    if off < radius - SAME_POINT:
+        raise lead.refused("-near", f"{text}, less than the nose radius {nose}.", hint)
+    if off < 2 * radius - SAME_POINT:
+        text = f"{text}, less than twice the nose radius {nose}."
+        log.warn(lead.block.line, 0, f"comp-{lead.name}-near", text, hint)
+
+
+def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
+    """The nose on its way must not cut the part. Raises ProgramError.
+
+    Next to the contour's end it always comes nearer than R where it does not come square; there _BESIDE of R
+    is asked.
+    """
+    if way.length < SAME_POINT:
+        return
+    far = 0.0
+    for element in lead.contour:
+        least = lead.radius * _BESIDE if far < 2 * lead.radius else lead.radius - NEARER
+        far += element.length
+        if clearance(way, element) < least - SAME_POINT:
+            text = f"On the {lead.name} the nose of G{lead.code} cuts into the part."
+            hint = f"Choose another way for the {lead.name}, or the other side."
+            raise ProgramError(refusal(lead.block.line, 0, "comp-gouge", text, hint))
+
+
+_FOLLOWED = STRAIGHT | {Kind.ARC}
+
+
+@dataclass(slots=True)
+class _Move:
+    """A programmed move and what stands still after it."""
+
+    block: Block
+    after: list[Block] = field(default_factory=list)
+
+
+class Compensation:
+    """Takes moves and marks in order, holds them until their compensated places are sure.
+
+    The contour has the secondary offset in it, so the path has, too: an offset of the moved contour is the
+    moved offset of the contour.
+    """
+
+    def __init__(self, log: Log, max_rpm: float) -> None:
+        self._log = log
+        self._max_rpm = max_rpm
+        self.drop()
+
+    @property
+    def active(self) -> bool:
+        """Whether G41 or G42 is on."""
+        return self._mark is not None
+
+    def drop(self) -> None:
+        """Forget what is held; compensation is off."""
+        self._mark: CompensationSwitch | None = None
+        self.radius = 0.0  # of the nose, mm; to be set when the approach comes
+        self._approach: _Move | None = None
+        self._last: _Move | None = None  # the departure, if no other move comes
+        self._moves: dict[int, _Move] = {}  # of the contour, by index
+        self._count = 0
+        self._first: list[Element] = []  # of the contour, near the approach
+        self._recent: deque[Element] = deque(maxlen=WINDOW)
+        self._at: Point | None = None  # end of what has been handed out
+        self._index = 0  # of the move whose pieces are being handed out
+        self._offset = Offset(0.0)
+
+    def take(self, item: Item) -> Iterator[Block]:
+        """Passes on what is sure. Raises ProgramError where the nose cannot follow."""
+        if isinstance(item, CompensationSwitch):
+            if self._mark is not None:
+                yield from self._close()
+            self._mark = None if item.code == 40 else item
+        elif self._mark is None:
+            yield item
+        elif isinstance(item.action, ToolChange):
+            yield from self._close()
+            yield item
+        elif item.action is not None:
+            yield from self._rest(item)
+        else:
+            yield from self._move(item)
+
+    def _rest(self, block: Block) -> Iterator[Block]:
+        """A block in which nothing moves: at the compensated end of the move before it."""
+        holder = self._last or self._approach
+        if holder is None:
+            yield block
+        else:
+            holder.after.append(block)
+
+    def _move(self, block: Block) -> Iterator[Block]:
+        if block.kind not in _FOLLOWED or block.c != block.c0:
+            raise _refused(
+                block, "comp-with", f"{self._name} cannot follow this move.", "Write G40 before it."
+            )
+        move = _Move(block)
+        if self._approach is None:
+            self._approach = move
+            self._offset = Offset(self.radius if self._code == 41 else -self.radius)
+            return
+        if block.kind is not Kind.ARC and dist((block.x0, block.z0), (block.x, block.z)) < SAME_POINT:
+            (self._last or self._approach).after.append(block)
+            return
+        last, self._last = self._last, move
+        if last is not None:
+            yield from self._follow(last)
+
+    def _follow(self, move: _Move) -> Iterator[Block]:
+        """One more move of the contour."""
+        element = element_of(move.block)
+        self._moves[self._count] = move
+        self._count += 1
+        if len(self._first) < WINDOW:
+            self._first.append(element)
+        self._recent.append(element)
+        try:
+            for piece in self._offset.add(element):
+                yield from self._hand_out(piece)
+        except GougeError as problem:
+            raise self._gouge(problem) from None
+
+    def _hand_out(self, piece: Piece) -> Iterator[Block]:
+        if self._at is None:
+            yield from self._approached(piece.element.start)
+        while self._index < piece.source:
+            yield from self._standing(self._moves.pop(self._index))
+            self._index += 1
+        make = inserted_after if piece.corner else moved_along
+        self._at = piece.element.end
+        yield make(self._moves[piece.source].block, piece.element, self._max_rpm)
+
+    def _standing(self, move: _Move) -> Iterator[Block]:
+        if self._at is not None:
+            for block in move.after:
+                yield standstill_at(block, self._at, self._max_rpm)
+
+    def _approached(self, to: Point) -> Iterator[Block]:
+        approach = self._approach
+        assert approach is not None
+        assert self._mark is not None
+        block, modal = approach.block, approach.block.modal
+        begun = (
+            block.x0 - self._mark.dx + modal.secondary_x,
+            block.z0 - self._mark.dz + modal.secondary_z,
+        )
+        way = Line((block.x0, block.z0), to)
+        lead = ApproachOrDeparture(block, False, self._code, self.radius, self._first)
+        check_distance(lead, begun, (block.x, block.z), self._log)
+        check_clear(lead, way)
+        self._at = to
+        yield moved_along(block, way, self._max_rpm)
+        yield from self._standing(approach)
+
+    def _close(self) -> Iterator[Block]:
+        """G40: the last move departs."""
+        approach, last = self._approach, self._last
+        if approach is None:
+            self.drop()
+            return
+        if last is None or not self._count:
+            text = f"No move follows the contour between the approach and the departure of {self._name}."
+            raise _refused((last or approach).block, "comp-empty", text, "Write the contour between them.")
+        try:
+            pieces = list(self._offset.close())
+        except GougeError as problem:
+            raise self._gouge(problem) from None
+        way = Line(pieces[-1].element.end, (last.block.x, last.block.z))
+        self._check_departure(last, way)  # before anything that was held comes out
+        for piece in pieces:
+            yield from self._hand_out(piece)
+        yield from self._standing(self._moves.pop(self._index))
+        yield moved_along(last.block, way, self._max_rpm)
+        yield from last.after
+        self.drop()
+
+    def _check_departure(self, move: _Move, way: Line) -> None:
+        block = move.block
+        lead = ApproachOrDeparture(block, True, self._code, self.radius, list(reversed(self._recent)))
+        if any(each.moves for each in move.after):
+            text = "The departure, the last move before G40, has no length."
+            raise lead._replace(block=move.after[-1]).refused("-short", text, "Move off the part.")
+        if block.kind not in STRAIGHT:
+            text = "The departure, the move before G40, is no straight line."
+            raise lead.refused("", text, "Move off the part on a straight line.")
+        check_distance(lead, way.end, (block.x0, block.z0), self._log)
+        check_clear(lead, way)
+
+    def _gouge(self, problem: GougeError) -> ProgramError:
+        block = self._moves[problem.index].block
+        nose = units.length(self.radius, metric=block.modal.metric)
+        text = f"{self._name} with a nose radius of {nose} cannot follow this move: {problem.why}."
+        return _refused(block, "comp-gouge", text, "Take a smaller nose, or change the contour.")
+
+    @property
+    def _code(self) -> int:
+        return self._mark.code if self._mark is not None else 40
+
+    @property
+    def _name(self) -> str:
+        return f"G{self._code}"
+
+
+def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(refusal(block.line, 0, code, text, hint))
+
+
+# --- G41, G42 and G40 as words: where they may stand, and what may not stand under them.
+
+
+NOSE = frozenset({40, 41, 42})
+_NOT_UNDER_NOSE = code_table.THREADS | code_table.CYCLES | {89, 92}
+_TURNS_C = frozenset({"CA", "CI"})
+
+
+def nose_code(made: Statement) -> int:
+    """The G40, G41 or G42 of a line, 0 where there is none."""
+    return next((code for code in made.modal if code in NOSE), 0)
+
+
+def switch(state: State, made: Statement, code: int, *, called: bool) -> CompensationSwitch | None:
+    """G41, G42 or G40; None for a G40 with nothing to end. ``called``: the line is in a subroutine.
+
+    Raises ProgramError where the code may not stand.
+    """
+    on = state.modal.nose_comp
+    if code == 40 and on == 40:
+        return None
+    if made.words or made.code or made.m_word or len(made.modal) > 1:
+        text = f"G{code} does not stand alone on its line."
+        raise _refused_nose(made, "not-alone", text, "Put the rest on a line of its own.")
+    if code != 40 and on != 40:
+        text = f"G{code} comes while G{on} is on."
+        raise _refused_nose(made, "comp-on", text, f"End G{on} first: a move off the part, then G40.")
+    if called:
+        text = f"G{code} stands in a subroutine."
+        raise _refused_nose(
+            made, "comp-subroutine", text, "Write the compensated contour in the main program."
+        )
+    state.adopt(state.modal._replace(nose_comp=code))
+    state.shape.approach = 0 if code == 40 else made.line
+    state.shape.active, state.fast = True, False
+    return CompensationSwitch(code, made.line, state.x - state.px, state.z - state.pz)
+
+
+def check_under_nose(state: State, made: Statement) -> None:
+    """Refuse what nose compensation cannot follow. Raises ProgramError."""
+    on = state.modal.nose_comp
+    if on == 40:
+        return
+    if made.m in code_table.ENDS:
+        text = f"The program ends while G{on} is on."
+        raise _refused_nose(made, "comp-open", text, "Move off the part and write G40 before it.")
+    if made.flow and made.flow not in code_table.FLOW_WORDS:
+        raise _refused_nose(
+            made, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
+        )
+    if made.flow in code_table.CALLS:
+        text = f"A subroutine is called while G{on} is on."
+        raise _refused_nose(
+            made, "comp-subroutine", text, "Write the compensated contour in the main program."
+        )
+    if made.one_shot in _NOT_UNDER_NOSE or made.m in code_table.M_POSITIONING or _TURNS_C & made.words.keys():
+        word = made.code or made.m_word
+        what = word.text if word is not None else "C"
+        raise _refused_nose(made, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
+    other = made.value("D") not in {None, state.modal.secondary}
+    if other and "T" not in made.words and not state.shape.approach:
+        text = f"D changes while G{on} is on."
+        hint = "D belongs on the first move after G41 or G42 alone."
+        raise ProgramError(refusal(made.line, made.column("D"), "comp-d", text, hint))
+
+
+def check_approach(state: State, block: Block) -> None:
+    """The first move after G41 or G42: a straight line with D. Raises ProgramError."""
+    line, state.shape.approach = state.shape.approach, 0
+    if not line:
+        return
+    on = state.modal.nose_comp
+    if block.kind not in STRAIGHT:
+        text = f"The first move after G{on} on line {line} is no straight line."
+        raise _of(block, "comp-approach", text, "Approach on a straight line with D.")
+    if state.shape.d_line != block.line or not state.modal.secondary:
+        text = f"The first move after G{on} on line {line} names no D."
+        raise _of(block, "comp-approach", text, "Write Dn: its R is the nose radius.")
+    radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
+    if radius < 0:
+        text = f"R of D{state.modal.secondary} is negative."
+        raise _of(
+            block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 say the side."
+        )
+    if not radius:
+        text = f"R of D{state.modal.secondary} is 0: G{on} compensates nothing."
+        state.log.warn(block.line, 0, "comp-no-radius", text, "Enter the nose radius among the offsets.")
+
+
+def nose_radius(state: State) -> float:
+    """R of the secondary offset in force, mm."""
+    return max(state.setup.secondary[state.modal.secondary].r, 0.0) if _known(state) else 0.0
+
+
+def _known(state: State) -> bool:
+    return state.modal.secondary in state.setup.secondary
+
+
+def _refused_nose(made: Statement, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(refusal(made.line, 1, code, text, hint))
+
+
+def _of(block: Block, code: str, text: str, hint: str) -> ProgramError:
+    return ProgramError(refusal(block.line, 0, code, text, hint))

@@ -1,0 +1,329 @@
+"""The interpreter: a program and its circumstances → elementary blocks, one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from typing import TYPE_CHECKING
+
+from core.interpreter.actions import AskInput, ProgramEnd
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport, refusal
+from core.interpreter.elementary_blocks import Block, Series
+from core.interpreter.job_setup import Setup
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.block_execution import execute
+from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore, way_blocks
+from core.interpreter.omniturn.coarse_feeds import looks_ahead
+from core.interpreter.omniturn.contour_modification import ContourModifier
+from core.interpreter.omniturn.loops_and_subroutines import Flow
+from core.interpreter.omniturn.m_codes import check_m_codes
+from core.interpreter.omniturn.nose_compensation import nose_code, switch
+from core.interpreter.omniturn.omniturn_program import LONG, Program
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement
+from core.interpreter.omniturn.plain_moves import plain
+from core.interpreter.omniturn.program_size import refuse_too_large, takes_call, terminal
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.interpreter.omniturn.straight_moves import fast_move, go, on_step, plain_move
+from core.interpreter.omniturn.tools_and_offsets import ToolUse, warn_of_idle_shifts
+from core.language.diagnostics import ProgramError
+from core.language.omniturn import lex_line
+
+if TYPE_CHECKING:
+    from core.interpreter.omniturn.move_series import SeriesLookAhead
+
+# --- What can be said about a program and its circumstances before the first block.
+
+
+def check_opening(state: State, program: Program) -> tuple[int, bool]:
+    """Number of the first line to execute (0: none), and whether the program is too large to be begun."""
+    log = state.log
+    check_m_codes(state, program.m_codes)
+    begin = state.setup.begin
+    alone = begin is not None and begin.single
+    first = 0 if alone else _first_line(program, log, block_delete=state.setup.block_delete)
+    if begin is not None and alone and begin.checkpoint.modal.absolute is None:
+        _refuse_move(program, log)
+    large = refuse_too_large(program, state.setup.inputs)
+    if large is not None:
+        log.add(large)
+    if state.setup.metric and not program.names_units and first:
+        text = "The program names neither G70 nor G71; it runs in millimetres, in which the control counts."
+        log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
+    return first, large is not None
+
+
+def _refuse_move(program: Program, log: Log) -> None:
+    """MDI after power-up or M30: neither G90 nor G91 is in force, so X and Z have no meaning yet."""
+    step = program.steps[0]
+    named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
+    moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
+    if moves and not named:
+        text = "Neither G90 (absolute) nor G91 (incremental) is in force."
+        log.add(refusal(1, 1, "first-line", text, "Say one of them first."))
+
+
+def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
+    """Number of the first line to execute, 0 where there is none; it must say G90 or G91."""
+    for number, step in enumerate(program.steps, start=1):
+        if step is None:
+            continue
+        if isinstance(step, Statement):
+            if not step.executable or (block_delete and step.block_delete):
+                continue
+            if step.flow == UNREADABLE or {90, 91}.intersection(step.modal):
+                return number
+        text = "The first line must say G90 (absolute) or G91 (incremental)."
+        log.add(refusal(number, 1, "first-line", text, "Begin with G90G94F300."))
+        return number
+    return 0
+
+
+_AHEAD = 8
+
+
+class Interpreter(PassReport):
+    """One pass through a program. Raises nothing at its user: what is wrong is in ``diagnostics``.
+
+    No block comes after an error, but the pass goes on as well as it can to find the other errors.
+    """
+
+    _state: State
+    _tools: ToolUse
+
+    def __init__(self, program: Program, setup: Setup) -> None:
+        super().__init__(Log(program.diagnostics))
+        self._program = program
+        self._state = State(setup, self._log)
+        self._shaper = ContourModifier(self._state)
+        self._tools = ToolUse()
+        self._flow = Flow(program.structure)
+        self._ahead: SeriesLookAhead | None = None
+        self._first, self._refused = check_opening(self._state, program)
+        if setup.begin is not None:
+            restore(self._state, setup.begin)
+            self._flow.resume(setup.begin.line, setup.begin.checkpoint.flow)
+
+    @property
+    def source_blocks(self) -> int:
+        """Lines that hold more than a comment."""
+        return self._program.blocks
+
+    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+        """The elementary blocks, made as they are asked for. To be called once.
+
+        At the first error the blocks end. What is left of the program is then still gone through for its
+        errors before the iterator ends, unless ``to_first_error`` (what runs a program wants no delay).
+        """
+        for each in chain(self._way(), self._pass()):
+            if self._stopped:
+                if to_first_error:
+                    return
+            elif isinstance(each, Series):
+                yield from each
+            else:
+                yield each
+
+    def series(self) -> Iterator[Block | Series]:
+        """The same, whole series of straight moves in one: for whoever goes through all of a program."""
+        if self._program.structure.loop_ends or len(self._program.steps) >= LONG:
+            from core.interpreter.omniturn.move_series import SeriesLookAhead
+
+            self._ahead = SeriesLookAhead(self._state, self._program, self._flow)
+        return (each for each in chain(self._way(), self._pass()) if not self._stopped)
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What the line inherits that would be executed next."""
+        return checkpoint_of(self._state)._replace(flow=self._flow.place)
+
+    def _way(self) -> Iterator[Block]:
+        begin = self._state.setup.begin
+        return iter(()) if begin is None or self._refused else way_blocks(self._state, begin)
+
+    def _pass(self) -> Iterator[Block | Series]:
+        if self._refused:
+            return
+        yield from self._lines()
+        yield from self._held_back(self._shaper.end())
+        warn_of_idle_shifts(self._state)
+
+    def _lines(self) -> Iterator[Block | Series]:
+        steps, flow, state, ahead = self._program.steps, self._flow, self._state, self._ahead
+        lines = self._program.source.lines
+        left = MOST_LINES
+        while flow.at < flow.end:
+            if ahead is not None and state.fast:
+                taken = ahead.take(left, MOST_BLOCKS - state.blocks)
+                if taken is not None:
+                    left -= taken[1]
+                    yield taken[0]
+                    continue
+            at = flow.at
+            flow.at = at + 1
+            step = steps[at]
+            left -= 1
+            if left < 0 or state.blocks >= MOST_BLOCKS:
+                self._too_much(at + 1, "Lower the counts of the loops.")
+                break
+            try:
+                if isinstance(step, tuple):
+                    move = step if len(step) == 2 else plain(state, at + 1, lines[at], step)
+                    if move is None:
+                        step = steps[at] = statement(lex_line(at + 1, lines[at]))
+                        yield from self._statement(step)
+                    elif state.fast:
+                        yield fast_move(state, at + 1, lines[at], move)
+                    else:
+                        yield from self._shaped(plain_move(state, at + 1, lines[at], move))
+                elif step is not None:
+                    yield from self._statement(step)
+            except ProgramError as problem:
+                self._recover(problem, step)
+
+    def _statement(self, made: Statement) -> Iterator[Block]:
+        contour = self._contour(made) if made.one_shot in code_table.CONTOUR_CYCLES else ()
+        if made.block_delete and self._state.setup.block_delete:
+            return
+        if made.flow == UNREADABLE:
+            self._stopped = True
+            self._shaper.drop()  # what is held back lacks this line
+            self._arrive(made)
+        elif made.flow in code_table.CALLS:
+            self._shaper.check(made)
+            yield from self._call(made)
+        elif made.flow == PLANE:
+            self._shaper.check(made)
+            from core.interpreter.omniturn.plane_switching import plane_line  # as rare as it is large
+
+            for block in plane_line(self._state, made):
+                yield from self._shaped(block)
+        elif made.flow:
+            self._flow.steer(made)
+        else:
+            self._shaper.check(made)
+            if nose_code(made):
+                yield from self._nose(made)
+            first = made.line == self._first
+            ahead = self._program.steps[made.line : made.line + _AHEAD] if looks_ahead(made) else ()
+            for block in execute(self._state, made, self._tools, ahead, first=first, contour=contour):
+                yield from self._shaped(block)
+                if isinstance(block.action, ProgramEnd):
+                    self._flow.stop()
+
+    def _contour(self, made: Statement) -> list[Statement]:
+        """The lines that describe the contour of a cycle; they are passed by even where it does not run."""
+        lines = self._flow.contour(made)
+        if lines is None:
+            self._stopped = True
+            return []
+        found = [self._program.statement(index + 1) for index in lines]
+        return [each for each in found if each is not None]
+
+    def _nose(self, made: Statement) -> Iterator[Block]:
+        """G41, G42 or G40."""
+        mark = switch(self._state, made, nose_code(made), called=self._flow.called)
+        if mark is not None:
+            yield from self._held_back(self._shaper.mark(mark))
+
+    def _shaped(self, block: Block) -> Iterator[Block]:
+        """The block itself, or, where corners or nose compensation are at work, what is sure by now."""
+        if self._state.shape.active:
+            yield from self._held_back(self._shaper.take(block))
+        else:
+            yield block
+
+    def _held_back(self, blocks: Iterator[Block]) -> Iterator[Block]:
+        try:
+            yield from blocks
+        except ProgramError as problem:
+            self._refuse(problem)
+
+    def _refuse(self, problem: ProgramError) -> None:
+        """Keep the error; no block that is held back may come any more."""
+        self._log.add(problem.diagnostic)
+        self._stopped = True
+        self._shaper.drop()
+        self._state.fast = False
+
+    def _call(self, made: Statement) -> Iterator[Block]:
+        state = self._state
+        if made.flow in code_table.ASKS:
+            asked = AskInput(terminal(made))
+            yield from self._shaped(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
+            if not self._takes(made):
+                return
+        self._flow.call(made)
+
+    def _takes(self, made: Statement) -> bool:
+        """Whether a conditional call is made; the input is asked at this moment."""
+        return takes_call(made, self._state.setup.inputs)
+
+    def _recover(self, problem: ProgramError, step: ReadyLine) -> None:
+        """Keep the error, and stand where its line would have ended, so that the next is judged well."""
+        self._refuse(problem)
+        if problem.diagnostic.code == "recursion" or self._log.full:
+            self._flow.stop()
+        if isinstance(step, Statement):
+            self._arrive(step)
+
+    def _arrive(self, made: Statement) -> None:
+        """Stand where the line would have ended."""
+        state = self._state
+        if made.moves and state.absolute:
+            go(state, on_step(state, made, "X"), on_step(state, made, "Z"))
+            state.tool_line = 0
+
+
+# --- Going through a program up to a line: what SEARCHTO rebuilds the state with. The same interpreter.
+
+
+class PassToLine(Interpreter):
+    """A pass that stops before any line, in each pass of a loop and each call, and goes on from there."""
+
+    def before(self, line: int) -> Iterator[Block]:
+        """The blocks until this line is about to be executed, counted from 1; ``there`` tells whether it is.
+
+        May be called again with a later line. At the first error they end; ``failed`` tells.
+        """
+        self._flow.until(line)
+        return self._until_stop()
+
+    def again(self, line: int) -> Iterator[Block]:
+        """The same line executed, and on until it is about to be executed once more."""
+        self._flow.until(line)
+        self._flow.pass_stop()
+        return self._until_stop()
+
+    def _until_stop(self) -> Iterator[Block]:
+        for each in self._lines():
+            if self._stopped:
+                return
+            assert isinstance(each, Block)  # series are made for ``series`` alone
+            yield each
+
+    @property
+    def there(self) -> bool:
+        """Whether the line that was asked for comes next."""
+        return self._flow.stopped and not self._stopped
+
+    @property
+    def setup(self) -> Setup:
+        """Its circumstances."""
+        return self._state.setup
+
+    @property
+    def next_line(self) -> int:
+        """The line that would be executed next, counted from 1."""
+        return self._flow.at + 1
+
+    @property
+    def called(self) -> bool:
+        """Whether a subroutine is being executed."""
+        return self._flow.called
+
+    @property
+    def shaping(self) -> bool:
+        """Whether moves are held back, because a corner or nose compensation looks at the lines to come."""
+        return self._state.shape.active or self._state.modal.nose_comp != 40

@@ -1,0 +1,289 @@
+"""A program read once: its lines ready to run, its structure, and what is wrong with it as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import islice
+
+from core.interpreter.diagnostic_log import without_repeats
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.loops_and_subroutines import Structure, call_target, find_structure
+from core.interpreter.omniturn.omniturn_statement import (
+    PLANE,
+    UNREADABLE,
+    ReadyLine,
+    Statement,
+    statement,
+    unreadable,
+)
+from core.interpreter.omniturn.plain_moves import ReadyLines, read_long_program, read_move
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Line, lex_line
+from core.language.omniturn.plane_switching_lines import (
+    PlaneLine,
+    ends_program,
+    lacks_sign,
+    lex_plane,
+    plane_entry,
+)
+from core.language.source import Source
+
+# --- Where shops' files differ from the book: one note a kind for the file, or an error each when strict.
+
+
+_ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
+
+_KINDS = {
+    "blank-line": ("The line is blank.", "Take it out for the original control."),
+    "title-line": ("A comment stands on a line by itself.", "Put it on a line with a command."),
+    "comment-character": ("The comment holds more than letters, digits and blanks.", "Use plain text."),
+    "tool-zero": ("The tool number has a leading zero.", "Write T1 for T01."),
+    "subroutine-comment": ("A comment stands on the line that starts a subroutine.", "Move it down a line."),
+    "line-ends": ("The lines end in a carriage return.", "Save the file with the line ends of this machine."),
+    "last-newline": ("The last line has no line end.", "Press Return after it."),
+}
+
+
+class Style:
+    """Collects the deviations of one program."""
+
+    def __init__(self, *, strict: bool) -> None:
+        self.found: list[Diagnostic] = []
+        self._strict = strict
+        self._told: dict[str, int] = {}  # kind → place in what was found
+
+    def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
+        """Say that ``kind`` occurs at this place, there and behind it so often."""
+        at = self._told.get(kind)
+        if at is not None and not self._strict:
+            self.found[at] = replace(self.found[at], count=self.found[at].count + count)
+            return
+        self._told[kind] = len(self.found)
+        message, hint = _KINDS[kind]
+        severity = Severity.ERROR if self._strict else Severity.NOTE
+        self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
+
+    def look_at_file(self, source: Source) -> None:
+        """Line ends."""
+        if "\r" in source.text:
+            self.tell("line-ends", 1, count=source.text.count("\r"))
+        if source.text and source.text[-1] not in "\r\n":
+            self.tell("last-newline", len(source.lines))
+
+    def look_at(self, line: Line, made: Statement) -> None:
+        """Comments and tool numbers of one line."""
+        tool = made.words.get("T")
+        if tool is not None and tool.text[1:].startswith("0") and len(tool.text) > 2:
+            self.tell("tool-zero", line.number, tool.column)
+        if line.comment is None:
+            return
+        if not made.executable:
+            self.tell("title-line", line.number, line.comment_column)
+        if made.flow == "}":
+            self.tell("subroutine-comment", line.number, line.comment_column)
+        if not _ODD_IN_COMMENT.isdisjoint(line.comment):
+            self.tell("comment-character", line.number, line.comment_column)
+
+
+LONG = 5_000
+"""Lines from which on a program is read into columns."""
+
+_MOST_PROBLEMS = 100
+_NEAR = 5  # lines
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program ready to run. ``steps`` has one entry a line; ``m_codes`` are those of the machine file."""
+
+    source: Source
+    steps: ReadyLines
+    structure: Structure
+    diagnostics: tuple[Diagnostic, ...]
+    blocks: int  # lines that hold more than a comment
+    names_units: bool  # G70 or G71 stands somewhere
+    m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
+    asks: tuple[Statement, ...] = ()  # lines that call a subroutine by an input
+    deletes: bool = False  # / stands somewhere
+    calls: tuple[tuple[int, int], ...] = ()  # line of each call or contour by a subroutine, and its number
+
+    def for_one_pass(self) -> Program:
+        """The same; what the pass finds out about a line is its own."""
+        return replace(self, steps=self.steps.copy())
+
+    def line(self, number: int) -> Line:
+        """The words of a line, counted from 1."""
+        return lex_line(number, self.source.lines[number - 1])
+
+    def statement(self, number: int) -> Statement | None:
+        """A line ready to run, counted from 1; None where there is nothing on it."""
+        step = self.steps[number - 1]
+        return statement(self.line(number)) if isinstance(step, tuple) else step
+
+
+class _Reader:
+    def __init__(self, source: Source, *, strict: bool) -> None:
+        self.source = source
+        self.style = Style(strict=strict)
+        self.steps: ReadyLines = []
+        self.blank = 0  # lines that hold nothing
+        self.statements: list[Statement] = []
+        self.problems: list[Diagnostic] = []
+        self._plane = 0  # line of a (~PL..) whose (END) is still to come
+
+    def read(self) -> None:
+        lines = self.source.lines
+        if len(lines) >= LONG and "~" not in self.source.text:
+            self.steps = read_long_program(lines, self._step)
+        else:
+            self.steps = [self._step(number, text) for number, text in enumerate(lines, start=1)]
+        if self._plane:
+            self._plane_open(self._plane)
+
+    def _step(self, number: int, text: str) -> ReadyLine:
+        move = read_move(text)
+        return self.statement(number, text) if move is None or self._plane else move
+
+    def statement(self, number: int, text: str) -> Statement | None:
+        if not text or text.isspace():
+            self.style.tell("blank-line", number)
+            self.blank += 1
+            return None
+        if self._plane and ends_program(text):
+            self._plane_open(number)
+        entry = plane_entry(text)
+        if entry is not None or self._plane:
+            return self._in_plane(number, text, entry)
+        line = lex_line(number, text)
+        self.problems.extend(line.errors)
+        try:
+            made = statement(line)
+        except ProgramError as problem:
+            self.problems.append(problem.diagnostic)
+            made = unreadable(line)
+        self._suspect_plane(number, text)
+        self.style.look_at(line, made)
+        self.statements.append(made)
+        return made
+
+    def _suspect_plane(self, number: int, text: str) -> None:
+        """(PLXC) without its ~ is a comment, and so are the moves behind it: nothing would be milled."""
+        following = islice(self.source.lines, number, number + _NEAR)
+        lacks = lacks_sign(text, following) if "(" in text else None
+        if lacks is not None:
+            name = text.strip().upper()
+            message = (
+                f"{name} is a comment without its ~, and so are the lines up to (END): nothing is milled."
+            )
+            weight = Severity.ERROR if lacks else Severity.WARNING
+            self.problems.append(Diagnostic(number, 1, weight, "plane-sign", message, f"Write (~{name[1:]}."))
+
+    def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
+        """A line from the entry to (END), both included."""
+        made = Statement(number, text.strip(), flow=PLANE)
+        try:
+            made.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
+        except ProgramError as problem:
+            self.problems.append(problem.diagnostic)
+            made.flow = UNREADABLE
+        if made.plane is not None and made.plane.name:
+            self._plane = 0 if made.plane.name == "END" else number
+        self.statements.append(made)
+        return made
+
+    def _plane_open(self, number: int) -> None:
+        text = f"Plane switching on line {self._plane} has no (END)."
+        self.problems.append(
+            Diagnostic(number, 1, Severity.ERROR, "plane-open", text, "Write (END) alone on a line.")
+        )
+        self._plane = 0
+
+
+def read_program(source: Source, strict: bool = False) -> Program:
+    """Lex all lines, find loops, subroutines and ends, and say what is wrong. Raises nothing.
+
+    ``strict`` makes errors of what the original control's book forbids and real shops write.
+    """
+    reader = _Reader(source, strict=strict)
+    reader.read()
+    length = len(reader.steps)
+    structure, faults = find_structure(reader.statements, length)
+    if not length:
+        faults = [
+            Diagnostic(0, 0, Severity.ERROR, "file-empty", "The program is empty.", "Write G90 and M30.")
+        ]
+    reader.style.look_at_file(source)
+    problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
+    if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
+        problems += _beyond_the_end(reader.steps, structure)
+    problems.sort(key=lambda problem: (problem.line, problem.column))
+    problems = without_repeats(problems)
+    return Program(
+        source=source,
+        steps=reader.steps,
+        structure=structure,
+        diagnostics=(*_capped(problems), *_capped(reader.style.found)),
+        blocks=_executable(reader),
+        names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
+        m_codes=tuple(made for made in reader.statements if made.m not in {None, *code_table.M_KNOWN}),
+        asks=tuple(made for made in reader.statements if made.flow in code_table.ASKS),
+        deletes=any(made.block_delete for made in reader.statements),
+        calls=tuple(_calls(reader.statements)),
+    )
+
+
+def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
+    for made in statements:
+        if made.flow in code_table.CALLS:
+            yield made.line, call_target(made)
+        elif made.one_shot in code_table.CONTOUR_CYCLES and "P" in made.words:
+            yield made.line, int(made.value("P") or 0)
+
+
+def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
+    """One line of a text on its own, and what is wrong with it; None for an empty one."""
+    reader = _Reader(Source("", text), strict=False)
+    made = reader.statement(number, text)
+    return made, reader.problems
+
+
+def _executable(reader: _Reader) -> int:
+    comments = sum(1 for made in reader.statements if not made.executable)
+    return len(reader.steps) - reader.blank - comments
+
+
+def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
+    found: list[Diagnostic] = []
+    depth = 0
+    text, hint = "A comment stands inside a loop.", "Move it before LS."
+    for made in statements:
+        depth += (made.line - 1 in structure.loop_ends) - (made.line - 1 in structure.loop_starts)
+        if depth and made.comment is not None:
+            found.append(Diagnostic(made.line, 0, Severity.WARNING, "comment-in-loop", text, hint))
+    return found
+
+
+def _beyond_the_end(steps: ReadyLines, structure: Structure) -> list[Diagnostic]:
+    """Moves after M30 that no subroutine holds: the first of them."""
+    inside = False
+    starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
+    for at in range(structure.main_end, len(steps)):
+        inside = (inside or at in starts) and at not in ends
+        if not inside and isinstance(steps[at], tuple):
+            text = "This line stands after the end of the program and is in no subroutine."
+            hint = "Move it before M30, or start a subroutine with }n."
+            return [Diagnostic(at + 1, 1, Severity.ERROR, "after-end", text, hint)]
+    return []
+
+
+def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
+    """Errors first in the count: no flood of warnings may hide one."""
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    if len(problems) <= _MOST_PROBLEMS:
+        return problems
+    if len(errors) >= _MOST_PROBLEMS:
+        return errors[:_MOST_PROBLEMS]
+    others = [problem for problem in problems if problem.severity is not Severity.ERROR]
+    kept = errors + others[: _MOST_PROBLEMS - len(errors)]
+    return sorted(kept, key=lambda problem: (problem.line, problem.column))

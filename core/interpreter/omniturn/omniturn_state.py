@@ -1,0 +1,164 @@
+"""Everything that changes while a program is gone through, kept flat because every move reads it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from core.interpreter.actions import Action, Dwell
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+from core.interpreter.units import MM_PER_INCH
+
+# --- What lies between lines and the blocks handed out: corners still to cut, nose compensation in force.
+
+
+class Corner(NamedTuple):
+    """C or R of a straight move: what is made where it meets the next one. ``size`` in mm."""
+
+    letter: str
+    size: float
+    column: int
+
+
+class CompensationSwitch(NamedTuple):
+    """G41, G42 or G40 among the blocks. ``dx dz``: the secondary offset that the point reached has in it."""
+
+    code: int
+    line: int
+    dx: float
+    dz: float
+
+
+Item = Block | CompensationSwitch
+
+
+@dataclass(slots=True)
+class ContourState:
+    """Where a program stands between its lines and the blocks that are made of them."""
+
+    active: bool = False  # blocks are held back, so each has to pass through the shaper
+    corner: Corner | None = None  # of the move just made
+    approach: int = 0  # line of a G41 or G42 whose approach is still to come
+    d_line: int = 0  # last line that held a D
+
+
+HIGH_FEED = 0.05 * MM_PER_INCH * (1 + 1e-9)
+"""Feed, mm/rev, above which F003 was hardly meant and F.003 was."""
+
+
+class State:
+    """Position and modal state. mm, X a radius; ``x z`` the point reached, ``px pz`` the one programmed,
+    which lacks the secondary offset. What stands under "derived" follows from ``modal``."""
+
+    __slots__ = (
+        "absolute",
+        "blocks",
+        "c",
+        "coarse_at",
+        "cut",
+        "dx",
+        "dz",
+        "fast",
+        "feed",
+        "first_feed",
+        "kind",
+        "log",
+        "modal",
+        "offset_x",
+        "offset_z",
+        "pending_shift",
+        "per_rev",
+        "px",
+        "pz",
+        "rpm",
+        "scale_x",
+        "scale_z",
+        "setup",
+        "shape",
+        "slow_length",
+        "steady_feed",
+        "title_rapid",
+        "told",
+        "tool_line",
+        "turning",
+        "x",
+        "z",
+    )  # fmt: skip
+
+    def __init__(self, setup: Setup, log: Log) -> None:
+        self.setup = setup
+        self.log = log
+        self.blocks = 0
+        self.x, self.z, self.c = setup.start
+        self.px, self.pz = self.x, self.z
+        self.first_feed: float | None = None  # F of the first line under G94, mm/s
+        self.tool_line = 0  # line of a T whose move to X and Z is still to come
+        self.title_rapid = 0  # line of a G00 (TITLE) after which no F has come
+        self.pending_shift: dict[int, bool] = {}  # line of a G10 → whether a T has come
+        self.coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
+        self.turning: tuple[int, int, float] | None = None  # line, column, s that C still needs to arrive
+        self.shape = ContourState()
+        self.told: set[str] = set()  # errors that would otherwise repeat on every move
+        self.modal = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
+        self.derive()
+
+    def adopt(self, modal: Modal) -> None:
+        """Make ``modal`` the state in force; where it says nothing new, blocks go on sharing the old one."""
+        if modal != self.modal:
+            self.modal = modal
+            self.derive()
+
+    def derive(self) -> None:
+        """Work out from the modal state what every move needs."""
+        modal = self.modal
+        self.absolute = modal.absolute is not False
+        self.scale_z = 1.0 if modal.metric else MM_PER_INCH
+        self.scale_x = self.scale_z / 2 if modal.diameter else self.scale_z
+        self.offset_x, self.offset_z = modal.offset_x, modal.offset_z
+        self.dx, self.dz = modal.secondary_x, modal.secondary_z
+        self.cut = not modal.rapid and not self._first_feed_again(modal)
+        self.kind = Kind.FEED if self.cut else Kind.RAPID
+        self.feed = modal.rapid_rate if modal.rapid else (modal.feed or 0.0)
+        self.per_rev = modal.per_rev and not modal.rapid
+        self.rpm = modal.rpm * modal.spindle
+        steady = not modal.rapid and (modal.feed, modal.per_rev) == (modal.cut_feed, modal.cut_per_rev)
+        steady = steady and not (modal.per_rev and (modal.feed or 0.0) > HIGH_FEED)  # each of those is told
+        self.steady_feed = modal.feed if steady else None  # where G01 and this F again would change nothing
+        self.slow_length = 0.0  # a longer move under this feed takes too long to be meant
+        self.fast = False  # whether the next plain move needs no check: set by a move that passed all
+
+    def _first_feed_again(self, modal: Modal) -> bool:
+        """Programs without G00 rapid by the first line's F: a move at that feed counts as a rapid."""
+        if modal.per_rev or modal.feed is None or self.first_feed is None:
+            return False
+        return abs(modal.feed - self.first_feed) <= 1e-9 * self.first_feed
+
+    def feed_word(self, value: float) -> float:
+        """F in mm/s under G94, in mm/rev under G95."""
+        return value * self.scale_z / (1 if self.modal.per_rev else 60)
+
+    def stay(self, modal: Modal) -> None:
+        """Change the frame under a machine point that stays where it is."""
+        x, z = self.x + self.offset_x, self.z + self.offset_z
+        self.adopt(modal)
+        self.x, self.z = x - self.offset_x, z - self.offset_z
+        self.px, self.pz = self.x - self.dx, self.z - self.dz
+
+    def action(self, line: int, text: str, action: Action, rpm: float) -> Block:
+        """A block in which no axis moves."""
+        self.blocks += 1
+        return Block(
+            n=self.blocks,
+            line=line,
+            kind=Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION,
+            text=text,
+            x0=self.x, z0=self.z, c0=self.c, x=self.x, z=self.z, c=self.c,
+            offset_x=self.offset_x, offset_z=self.offset_z,
+            modal=self.modal,
+            rpm=rpm,
+            css=self.modal.surface_speed if self.modal.css else None,
+            action=action,
+        )  # fmt: skip

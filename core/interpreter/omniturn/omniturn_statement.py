@@ -1,0 +1,255 @@
+"""One line ready to run: its words sorted by what they do, and refused where they may not stand together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from core.interpreter.omniturn import code_table
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Line, Word, other_controls
+from core.language.omniturn.plane_switching_lines import PlaneLine
+
+PlainMove = tuple[float | None, float | None]
+"""X and Z as written of a line that holds nothing else: most lines of a long program."""
+
+CodedMove = tuple[float | None, float | None, bool, int, float | None]
+"""X, Z, whether one of them has a fifth decimal, 0 or 1 for G00 or G01 (-1: none), F; all as written."""
+
+_C_WORDS = frozenset({"C", "CA", "CI"})
+UNREADABLE = "unreadable"
+PLANE = "plane"
+
+
+@dataclass(slots=True)
+class Statement:
+    """A line ready to run. ``words`` by letter (G and M apart); ``parts`` the texts of its blocks."""
+
+    line: int
+    text: str
+    words: dict[str, Word] = field(default_factory=dict)
+    modal: tuple[int, ...] = ()
+    one_shot: int | None = None
+    m: int | None = None
+    code: Word | None = None  # the one-shot word
+    m_word: Word | None = None
+    flow: str = ""  # a key of FLOW_WORDS, UNREADABLE, or PLANE
+    comment: str | None = None
+    block_delete: bool = False
+    parts: dict[str, str] | None = None
+    simple: bool = False  # nothing but a move, its feed and G00…G03
+    plane: PlaneLine | None = None  # a line of plane switching
+
+    @property
+    def moves(self) -> bool:
+        """Whether the line asks the slides to move."""
+        return self.one_shot in code_table.ARCS or (
+            self.one_shot is None and ("X" in self.words or "Z" in self.words)
+        )
+
+    @property
+    def turns(self) -> bool:
+        """Whether the line holds C, which turns the spindle where that is locked."""
+        return self.one_shot is None and not self.flow and not _C_WORDS.isdisjoint(self.words)
+
+    @property
+    def locks(self) -> bool:
+        """Whether the line makes the spindle the axis C."""
+        return self.one_shot == 89 or self.m in code_table.M_POSITIONING
+
+    @property
+    def executable(self) -> bool:
+        """Whether there is anything on the line besides a comment."""
+        return bool(self.words or self.modal or self.code or self.m_word or self.flow)
+
+    def value(self, letter: str) -> float | None:
+        """Number of a word, None where the line does not hold it."""
+        word = self.words.get(letter)
+        return None if word is None else word.value
+
+    def column(self, letter: str) -> int:
+        """Column of a word, 0 where the line does not hold it."""
+        word = self.words.get(letter)
+        return 0 if word is None else word.column
+
+    def part(self, name: str) -> str:
+        """Text of one of the blocks that the line makes."""
+        return self.text if self.parts is None else self.parts.get(name, self.text)
+
+
+ReadyLine = PlainMove | CodedMove | Statement | None
+"""A line to run: a move of plain numbers, anything else, or nothing at all."""
+
+# --- Words of a line → a statement; what may not stand together on a line is refused here.
+
+
+_SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
+_SIMPLE_MODAL = frozenset({0, 1})
+
+
+def statement(line: Line) -> Statement:
+    """The line made ready. Raises ProgramError for what may not stand together on a line."""
+    if line.errors:
+        return unreadable(line)
+    made = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
+    if line.comment is not None and line.comment.lstrip().startswith("~"):
+        what = f"({line.comment.strip()})"
+        message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
+        place = line.comment_column
+        raise ProgramError(
+            Diagnostic(line.number, place, Severity.ERROR, "plane-entry", message, "Write it alone.")
+        )
+    _sort(made, line)
+    if line.comment is None and not made.m_word and _SIMPLE.issuperset(made.words):
+        made.simple = made.moves and _SIMPLE_MODAL.issuperset(made.modal)
+    if not made.simple:
+        made.flow = _flow(made)
+        _name_parts(made, line)
+    _check_words(made, line)
+    return made
+
+
+def unreadable(line: Line) -> Statement:
+    """A line that cannot run; X and Z of a move are kept, so that the lines after it are judged well."""
+    words: dict[str, Word] = {}
+    if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
+        words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
+    made = Statement(line.number, line.text, words, flow=UNREADABLE, block_delete=line.block_delete)
+    made.modal = tuple(code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words))
+    return made
+
+
+def _sort(made: Statement, line: Line) -> None:
+    modal: list[Word] = []
+    words = made.words
+    for word in line.words:
+        letter = word.letter
+        if letter == "G":
+            _sort_g(made, word, modal)
+        elif letter == "M":
+            if made.m_word is not None:
+                raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
+            made.m, made.m_word = int(word.value or 0), word
+        elif letter in words:
+            raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
+        else:
+            words[letter] = word
+    if modal:
+        made.modal = tuple(int(word.value or 0) for word in modal)
+        _check_groups(made, line, modal)
+
+
+def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
+    groups: dict[str, int] = {}
+    for word, code in zip(modal, made.modal, strict=True):
+        if groups.setdefault(code_table.MODAL_GROUPS[code], code) != code:
+            what = f"holds two codes of one group ({code_table.MODAL_GROUPS[code]})"
+            raise _refused(line, word, "modal-conflict", what, "Keep one of them.")
+
+
+def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
+    code = int(word.value or 0)
+    if code in code_table.MODAL_GROUPS:
+        modal.append(word)
+    elif code not in code_table.ONE_SHOT:
+        habit, hint = other_controls.here(word.text.upper()) or ("", "Look it up.")
+        message = f"{word.text} is no code of this control. {habit}".rstrip()
+        raise ProgramError(Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, hint))
+    elif made.code is not None:
+        message = f"{made.code.text} and {word.text} cannot act on one line."
+        raise ProgramError(
+            Diagnostic(made.line, word.column, Severity.ERROR, "two-one-shots", message, "Split the line.")
+        )
+    else:
+        made.one_shot, made.code = code, word
+
+
+def _flow(made: Statement) -> str:
+    for letter in ("LS", "LF", "}", "RF"):
+        if letter in made.words:
+            return letter
+    if made.m in code_table.M_FLOW:
+        return f"M{made.m}"
+    return "P" if "P" in made.words and made.code is None else ""
+
+
+def _check_words(made: Statement, line: Line) -> None:
+    if made.flow:
+        _check_flow(made, line)
+        return
+    allowed = code_table.WORDS.get(made.one_shot, code_table.WORDS[None])
+    if allowed.issuperset(made.words):
+        return
+    for letter, word in made.words.items():
+        if letter not in allowed:
+            habit = other_controls.here(letter)
+            if habit is not None:
+                message = f"{word.text} has no meaning here. {habit[0]}"
+                fault = Diagnostic(line.number, word.column, Severity.ERROR, "word-unused", message, habit[1])
+                raise ProgramError(fault)
+            what = f"holds {word.text}, which nothing on it takes"
+            raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
+
+
+def _check_flow(made: Statement, line: Line) -> None:
+    allowed = code_table.FLOW_WORDS[made.flow]
+    for word in line.words:
+        if word.letter not in allowed:
+            what = f"holds {word.text} besides {made.flow}, which stands alone"
+            raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
+    if made.flow in {"LS", "LF", "}", "M99", "RF"} and line.block_delete:
+        what = f"deletes {made.flow}, without which the rest has no meaning"
+        raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
+    for letter in allowed - {"M", "LF", "RF"}:
+        if made.value(letter) is None:
+            what = f"holds {made.flow} without {letter}"
+            raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
+    if made.flow == "M97":
+        _check_condition(made, line)
+
+
+def _check_condition(made: Statement, line: Line) -> None:
+    if made.value("C") not in {0, 1}:
+        what = f"holds {made.words['C'].text}, which is neither C1 (on) nor C0 (off)"
+        raise _refused(line, made.words["C"], "condition", what, "Write C1 or C0.")
+    number = made.value("I")
+    if number is None or number < 1 or number != int(number):
+        what = f"holds {made.words['I'].text}, which is no number of an input"
+        raise _refused(line, made.words["I"], "input-number", what, "Write the input's number.")
+
+
+def _name_parts(made: Statement, line: Line) -> None:
+    """Each block that the line makes gets the words it comes from; a single block gets the line."""
+    groups: dict[str, str] = {}
+    for word in line.words:
+        name = _group(made, word)
+        groups[name] = groups.get(name, "") + word.text
+    own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
+    if (
+        made.moves
+        or made.turns
+        or made.one_shot == 4
+        or made.one_shot in code_table.CYCLES | code_table.THREADS
+    ):
+        own.append("move")
+    if len(own) > 1:
+        if "move" not in own and "move" in groups:
+            groups[own[0]] = groups.pop("move") + groups[own[0]]
+        made.parts = groups
+
+
+def _group(made: Statement, word: Word) -> str:
+    letter = word.letter
+    if letter == "T" or (letter == "D" and "T" in made.words):
+        return "tool"
+    if made.one_shot in code_table.FRAME and (letter in {"X", "Z"} or word is made.code):
+        return "frame"
+    if letter == "M":
+        return "spindle" if made.m in {3, 4} else "m"
+    if letter == "S" and not {76, 77}.intersection(made.modal) and not made.turns:
+        return "m" if made.locks else "spindle"
+    return "move"
+
+
+def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
+    message = f"The line {what}."
+    return ProgramError(Diagnostic(line.number, word.column, Severity.ERROR, code, message, hint))

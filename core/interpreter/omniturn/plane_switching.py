@@ -1,0 +1,248 @@
+"""Plane switching: X and C, or Z and C, as the axes of a virtual mill with its own frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import atan2, degrees, dist, hypot, pi
+
+import numpy as np
+
+from core.geometry.face import Face
+from core.geometry.mill import CENTRE, PlaneMove, Spot
+from core.geometry.side import Side
+from core.interpreter import units
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Mill
+from core.interpreter.omniturn.c_axis import rotation
+from core.interpreter.omniturn.dwell import warn_of_short_dwell
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.straight_moves import mill_step
+from core.language.diagnostics import ProgramError
+
+# --- Moves of the virtual mill: where they lead, through the axis too, and their blocks.
+
+
+_TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
+_SAME_PLANE_MOVES = 1e-9
+_TOLD_TURN = 1.0  # degrees that C turns at the centre without a word about it
+_ENDS = np.array([0.0, 1.0])
+
+
+def plane_move(state: State, made: Statement, mill: Mill) -> Iterator[Block]:
+    """The blocks of a line that moves the mill from where it stands. Raises ProgramError."""
+    assert made.plane is not None
+    warn_of_short_dwell(state)
+    target = _target(state, made, mill)
+    whole = PlaneMove(mill.frame, (mill.x, mill.y, mill.z), target, mill.theta)
+    if made.plane.arc:
+        whole = _arc(state, made, whole)
+    if state.modal.feed is None:
+        if "feed-missing" not in state.told:
+            state.told.add("feed-missing")
+            raise plane_refusal(
+                made, "feed-missing", "The move has no feed.", "Write F on this line or before it."
+            )
+        return
+    for leg in _legs(state, made, whole):
+        yield from _towards(state, made, leg)
+        yield _block(state, made, leg)
+
+
+def _target(state: State, made: Statement, mill: Mill) -> Spot:
+    side = isinstance(mill.frame, Side)
+    x, y = plane_length(state, made, "X", mill.x), plane_length(state, made, "Y", mill.y)
+    z = plane_length(state, made, "Z", mill.z * 2 if side else mill.z)
+    if side and z < 0.0:
+        text = f"Z{plane_shown(state, z)} lies beyond the centre: Z is the diameter that the tip touches."
+        raise plane_refusal(made, "plane-side", text, "Correct Z.", "Z")
+    return x, y, z / 2 if side else z
+
+
+def _arc(state: State, made: Statement, line: PlaneMove) -> PlaneMove:
+    assert made.plane is not None
+    centre = plane_length(state, made, "I", 0.0), plane_length(state, made, "J", 0.0)
+    first, last = dist(line.start[:2], centre), dist(line.end[:2], centre)
+    if first <= _SAME_PLANE_MOVES or abs(first - last) > _TOLERANCE:
+        begin, end = plane_shown(state, first), plane_shown(state, last)
+        text = f"The arc's radius is {begin} at its start and {end} at its end."
+        hint = "I and J are the centre's coordinates."
+        raise plane_refusal(made, "arc-radius", text, hint, "G")
+    return replace(line, centre=centre, clockwise=made.plane.arc == 2)
+
+
+def _legs(state: State, made: Statement, whole: PlaneMove) -> list[PlaneMove]:
+    """The way as it is, or in two where it goes through the axis. Raises where the tool cannot reach."""
+    if isinstance(whole.frame, Side):
+        return [whole]
+    share = whole.nearest()
+    rho, h = whole.rho(share), abs(whole.frame.h)
+    if rho < h - _SAME_PLANE_MOVES:
+        near, least = plane_shown(state, rho), plane_shown(state, h)
+        text = f"The way comes within {near} of the axis; with this H the tool reaches {least}."
+        raise plane_refusal(made, "plane-reach", text, "The tool's centre line stands H beside the axis.")
+    if rho > CENTRE or whole.length <= CENTRE:
+        return [whole]
+    z = float(whole.points(np.array([share]))[0, 2])
+    ends = [hypot(*end[:2]) <= CENTRE for end in (whole.start, whole.end)]
+    if any(ends):
+        return [whole]
+    return [replace(whole, end=(0.0, 0.0, z)), replace(whole, start=(0.0, 0.0, z))]
+
+
+def _towards(state: State, made: Statement, leg: PlaneMove) -> Iterator[Block]:
+    """Standing on the axis C turns until the way leads out along X; nothing is done elsewhere."""
+    mill = state.modal.mill
+    assert mill is not None
+    if isinstance(leg.frame, Side) or hypot(*leg.start[:2]) > CENTRE or leg.length <= CENTRE:
+        return
+    x, y = leg.points(_ENDS)[1][:2].tolist()
+    if leg.centre is not None:
+        i, j = leg.centre
+        x, y = (-j, i) if leg.clockwise else (j, -i)
+    turn = (atan2(y, x) - mill.theta + pi) % (2 * pi) - pi
+    if abs(abs(turn) - pi) < 1e-6:
+        turn = abs(turn)  # straight through: C counts down, as it does beside a centre on the left
+    state.adopt(state.modal._replace(mill=mill._replace(theta=mill.theta + turn)))
+    if abs(degrees(turn)) <= _SAME_PLANE_MOVES:
+        return
+    if abs(degrees(turn)) > _TOLD_TURN:
+        text = f"The way leads through the axis: C turns by {abs(degrees(turn)):.0f} degrees there."
+        state.log.warn(
+            made.line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis."
+        )
+    yield rotation(state, made.line, made.text, state.c - degrees(turn))
+
+
+def _block(state: State, made: Statement, leg: PlaneMove) -> Block:
+    mill = state.modal.mill
+    assert mill is not None
+    leg = replace(leg, theta=mill.theta)
+    (x, z, c) = leg.machine(_ENDS)[1].tolist()
+    theta = leg.theta if isinstance(leg.frame, Side) else float(leg.thetas(leg.points(_ENDS), _ENDS)[1])
+    x0, z0, c0 = state.x, state.z, state.c
+    state.px, state.pz, state.c = x, z, c
+    state.x, state.z = x + state.dx, z + state.dz
+    state.adopt(state.modal._replace(mill=Mill(leg.frame, *leg.end, theta, False)))
+    state.blocks += 1
+    kind = Kind.PLANE_ARC if leg.centre is not None else Kind.PLANE_LINE
+    return Block(
+        n=state.blocks, line=made.line, kind=kind, text=made.text,
+        x0=x0, z0=z0, c0=c0, x=state.x, z=state.z, c=c,
+        offset_x=state.offset_x, offset_z=state.offset_z, modal=state.modal,
+        feed=state.modal.feed or 0.0, clockwise=leg.clockwise, plane=leg,
+    )  # fmt: skip
+
+
+def plane_length(state: State, made: Statement, letter: str, default: float) -> float:
+    """A word in mm as written: a length, or the diameter of D and of Z on the side."""
+    assert made.plane is not None
+    word = made.plane.words.get(letter)
+    return default if word is None else mill_step(state, made.line, word)
+
+
+def plane_shown(state: State, mm: float) -> str:
+    """A length of the mill as the program's reader knows it."""
+    return units.length(mm, metric=state.modal.metric)
+
+
+def plane_refusal(made: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
+    """An error of a plane's line, at the column of its word where one is to blame."""
+    assert made.plane is not None
+    word = made.plane.words.get(letter)
+    return ProgramError(refusal(made.line, word.column if word else 1, code, text, hint))
+
+
+_LEAST_FEED = 0.00005 * units.MM_PER_INCH / 60
+_SAME = 1e-9
+
+
+def plane_line(state: State, made: Statement) -> Iterator[Block]:
+    """One line of plane switching. Raises ProgramError for what cannot be done there."""
+    line, mill = made.plane, state.modal.mill
+    assert line is not None
+    if line.name == "END":
+        state.adopt(state.modal._replace(mill=None))
+    elif line.name:
+        _enter(state, made, line.name)
+    elif mill is None:
+        return  # the entry was refused
+    elif "H" in line.words:
+        _height(state, made, mill)
+    elif "D" in line.words:
+        _diameter(state, made, mill)
+    else:
+        _feed(state, made)
+        if not {"X", "Y", "Z", "G"}.isdisjoint(line.words):
+            yield from plane_move(state, made, mill)
+
+
+def _enter(state: State, made: Statement, name: str) -> None:
+    modal = state.modal
+    if not modal.c_locked:
+        raise plane_refusal(
+            made, "c-unlocked", f"(~{name}) turns C, which is not locked.", "Write M19 before."
+        )
+    if modal.per_rev:
+        text = f"(~{name}) under G95: a plane is fed in inches a minute."
+        raise plane_refusal(made, "plane-feed-mode", text, "Write G94 with F before.")
+    if modal.nose_comp != 40:
+        raise plane_refusal(
+            made, "plane-nose-comp", f"(~{name}) with nose compensation on.", "Write G40 before."
+        )
+    if state.tool_line:
+        text = f"The T on line {state.tool_line} has not been moved to X and Z."
+        raise plane_refusal(made, "tool-first-move", text, "Move there before the plane.")
+    if state.px > -_SAME:
+        text = f"(~{name}) needs the tool on the negative X side, and X is {plane_shown(state, state.px)}."
+        raise plane_refusal(made, "plane-side", text, "Move to X- before it.")
+    if name == "PLXC":
+        mill = Mill(Face(state.c), -state.px, 0.0, state.pz)
+    else:
+        mill = Mill(Side(state.c, state.pz, -2.0 * state.px), 0.0, 0.0, -state.px)
+    feed = None if modal.rapid else modal.feed  # a mill has no rapid
+    state.adopt(modal._replace(mill=mill, rapid=False, feed=feed))
+
+
+def _height(state: State, made: Statement, mill: Mill) -> None:
+    if isinstance(mill.frame, Side):
+        raise plane_refusal(made, "plane-word", "H belongs to (~PLXC).", "Take it out.", "H")
+    if not mill.fresh:
+        raise plane_refusal(made, "plane-h-late", "H comes after a move or F.", "Write it first.", "H")
+    h = plane_length(state, made, "H", 0.0)
+    frame = replace(mill.frame, h=h)
+    state.adopt(state.modal._replace(mill=Mill(frame, mill.x, h, mill.z, atan2(h, mill.x), False)))
+
+
+def _diameter(state: State, made: Statement, mill: Mill) -> None:
+    if isinstance(mill.frame, Face):
+        raise plane_refusal(made, "plane-word", "D belongs to (~PLZC).", "Take it out.", "D")
+    if abs(mill.y) > _SAME:
+        text = f"D comes where Y is {plane_shown(state, mill.y)}: it would move Y."
+        raise plane_refusal(made, "plane-d-late", text, "Write it where Y is 0.", "D")
+    diameter = plane_length(state, made, "D", 0.0)
+    if diameter <= 0.0:
+        raise plane_refusal(made, "plane-diameter", "D must be a diameter over 0.", "Correct it.", "D")
+    state.adopt(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter=diameter))))
+
+
+def _feed(state: State, made: Statement) -> None:
+    assert made.plane is not None
+    word = made.plane.words.get("F")
+    if word is None or word.value is None:
+        return
+    feed, most = state.feed_word(word.value), state.setup.limits.max_feed
+    modal, mill = state.modal, state.modal.mill
+    kept = min(max(feed, _LEAST_FEED), most)
+    state.adopt(
+        modal._replace(feed=kept, cut_feed=kept, cut_per_rev=False, mill=mill and mill._replace(fresh=False))
+    )
+    state.told.discard("feed-missing")
+    if not _LEAST_FEED * (1 - 1e-9) <= feed <= most * (1 + 1e-9):
+        low = units.feed(_LEAST_FEED, per_rev=False, metric=modal.metric)
+        high = units.feed(most, per_rev=False, metric=modal.metric)
+        shown = units.feed(feed, per_rev=False, metric=modal.metric)
+        text = f"Feed {shown} is out of range: {low} to {high}."
+        raise plane_refusal(made, "feed-range", text, "Correct F.", "F")

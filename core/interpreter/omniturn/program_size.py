@@ -1,0 +1,156 @@
+"""How much a program would execute, worked out before it runs: loops of loops are refused, not tried."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from core.interpreter.diagnostic_log import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES, refusal
+from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.loops_and_subroutines import call_target
+from core.interpreter.omniturn.omniturn_program import Program
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.plain_moves import LongProgram, ReadyLines
+from core.language.diagnostics import Diagnostic
+
+# Blocks of the shortest cycle of each code; what there is more of them is counted while running.
+_LEAST_OF_CYCLE = {33: 4, 34: 4, 74: 4, 75: 4, 78: 3, 81: 2, 83: 2}
+
+
+class Count(NamedTuple):
+    """Elementary blocks and executed lines, and the line of the loop that is to blame (0: none)."""
+
+    blocks: int = 0
+    lines: int = 0
+    worst: int = 0
+
+
+def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
+    """The error for a program that would execute too much, or None.
+
+    Loops multiply, subroutines count where they are called, conditional calls as the inputs stand now.
+    """
+    if not program.structure.loop_ends and not program.structure.subroutines:
+        return _refusal(Count(len(program.steps), len(program.steps)))
+    counter = _Counter(program, inputs)
+    return _refusal(counter.region(0, program.structure.main_end, 0))
+
+
+def _refusal(count: Count) -> Diagnostic | None:
+    hint = "Lower the counts of the loops."
+    if count.blocks > MOST_BLOCKS:
+        text = f"The program makes {_written(count.blocks)} blocks; {MOST_BLOCKS:,} are the most."
+        return refusal(count.worst or 1, 0, "too-many-blocks", text, hint)
+    if count.lines > MOST_LINES:
+        text = f"The program executes {_written(count.lines)} lines; {MOST_LINES:,} are the most."
+        return refusal(count.worst or 1, 0, "too-many-lines", text, hint)
+    return None
+
+
+def _written(count: int) -> str:
+    """The count in full up to 10^24; deep nests of loops make numbers that no line and no reader holds."""
+    tens = int(math.log10(count))
+    return f"{count:,}" if tens < 24 else f"about 10^{tens}"
+
+
+class _Counter:
+    def __init__(self, program: Program, inputs: Callable[[str], bool]) -> None:
+        self._program = program
+        self._inputs = inputs
+        self._known: dict[tuple[int, int], Count] = {}
+
+    def region(self, start: int, end: int, depth: int) -> Count:
+        """What the lines from ``start`` to before ``end`` execute, called ``depth`` deep."""
+        open_loops: list[tuple[int, int, Count]] = []  # where it ends, how often it runs, what came before
+        total = Count()
+        loop_ends, steps = self._program.structure.loop_ends, self._program.steps
+        at = start
+        while at < end:
+            moves = _moves(steps, at, end)
+            if moves:
+                total = Count(total.blocks + moves, total.lines + moves, total.worst)
+                at += moves
+                continue
+            step = steps[at]
+            assert not isinstance(step, tuple)
+            if step is not None:
+                if step.flow == "LS" and at in loop_ends:
+                    open_loops.append((loop_ends[at], int(step.value("LS") or 1), total))
+                    total = Count()
+                elif open_loops and at == open_loops[-1][0]:
+                    total = self._close(*open_loops.pop(), total)
+                else:
+                    total = _sum(total, self._line(step, depth))
+            at += 1
+        return total
+
+    def _close(self, end: int, times: int, before: Count, body: Count) -> Count:
+        blocks, lines = body.blocks * times, (body.lines + 1) * times
+        worst = body.worst
+        if not worst and (blocks > MOST_BLOCKS or lines > MOST_LINES):
+            worst = self._program.structure.loop_starts[end] + 1
+        return _sum(before, Count(blocks, lines, worst))
+
+    def _line(self, made: Statement, depth: int) -> Count:
+        if made.flow not in code_table.CALLS:
+            return Count(blocks_of(made), 1)
+        asks = made.flow in code_table.ASKS
+        if depth >= DEEPEST_CALL or (asks and not takes_call(made, self._inputs)):
+            return Count(int(asks), 1)
+        return _sum(Count(int(asks), 1), self._subroutine(call_target(made), depth + 1))
+
+    def _subroutine(self, number: int, depth: int) -> Count:
+        structure = self._program.structure
+        if number not in structure.subroutines:
+            return Count()
+        key = number, depth
+        if key not in self._known:
+            start = structure.subroutines[number] + 1
+            end = structure.subroutine_ends.get(number, start)
+            self._known[key] = self.region(start, end, depth)
+        return self._known[key]
+
+
+def _moves(steps: ReadyLines, at: int, end: int) -> int:
+    """How many lines from this one on are known to be plain moves: 0 where it is none."""
+    if isinstance(steps, LongProgram) and steps.moves_until(at) > at:
+        return min(steps.moves_until(at), end) - at
+    return int(isinstance(steps[at], tuple))
+
+
+def _sum(a: Count, b: Count) -> Count:
+    blocks, lines = a.blocks + b.blocks, a.lines + b.lines
+    worst = a.worst or b.worst
+    return Count(blocks, lines, worst)
+
+
+def blocks_of(made: Statement) -> int:
+    """Elementary blocks that a line makes at most; of a cycle, at least."""
+    if made.flow:
+        return 1 if made.plane is not None and {"X", "Y", "Z", "G"}.intersection(made.plane.words) else 0
+    acts = ("T" in made.words) + (made.one_shot in code_table.FRAME) + (made.m is not None)
+    speaks = "S" in made.words and made.m not in {3, 4} and not {76, 77}.intersection(made.modal)
+    return (
+        acts
+        + speaks
+        + corner_words(made)
+        + (made.moves or made.one_shot == 4)
+        + _LEAST_OF_CYCLE.get(made.one_shot or 0, 0)
+    )
+
+
+def corner_words(made: Statement) -> int:
+    """Blocks that C and R put between this move and the next; C may be an axis word instead."""
+    return int(made.one_shot is None and not {"C", "R"}.isdisjoint(made.words))
+
+
+def terminal(made: Statement) -> str:
+    """The input that a conditional call asks."""
+    return "TB2-9" if made.flow == "M95" else f"{made.value('I'):.0f}"
+
+
+def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:
+    """Whether a conditional call is made as the inputs stand."""
+    wanted = made.flow == "M95" or made.value("C") == 1
+    return inputs(terminal(made)) == wanted

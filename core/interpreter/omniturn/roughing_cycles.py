@@ -1,0 +1,330 @@
+"""G74, G75 and G78: a box, or the area before a contour, taken off in passes parallel to Z."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Sequence
+from math import ceil, dist
+from typing import NamedTuple
+
+from core.geometry.arcs import Point
+from core.geometry.clip import Area, Stretch
+from core.geometry.contour import Arc, Element, Line
+from core.geometry.meet import clearance, intersections
+from core.geometry.trim import TrimError
+from core.interpreter.omniturn.cycle_contour import read_contour
+from core.interpreter.omniturn.cycle_motions import (
+    LIFT,
+    Move,
+    check_count,
+    left_over,
+    name,
+    positive,
+    refused,
+)
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.straight_moves import on_step
+
+# --- The motions that take an area off down to a contour; in depth and way as seen from the start point.
+
+
+_SAME = 1e-6  # mm
+_NEARER = 0.002  # mm; what a way beside the contour may lack
+_TOUCHING = 0.02  # mm; where U is 0, the ways end on the contour
+
+
+class StartNearError(Exception):
+    """On its way to the contour or back the tool would come nearer to it than it may."""
+
+
+class Rougher:
+    """Collects ``moves``: passes of growing depth by ``cut``, then ``finish`` along the contour.
+
+    A stretch is entered at the feed from where the pass before it ended; between stretches the tool runs
+    ``lift`` mm above what is still there, at ``rapid`` mm/s.
+    """
+
+    def __init__(self, area: Area, rapid: float, lift: float) -> None:
+        self.moves: list[Move] = []
+        self.plunged = False
+        self._area = area
+        self._rapid, self._lift = rapid, lift
+        self._at = 0.0, 0.0
+        self._done: list[tuple[float, list[Stretch]]] = []
+        self._free = area.stretches(0.0)
+
+    def cut(self, depth: float) -> None:
+        """One pass at a depth greater than those before it, through all its stretches."""
+        stretches = self._area.stretches(depth)
+        before = self._done[-1][0] if self._done else 0.0
+        for start, end in stretches:
+            self._over(start)
+            self._sink(before)
+            self.plunged = self.plunged or start > 0
+            self._feed(depth, self._at[1])
+            self._feed(depth, end)
+        self._done.append((depth, stretches))
+
+    def finish(self, *, backwards: bool) -> None:
+        """Along the contour, then back to the start. Raises StartNearError."""
+        path = self._area.path
+        if backwards:
+            path = [element.reversed() for element in reversed(path)]
+        begun = len(self.moves)
+        here = self._at
+        self._approach(path[0].start, front=not backwards)
+        self._check(here, self.moves[begun:])
+        self._along(path)
+        begun, here = len(self.moves), self._at
+        self._leave(front=backwards)
+        self._check(here, self.moves[begun:])
+
+    def _approach(self, to: Point, *, front: bool) -> None:
+        """To the start of the path: its front end is reached from ahead of the area, its back from above."""
+        way = min(to[1], 0.0) if front else to[1]
+        self._over(way)
+        done = [depth for depth, stretches in self._done if _covering(stretches, way, to[1])]
+        if self._done:
+            self._sink(min(max(done, default=0.0), to[0]))
+        elif front:  # at its back end the tool would run into what may still be there
+            self._sink(to[0])
+        self._feed(to[0], way)
+        self._feed(*to)
+
+    def _along(self, path: list[Element]) -> None:
+        for element in path:
+            if isinstance(element, Arc):
+                self.moves.append(Move(*element.end, None, element.centre, element.clockwise))
+                self._at = element.end
+            else:
+                self._feed(*element.end)
+
+    def _leave(self, *, front: bool) -> None:
+        if front:
+            self._feed(self._at[0], min(self._at[1], 0.0))  # no pass need have been so deep here
+        else:
+            self._over(0.0)
+        self._go(0.0, self._at[1])
+        self._go(0.0, 0.0)
+
+    def _over(self, way: float) -> None:
+        """Run to another place above all that is still there."""
+        if abs(way - self._at[1]) < _SAME:
+            return
+        level = min(self._clear(self._at[1], way), self._at[0])
+        self._go(level, self._at[1])
+        self._go(level, way)
+
+    def _sink(self, depth: float) -> None:
+        """Down to the lift above a depth that has been cut here."""
+        if depth - self._lift > self._at[0]:
+            self._go(depth - self._lift, self._at[1])
+
+    def _clear(self, a: float, b: float) -> float:
+        """The depth at which the tool may run between two places: the lift above the last pass that did."""
+        low, high = min(a, b), max(a, b)
+        for depth, stretches in reversed(self._done):
+            if _covering(stretches, low, high):
+                return depth - self._lift
+        return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top - self._lift)
+
+    def _go(self, depth: float, way: float) -> None:
+        self.moves.append(Move(depth, way, self._rapid))
+        self._at = depth, way
+
+    def _feed(self, depth: float, way: float) -> None:
+        self.moves.append(Move(depth, way))
+        self._at = depth, way
+
+    def _check(self, here: Point, moves: list[Move]) -> None:
+        for move in moves:
+            there = move.x, move.z
+            if dist(here, there) > _SAME and self._near(here, there):
+                raise StartNearError
+            here = there
+
+    def _near(self, here: Point, there: Point) -> bool:
+        """Whether a way along one axis is nearer to the contour than it may be; where U is 0, crosses it."""
+        left, way = self._area.left, Line(here, there)
+        if left > _NEARER:
+            return any(clearance(way, element) < left - _NEARER for element in self._area.contour)
+        depth, ways = max(here[0], there[0]) - _TOUCHING, (here[1], there[1])
+        if way.length <= 2 * _TOUCHING:
+            return False
+        if _covering(self._area.stretches(depth), max(min(ways), 0.0), max(ways)):
+            return False
+        inner = Line(way.point(_TOUCHING), way.point(way.length - _TOUCHING))
+        return any(intersections(inner, element) for element in self._area.contour)
+
+
+def _covering(stretches: list[Stretch], low: float, high: float) -> bool:
+    """Whether one of the stretches holds the way from ``low`` to ``high``."""
+    at = bisect_left(stretches, low + _SAME, key=lambda stretch: stretch[0]) - 1
+    return at >= 0 and stretches[at][1] >= high - _SAME
+
+
+# --- A contour as the start point of a cycle sees it: depth along X and way along Z, both growing towards it.
+
+
+class ContourView(NamedTuple):
+    """``x`` and ``z`` are +1 or -1; ``backwards``: the tool is left of the contour as run from its end."""
+
+    start: Point
+    x: float
+    z: float
+    backwards: bool
+
+    def seen(self, contour: Sequence[Element]) -> list[Element]:
+        """The contour in depths and ways, so that the tool is on its left."""
+        elements = [self._element(element) for element in contour]
+        return [element.reversed() for element in reversed(elements)] if self.backwards else elements
+
+    def placed(self, move: Move) -> Move:
+        """A motion in depth and way back in the program's frame."""
+        centre = None if move.centre is None else self._out(move.centre)
+        x, z = self._out((move.x, move.z))
+        return Move(x, z, move.rapid, centre, move.clockwise == (self.x * self.z > 0) and centre is not None)
+
+    def _element(self, element: Element) -> Element:
+        start, end = self._in(element.start), self._in(element.end)
+        if isinstance(element, Line):
+            return Line(start, end)
+        return Arc(start, end, self._in(element.centre), element.clockwise == (self.x * self.z > 0))
+
+    def _in(self, point: Point) -> Point:
+        return (point[0] - self.start[0]) * self.x, (point[1] - self.start[1]) * self.z
+
+    def _out(self, point: Point) -> Point:
+        return self.start[0] + point[0] * self.x, self.start[1] + point[1] * self.z
+
+
+def view_from(start: Point, first: Point, last: Point) -> ContourView:
+    """The view of a contour from ``first`` to ``last``, both in one quadrant of ``start``."""
+    a, b = _off(start, first), _off(start, last)
+    x = 1.0 if a[0] + b[0] > 0 else -1.0
+    z = 1.0 if a[1] + b[1] > 0 else -1.0
+    # The tool is on the left of a contour whose first end is the nearer one to the X axis through the start.
+    cross = (a[0] * b[1] - a[1] * b[0]) * x * z
+    return ContourView(start, x, z, backwards=cross < 0)
+
+
+def _off(start: Point, point: Point) -> Point:
+    return point[0] - start[0], point[1] - start[1]
+
+
+_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
+_MOST_ELEMENTS = 2_000
+_MOST_LOOKS = 200_000  # elements times passes: a few seconds
+
+
+def contour_moves(state: State, made: Statement, lines: Sequence[Statement]) -> list[Move]:
+    """The motions of G75 or G78 along the contour that ``lines`` describe, from the start and back to it.
+
+    Raises ProgramError where words are missing, or no tool can run so.
+    """
+    if "P" in made.words and made.value("P") is None:
+        text = "P does not say which subroutine describes the contour."
+        raise refused(made, "P", "word-missing", text, "Write its number after P.")
+    cut = positive(state, made, "I", "the greatest depth of cut") if made.one_shot == 75 else None
+    left = left_over(state, made)
+    contour = read_contour(state, made, lines)
+    if len(contour) > _MOST_ELEMENTS:
+        text = f"The contour has {len(contour):,} lines and arcs; {_MOST_ELEMENTS:,} are the most."
+        raise refused(made, "G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
+    view = _view(state, made, contour)
+    try:
+        area = Area(view.seen(contour), left)
+    except TrimError:
+        text = f"{name(made)} finds no unbroken way along the contour at the distance U."
+        raise refused(made, "U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
+    rougher = Rougher(area, state.modal.rapid_rate, LIFT)
+    if cut is not None:
+        _passes(state, made, rougher, area, cut, len(contour))
+    try:
+        rougher.finish(backwards=view.backwards)
+    except StartNearError:
+        text = "On the way from the start point to the contour and back the tool comes nearer to it than U."
+        hint = "Move the start point away from the contour."
+        raise refused(made, "G", "cycle-start-near", text, hint) from None
+    if area.turns_back:
+        text = "The contour runs back along Z: behind that edge the pass along it cuts all that is there."
+        state.log.warn(made.line, _column(made), "cycle-undercut", text, "Look whether the tool fits.")
+    return [view.placed(move) for move in rougher.moves]
+
+
+def _passes(state: State, made: Statement, rougher: Rougher, area: Area, cut: float, elements: int) -> None:
+    if area.deepest <= 0:
+        text = "The contour leaves nothing to cut between it and the start point."
+        raise refused(made, "G", "cycle-nothing", text, "Start farther from the contour in X.")
+    count = ceil(area.deepest / cut - _WHOLE)
+    check_count(made, "I", count, "passes")
+    if count * elements > _MOST_LOOKS:
+        text = f"{count:,} passes beside a contour of {elements:,} lines and arcs are too many to work out."
+        raise refused(made, "I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
+    for k in range(1, count + 1):
+        rougher.cut(area.deepest * k / count)
+    if rougher.plunged:
+        text = "The contour rises and falls again: the tool plunges into the material behind the rise."
+        state.log.warn(made.line, _column(made), "cycle-plunge", text, "Look whether the tool can do so.")
+
+
+def _view(state: State, made: Statement, contour: list[Element]) -> ContourView:
+    """The contour as the start point sees it. Raises ProgramError (cycle-quadrant, cycle-nothing)."""
+    start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
+    for axis, letter in ((0, "X"), (1, "Z")):
+        to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
+        if to_first * to_last < 0:
+            text = f"The start point lies between the ends of the contour in {letter}, not outside of both."
+            raise refused(made, "G", "cycle-quadrant", text, "Move the start point beyond both ends.")
+        if to_first == to_last == 0:
+            text = f"Both ends of the contour have the {letter} of the start point: there is no area to cut."
+            raise refused(made, "G", "cycle-nothing", text, "Move the start point away from the contour.")
+    return view_from(start, first, last)
+
+
+def _column(made: Statement) -> int:
+    return made.code.column if made.code else 0
+
+
+# --- G74: a rectangle taken off in passes parallel to Z.
+
+
+_WHOLE_BOX_CYCLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
+
+
+def box_moves(state: State, made: Statement) -> list[Move]:
+    """Equal passes from the start's X to X, none deeper than I, U left on a side; back to the start.
+
+    The tool goes in at the feed: behind a shoulder it does so in material. Raises ProgramError.
+    """
+    x = _corner(state, made, "X", state.x, state.dx)
+    z = _corner(state, made, "Z", state.z, state.dz)
+    cut, left = positive(state, made, "I", "the greatest depth of cut"), left_over(state, made)
+    towards = 1.0 if x > state.x else -1.0
+    depth = abs(x - state.x) - left
+    if depth <= 0:
+        text = f"{made.words['U'].text} leaves nothing of the box to cut."
+        raise refused(made, "U", "cycle-nothing", text, "U is less than the way from the start to X.")
+    count = ceil(depth / cut - _WHOLE_BOX_CYCLE)
+    check_count(made, "I", count, "passes")
+    rapid = state.modal.rapid_rate
+    moves: list[Move] = []
+    for k in range(1, count + 1):
+        level = state.x + towards * depth * k / count
+        off = level - towards * LIFT
+        moves += [Move(level, state.z), Move(level, z), Move(off, z, rapid), Move(off, state.z, rapid)]
+    return [*moves, Move(state.x, state.z, rapid)]
+
+
+def _corner(state: State, made: Statement, letter: str, start: float, offset: float) -> float:
+    """X or Z of the corner opposite to the start."""
+    value = on_step(state, made, letter)
+    if value is None:
+        text = f"{name(made)} needs {letter} of the corner opposite to the start point."
+        raise refused(made, letter, "word-missing", text, f"Add {letter}.")
+    end = value + (offset if state.absolute else start)
+    if end == start:
+        text = f"The box has no size along {letter}: its corner lies at the start point."
+        raise refused(made, letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
+    return end

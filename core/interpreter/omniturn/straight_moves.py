@@ -1,0 +1,189 @@
+"""Straight moves, and what every move shares: where it ends and what it needs."""
+
+from __future__ import annotations
+
+from math import copysign, floor, hypot, isfinite
+
+from core.interpreter import units
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.omniturn.feeds import check_move
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.language.diagnostics import ProgramError
+from core.language.omniturn import Word, lex_line
+
+_COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
+_DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
+WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
+
+
+def fast_move(state: State, line: int, text: str, step: PlainMove) -> Block:
+    """A straight move under a state that has passed all checks; X and Z as written, finer than no step."""
+    x, z = step
+    x0, z0 = state.x, state.z
+    if state.absolute:
+        if x is not None:
+            state.px = x * state.scale_x
+        if z is not None:
+            state.pz = z * state.scale_z
+    else:
+        state.px += (x or 0.0) * state.scale_x
+        state.pz += (z or 0.0) * state.scale_z
+    state.x = x1 = state.px + state.dx
+    state.z = z1 = state.pz + state.dz
+    if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
+        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+    state.blocks = n = state.blocks + 1
+    c = state.c
+    return Block(
+        n, line, state.kind, text, x0, z0, c, x1, z1, c, state.offset_x, state.offset_z,
+        state.modal, state.feed, state.per_rev, state.rpm,
+    )  # fmt: skip
+
+
+def plain_move(state: State, line: int, text: str, step: PlainMove) -> Block:
+    """A line of X and Z alone, with every check."""
+    # Four decimals lie on every step but a coarse one.
+    x, z = rounded(state, line, text, *step) if state.modal.coarse else step
+    return line_to(
+        state,
+        line,
+        text,
+        None if x is None else x * state.scale_x,
+        None if z is None else z * state.scale_z,
+    )
+
+
+def statement_move(state: State, made: Statement) -> Block:
+    """The straight move of a line."""
+    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    return line_to(state, made.line, made.part("move"), x, z)
+
+
+def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
+    """A straight move to words X and Z in mm, None where there is none."""
+    x0, z0 = state.x, state.z
+    go(state, x, z)
+    check_tool(state, line, x, z)
+    check_move(state, line, x0, state.x, hypot(state.x - x0, state.z - z0))
+    warn_of_title_rapid(state, line)
+    modal = state.modal
+    state.blocks += 1
+    # G95's limit depends on a speed that only constant surface speed changes from move to move.
+    state.fast = not modal.css and not modal.coarse and not state.told and not state.shape.active
+    return Block(
+        state.blocks, line, state.kind, text, x0, z0, state.c, state.x, state.z, state.c,
+        state.offset_x, state.offset_z, modal, state.feed, state.per_rev, rpm_at(state, state.x),
+        modal.surface_speed if modal.css else None,
+    )  # fmt: skip
+
+
+def go(state: State, x: float | None, z: float | None) -> None:
+    """Move the position to words X and Z (mm), by G90 or G91, with the secondary offset in it."""
+    if state.absolute:
+        state.px = state.px if x is None else x
+        state.pz = state.pz if z is None else z
+    else:
+        state.px += x or 0.0
+        state.pz += z or 0.0
+    state.x, state.z = state.px + state.dx, state.pz + state.dz
+
+
+def check_tool(state: State, line: int, x: float | None, z: float | None) -> None:
+    """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
+    tool_line, state.tool_line = state.tool_line, 0
+    if tool_line and (x is None or z is None):
+        where = f"the T on line {tool_line}" if tool_line > 0 else "the T"
+        text = f"The first move after {where} lacks {'X' if x is None else 'Z'}."
+        raise ProgramError(refusal(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it."))
+
+
+def warn_of_title_rapid(state: State, line: int) -> None:
+    """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
+    if state.title_rapid and state.modal.rapid:
+        text = f"This move is a rapid because of the G00 beside the comment on line {state.title_rapid}."
+        state.log.warn(line, 0, "title-rapid", text, "Write G01 if it is meant to cut.")
+    state.title_rapid = 0
+
+
+def on_step(state: State, made: Statement, letter: str) -> float | None:
+    """A length word in mm, X as a radius by G72/G73, rounded to the control's step with a warning."""
+    word = made.words.get(letter)
+    if word is None or word.value is None or not isfinite(word.value):
+        return None
+    value, finer = _nearest_step(state, letter, word.value)
+    if finer:
+        _warn_of_finer(state, made.line, word, value)
+    return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
+
+
+def mill_step(state: State, line: int, word: Word) -> float:
+    """A length of plane switching in mm, as written: never halved, rounded to the control's step."""
+    value = word.value or 0.0
+    step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
+    count = value / step
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)
+    if abs(count - whole) > max(WHOLE, abs(count) * 1e-12):
+        value = whole * step
+        text = f"{word.text} is finer than the step; {value:.5f} is used."
+        state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
+    return value * state.scale_z
+
+
+def rounded(state: State, line: int, text: str, x: float | None, z: float | None) -> PlainMove:
+    """X and Z of a line on the control's step, with a warning for each word that was not."""
+    new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
+    new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
+    if x_finer or z_finer:
+        for word in lex_line(line, text).words:
+            if word.letter not in {"X", "Z"}:
+                continue
+            value, finer = _nearest_step(state, word.letter, word.value or 0.0)
+            if finer:
+                _warn_of_finer(state, line, word, value)
+    return new_x, new_z
+
+
+def step_of(state: State, letter: str) -> float:
+    """The control's step in the unit of the program's numbers."""
+    modal = state.modal
+    if modal.metric:
+        return units.METRIC_STEP
+    return _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
+
+
+def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
+    """The number on the control's step, and whether it was not there before."""
+    step = step_of(state, letter)
+    count = value / step
+    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step goes away from zero
+    if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):
+        return value, False
+    return whole * step, True
+
+
+def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
+    name = "mm" if state.modal.metric else "in"
+    step = f"{step_of(state, word.letter):.5f}".rstrip("0")
+    text = f"{word.text} is finer than the step of {step} {name}; {value:.5f} is used."
+    state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
+
+
+# --- The modes that say what X and Z mean.
+
+
+def geometry_modes(state: State, made: Statement) -> None:
+    """Distance, units and X words of a line; the other groups belong to feed and spindle."""
+    if not made.modal:
+        return
+    modal = state.modal
+    for code in made.modal:
+        if code in {90, 91}:
+            modal = modal._replace(absolute=code == 90)
+        elif code in {70, 71}:
+            modal = modal._replace(metric=code == 71)
+        elif code in {72, 73}:
+            modal = modal._replace(diameter=code == 72)
+    state.adopt(modal)

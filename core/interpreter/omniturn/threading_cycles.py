@@ -1,0 +1,307 @@
+"""G33 and G34: a threading cycle → its passes, and the rapids between them.
+
+All lengths mm, X a radius. The formulas: docs/decisions/0009-threads.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import ceil, copysign, radians, tan
+
+from core.interpreter import units
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.interpreter.omniturn.straight_moves import check_tool, on_step
+from core.language.diagnostics import Diagnostic, ProgramError
+
+# --- The words of G33 and G34, and everything that has to be right before a thread may be cut.
+
+
+MOST_LEAD = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))  # by G36, G35, G35F2
+MOST_ANGLE = 30.0  # degrees
+_BARE_C = 29.0
+_MOST_PASSES = 10_000
+_ROUNDING = 1 + 1e-9
+_CLICK = 1e-6  # of a pass: what √ and decimal fractions lack
+_NEAR = 1e-6  # mm
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """One threading cycle; mm, X a radius, radians. ``x0 z0`` is S.
+
+    ``out`` is the sign of X away from the work, ``along`` of Z in the cutting direction. ``depth`` is how far
+    the last pass lies below S, ``first`` the I word per side, ``taper`` what X travels from S's Z to the end.
+    """
+
+    x0: float
+    z0: float
+    z1: float
+    out: float
+    along: float
+    depth: float
+    first: float
+    lead: float
+    taper: float
+    angle: float
+    passes: int
+    pulls_out: bool
+
+    @property
+    def retract(self) -> float:
+        """X of the way back: 3 I off S, and off the far end of a taper that rises."""
+        return self.x0 + self.out * (3 * self.first + max(self.out * self.taper, 0.0))
+
+
+def read_thread(state: State, made: Statement) -> Thread:
+    """The cycle that a line asks for. Raises ProgramError with what is wrong."""
+    if state.tool_line:
+        check_tool(state, made.line, None, None)
+    _check_bare(made)
+    lead = _lead(state, made)
+    _check_spindle(state, made, lead)
+    along, z1 = _way(state, made)
+    single = made.one_shot == 34
+    first = _across(state, made, "I")
+    if not first or (first < 0 and not single):
+        text = "I, the depth of the first pass, must be above 0." if first is not None else "I is missing."
+        raise _refused(made, "I", "thread-depth", text, "Write I, the depth of the first pass.")
+    depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, made)
+    angle = _angle(made)
+    thread = Thread(
+        x0=state.x,
+        z0=state.z,
+        z1=z1,
+        out=out,
+        along=along,
+        depth=depth,
+        first=abs(first),
+        lead=lead,
+        taper=_across(state, made, "A") or 0.0,
+        angle=angle,
+        passes=1 if single or "O" in made.words else _count(made, depth, first),
+        pulls_out="P" in made.words,
+    )
+    if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
+        text = "The flank angle moves the start of the last pass beyond its end."
+        raise _refused(made, "C", "thread-angle", text, "Start farther away from Z.")
+    return thread
+
+
+def _check_bare(made: Statement) -> None:
+    for letter in ("P", "O"):
+        word = made.words.get(letter)
+        if word is not None and word.value is not None:
+            text = f"{word.text}: {letter} stands without a number here."
+            raise _refused(made, letter, "thread-word", text, f"Write {letter} alone.")
+
+
+def _lead(state: State, made: Statement) -> float:
+    lead, coarse = made.value("K"), state.modal.coarse
+    if lead is None:
+        feed = made.words.get("F")
+        text = f"K is missing, and {feed.text} is there." if feed else "K, the lead, is missing."
+        hint = f"Was K{feed.text[1:]} meant?" if feed else "Write K, the lead per revolution."
+        raise _refused(made, "F", "thread-lead-missing", text, hint)
+    lead *= state.scale_z
+    if not 0 < lead <= MOST_LEAD[coarse] * _ROUNDING:
+        most = units.feed(MOST_LEAD[coarse], per_rev=True, metric=state.modal.metric)
+        text = f"{made.words['K'].text}: the lead must be above 0 and at most {most}."
+        hint = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[coarse if lead > 0 else 2]
+        raise _refused(made, "K", "thread-lead-range", text, hint)
+    return lead
+
+
+def _check_spindle(state: State, made: Statement, lead: float) -> None:
+    modal = state.modal
+    if modal.css:
+        text = "G96 is active, and a thread needs one speed from first pass to last."
+        raise _refused(made, "", "thread-under-css", text, "Write G97S before it.")
+    if modal.nose_comp != 40:
+        text = f"G{modal.nose_comp} is active, and a thread is cut without nose compensation."
+        raise _refused(made, "", "thread-under-comp", text, "Write G40 before it.")
+    rpm = abs(rpm_at(state, state.x))
+    if not rpm:
+        text = "The spindle stands, and a thread is cut by its turns."
+        raise _refused(made, "", "spindle-stopped", text, "Start it with M03 or M04.")
+    speed, most = lead * rpm / 60, state.setup.limits.max_feed
+    if speed > most * _ROUNDING:
+        shown = units.feed(speed, per_rev=False, metric=modal.metric)
+        limit = units.feed(most, per_rev=False, metric=modal.metric)
+        text = f"At {rpm:.0f} rpm this lead is {shown}; {limit} is the most."
+        raise _refused(made, "K", "feed-over-speed", text, "Lower S.")
+
+
+def _way(state: State, made: Statement) -> tuple[float, float]:
+    """Sign of the cutting direction, and Z of the end."""
+    z = on_step(state, made, "Z")
+    if z is None:
+        raise _refused(made, "", "word-missing", "Z, the end of the thread, is missing.", "Write Z.")
+    z1 = (z if state.absolute else state.pz + z) + state.dz
+    if abs(z1 - state.z) <= _NEAR:
+        text = "The thread ends at the Z where it starts."
+        raise _refused(made, "Z", "thread-length", text, "Correct Z, or move away before the G33.")
+    return copysign(1.0, z1 - state.z), z1
+
+
+def _depth(state: State, made: Statement) -> tuple[float, float]:
+    """Depth of the last pass below S, and the sign of X away from the work."""
+    x = on_step(state, made, "X")
+    if x is None:
+        raise _refused(made, "", "word-missing", "X of the last pass is missing.", "Write X.")
+    x1 = (x if state.absolute else state.px + x) + state.dx
+    metric = state.modal.metric
+    here = f"the tool stands at radius {units.length(state.x, metric=metric)}"
+    if abs(x1 - state.x) <= _NEAR:
+        text = f"{made.words['X'].text} leaves nothing to cut: {here}."
+        raise _refused(made, "X", "thread-side", text, "Start at the depth of the first pass.")
+    if x1 * state.x < 0:
+        text = f"{made.words['X'].text} lies on the other side of the spindle axis: {here}."
+        raise _refused(made, "X", "thread-side", text, "Look at the sign of X and at where the tool starts.")
+    return abs(x1 - state.x), copysign(1.0, state.x - x1)
+
+
+def _angle(made: Statement) -> float:
+    word = made.words.get("C")
+    if word is None:
+        return 0.0
+    angle = _BARE_C if word.value is None else word.value
+    if not 0.0 <= angle <= MOST_ANGLE:
+        text = f"{word.text}: the angle of infeed goes from 0 to 30 degrees."
+        raise _refused(made, "C", "thread-angle", text, "Correct C; bare C is 29 degrees.")
+    return radians(angle)
+
+
+def _count(made: Statement, depth: float, first: float) -> int:
+    count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
+    if count > _MOST_PASSES:
+        text = f"The thread would take {count:,} passes; {_MOST_PASSES:,} are the most."
+        raise _refused(made, "I", "thread-passes", text, "Correct I.")
+    return count
+
+
+def _across(state: State, made: Statement, letter: str) -> float | None:
+    """I or A: lengths across the axis, a diameter under G72."""
+    value = on_step(state, made, letter)
+    return None if value is None else value * state.scale_x / state.scale_z
+
+
+def _refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
+    column = made.column(letter) or (made.code.column if made.code else 0)
+    finding: Diagnostic = refusal(made.line, column, code, text, hint)
+    return ProgramError(finding)
+
+
+MANY_PASSES = 60
+_FACE = 1e-9  # mm
+
+
+def thread_blocks(state: State, made: Statement) -> Iterator[Block]:
+    """The blocks of a line with G33 or G34, from S back to S. Raises ProgramError before the first one."""
+    thread = read_thread(state, made)
+    _warn(state, made, thread)
+    return _Cutter(state, made, thread).blocks()
+
+
+def pass_depths(thread: Thread) -> list[float]:
+    """Depth of each pass from S, mm: I(√k - 1), so that every pass takes a chip of the same area."""
+    if thread.passes == 1:
+        return [thread.depth]
+    cuts = [thread.first * (k**0.5 - 1.0) for k in range(1, thread.passes)]
+    return [*cuts, thread.depth]
+
+
+def start_z(thread: Thread, depth: float) -> float:
+    """Where a pass of this depth starts: shifted along the flank in the cutting direction."""
+    return thread.z0 + thread.along * depth * tan(thread.angle)
+
+
+class _Cutter:
+    """Makes the blocks of one cycle one after the other."""
+
+    def __init__(self, state: State, made: Statement, thread: Thread) -> None:
+        self._state = state
+        self._thread = thread
+        self._at = state.x, state.z
+        self._like = Block(
+            0, made.line, Kind.RAPID, made.part("move"), state.x, state.z, state.c, state.x, state.z, state.c,
+            state.offset_x, state.offset_z, state.modal, rpm=rpm_at(state, state.x),
+        )  # fmt: skip
+
+    def blocks(self) -> Iterator[Block]:
+        thread = self._thread
+        retract = thread.retract
+        depths = pass_depths(thread)
+        for k, depth in enumerate(depths, start=1):
+            z = start_z(thread, depth)
+            x = thread.x0 - thread.out * depth
+            slope = thread.taper / (thread.z1 - thread.z0)
+            if k > 1:
+                yield from self._rapid(retract, z)
+            yield from self._rapid(x + slope * (z - thread.z0), z)
+            end = x + thread.taper
+            yield self._cut(end, thread.z1, f"({k}/{len(depths)})")
+            if thread.pulls_out:
+                yield self._cut(retract, thread.z1 + thread.along * abs(retract - end), "P")
+            else:
+                yield from self._rapid(retract, thread.z1)
+        yield from self._rapid(retract, thread.z0)
+        yield from self._rapid(thread.x0, thread.z0)
+
+    def _rapid(self, x: float, z: float) -> Iterator[Block]:
+        """A rapid, none where the slides stand there."""
+        if max(abs(x - self._at[0]), abs(z - self._at[1])) > _FACE:
+            yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
+
+    def _cut(self, x: float, z: float, what: str) -> Block:
+        lead = units.feed(self._thread.lead, per_rev=True, metric=self._state.modal.metric).split()[0]
+        return self._block(
+            x, z, Kind.THREAD, self._thread.lead, f"{self._text('G33', x, z)}K{lead} {what}", per_rev=True
+        )
+
+    def _block(
+        self, x: float, z: float, kind: Kind, feed: float, text: str, *, per_rev: bool = False
+    ) -> Block:
+        self._state.blocks += 1
+        (x0, z0), self._at = self._at, (x, z)
+        return replace(
+            self._like, n=self._state.blocks, kind=kind, text=text, x0=x0, z0=z0, x=x, z=z, feed=feed,
+            per_rev=per_rev,
+        )  # fmt: skip
+
+    def _text(self, code: str, x: float, z: float) -> str:
+        """As a line of the program would say it, in its unit and its X words."""
+        state = self._state
+        places = 4 if state.modal.metric else 5
+        return f"{code}X{x / state.scale_x + 0.0:.{places}f}Z{z / state.scale_z + 0.0:.{places}f}"
+
+
+def _warn(state: State, made: Statement, thread: Thread) -> None:
+    column = made.code.column if made.code else 0
+    if thread.passes > MANY_PASSES:
+        text = f"The thread takes {thread.passes} passes."
+        hint = "A larger I takes fewer; look at I and at the X where the tool starts."
+        state.log.warn(made.line, column, "thread-passes", text, hint)
+    speed = thread.lead * abs(rpm_at(state, state.x)) / 60
+    needed = speed**2 / (2 * state.setup.limits.slide_accel)
+    run_up = _run_up(thread)
+    if run_up < needed:
+        metric = state.modal.metric
+        text = (
+            f"The run-up is {units.length(max(run_up, 0.0), metric=metric)}; the slide needs "
+            f"{units.length(needed, metric=metric)} to reach the speed of the lead."
+        )
+        state.log.warn(made.line, column, "thread-run-up", text, "Start farther away, or lower S.")
+
+
+def _run_up(thread: Thread) -> float:
+    """The way before the work begins, of the deepest pass: to part zero where the pass comes over it, else
+    all of it, since nothing says where the work begins."""
+    z = start_z(thread, thread.depth)
+    if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
+        return abs(z)
+    return abs(thread.z1 - z)

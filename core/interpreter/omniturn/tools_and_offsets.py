@@ -1,0 +1,137 @@
+"""T, D, G10 and G92: which machine point the program's numbers mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.interpreter.actions import Preset, ToolChange, WorkShift
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.interpreter.omniturn.straight_moves import on_step
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.omniturn import Word
+
+
+class ToolUse:
+    """Which tool offsets a program asks for, and which of them nobody has set."""
+
+    def __init__(self) -> None:
+        self.used: list[int] = []
+        self.missing: list[int] = []
+
+    def note(self, state: State, line: int, word: Word) -> ToolOffset:
+        """The offset of a T word; 0 with a warning where it has never been set."""
+        number = int(word.value or 0)
+        if number == 0:
+            return ToolOffset()
+        if number not in self.used:
+            self.used.append(number)
+        offset = state.setup.tools.get(number)
+        if offset is not None:
+            return offset
+        if number not in self.missing:
+            self.missing.append(number)
+        state.log.again(missing_offset(self.missing, line, word.column))
+        return ToolOffset()
+
+
+def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
+    """The warning for tools whose offset nobody has set."""
+    if len(tools) == 1:
+        text = f"Tool {tools[0]} has no offset; 0 is used, and the machine will refuse to start."
+        return Diagnostic(
+            line, column, Severity.WARNING, "tool-offset-missing", text, "Set the tool's offset."
+        )
+    names = ", ".join(f"T{number}" for number in tools)
+    text = f"{names} have no offset; 0 is used, and the machine will refuse to start."
+    return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, "Set their offsets.")
+
+
+def tool_change(state: State, made: Statement, word: Word, use: ToolUse) -> Block:
+    """T: another offset, the shift summed up by G10, no preset, no D, no nose compensation."""
+    modal = state.modal
+    number = int(word.value or 0)
+    if modal.css and number:
+        text = "G96 is active at a tool change: the spindle drive has to follow every jump of X."
+        state.log.warn(made.line, word.column, "tool-under-css", text, "Put G97 before the T.")
+    offset = use.note(state, made.line, word)
+    if number:
+        state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
+    shift_x = modal.pending_shift_x if number else 0.0
+    shift_z = modal.pending_shift_z if number else 0.0
+    state.stay(
+        modal._replace(
+            tool=number,
+            tool_x=offset.x,
+            tool_z=offset.z,
+            shift_x=shift_x,
+            shift_z=shift_z,
+            pending_shift_x=shift_x,
+            pending_shift_z=shift_z,
+            preset_x=0.0,
+            preset_z=0.0,
+            secondary=0,
+            secondary_x=0.0,
+            secondary_z=0.0,
+            nose_comp=40,
+        )
+    )
+    state.tool_line = made.line if number else 0
+    state.fast = False  # the same tool again changes no word, and yet the next move has to be looked at
+    secondary(state, made)
+    return state.action(made.line, made.part("tool"), ToolChange(number), rpm_at(state, state.x))
+
+
+def secondary(state: State, made: Statement) -> None:
+    """D: its pair is in the end point of this line's move and of all later ones."""
+    number = made.value("D")
+    if number is None:
+        return
+    state.shape.d_line = made.line
+    offset = state.setup.secondary.get(int(number), SecondaryOffset()) if number else SecondaryOffset()
+    state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
+
+
+def frame(state: State, made: Statement) -> Block:
+    """G10 and G92."""
+    if "X" not in made.words and "Z" not in made.words:
+        column = made.code.column if made.code else 0
+        text = f"G{made.one_shot} needs X or Z."
+        raise ProgramError(refusal(made.line, column, "word-missing", text, "Write the coordinates."))
+    return _work_shift(state, made) if made.one_shot == 10 else _preset(state, made)
+
+
+def _work_shift(state: State, made: Statement) -> Block:
+    x, z = on_step(state, made, "X") or 0.0, on_step(state, made, "Z") or 0.0
+    modal = state.modal
+    state.adopt(
+        modal._replace(pending_shift_x=modal.pending_shift_x + x, pending_shift_z=modal.pending_shift_z + z)
+    )
+    state.pending_shift.setdefault(made.line, False)
+    return state.action(made.line, made.part("frame"), WorkShift(x, z), rpm_at(state, state.x))
+
+
+def _preset(state: State, made: Statement) -> Block:
+    x, z = on_step(state, made, "X"), on_step(state, made, "Z")
+    x, z = state.x if x is None else x, state.z if z is None else z
+    modal = state.modal
+    state.stay(
+        modal._replace(
+            preset_x=modal.preset_x + state.x - x,
+            preset_z=modal.preset_z + state.z - z,
+        )
+    )
+    state.tool_line = 0
+    return state.action(made.line, made.part("frame"), Preset(x, z), rpm_at(state, state.x))
+
+
+def warn_of_idle_shifts(state: State) -> None:
+    """At the end: a G10 that no T followed did nothing."""
+    for line, taken in state.pending_shift.items():
+        if not taken:
+            text = "No T follows this G10, so the work shift never takes effect."
+            state.log.warn(line, 0, "shift-without-tool", text, "Put it before a T.")

@@ -1,0 +1,270 @@
+"""What a program cuts and where it has been: what a way through the part is checked with.
+
+One row for each straight piece of every move in the order of the run, arcs in chords. ``x0 z0 x z`` are where
+the tip stands in the frame of part zero (machine less tool offset), mm, X a radius with the sign of its side:
+the frame of the metal, whatever G10, G92 and D do to the words of the program.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import cos, hypot, inf, pi, sin, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.extent import arc_sweep
+from core.geometry.side import Side
+from core.interpreter.actions import Collet
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.modal_state import Modal
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+
+FEED, THREAD, STILL, FACE, SIDE, PER_REV, REVERSE = 1, 2, 4, 8, 16, 32, 64
+"""Bits of ``how``: it feeds; it is a thread; C is held while it moves; it mills the face or the side; it
+feeds by the revolution; the spindle turns as M04. None of them: a rapid."""
+
+SAME = 1e-5  # mm
+_ASIDE = 0.05  # mm
+_ON_CENTRE = 0.05  # mm of radius
+_CHORD = 0.004  # mm that a chord may leave its arc
+_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutRecord:
+    """All moves of a program as rows (m,), and what they tell about the bar.
+
+    ``n`` is the number of the elementary block, ``bar`` counts how often the collet has been opened: what was
+    cut before that is elsewhere by then. ``radius`` is the largest at which anything is fed, 0 where nothing
+    is. ``over`` is one
+    at which tools are drawn off the bar by rapid; inf: none is known, the largest cut may be a bore. ``face``
+    is a Z beyond which nothing is cut and at which tools come within the radius by rapid; inf: none is known.
+    ``reach`` by tool: least and greatest machine X of its moves; ``clear_z``: the greatest machine Z of all.
+    """
+
+    n: Ints
+    line: Ints
+    x0: Floats
+    z0: Floats
+    x: Floats
+    z: Floats
+    how: Ints
+    tool: Ints
+    bar: Ints
+    offsets: dict[int, tuple[float, float]]  # of tools: machine less tip, mm
+    radius: float
+    begins: float  # the greatest Z at which a cut begins
+    over: float
+    face: float
+    faces: dict[int, float]  # of each tool that has shown one itself
+    reach: dict[int, tuple[float, float]]
+    clear_z: float
+    blocks: int
+
+    def __len__(self) -> int:
+        return len(self.n)
+
+    def row_behind(self, block: int) -> int:
+        """The last row of this block, or of the last move before it; -1: nothing has moved by then."""
+        return int(np.searchsorted(self.n, block, side="right")) - 1
+
+    def first_row(self, row: int) -> int:
+        """The first row of the block that this row belongs to."""
+        return int(np.searchsorted(self.n, self.n[row], side="left"))
+
+    def front(self, tool: int) -> float:
+        """The Z of the tip from which on nothing is before the part."""
+        return self.faces.get(tool, self.face)
+
+    def beyond(self, x: float, z: float) -> bool:
+        """Whether a point that was come to by rapid lies over all that is cut, or before all of it."""
+        return abs(x) >= self.radius - SAME or z >= self.begins - SAME
+
+    def outside(self, x: float, z: float, tool: int) -> bool:
+        """Whether the tip of this tool is where no metal can be: over the bar or before its face."""
+        return not self.radius or abs(x) >= self.over - SAME or z >= self.front(tool) - SAME
+
+
+class _Rows:
+    def __init__(self) -> None:
+        self.n, self.line = array("q"), array("q")
+        self.x0, self.z0, self.x, self.z = array("d"), array("d"), array("d"), array("d")
+        self.how, self.tool, self.bar = array("q"), array("q"), array("q")
+        self.offsets: dict[int, tuple[float, float]] = {}
+        self.opened = 0
+
+    def take(self, block: Block) -> None:
+        """One block; arcs in chords."""
+        modal = block.modal
+        if not block.moves:
+            if isinstance(block.action, Collet):
+                self.opened += 1
+            return
+        if block.kind in {Kind.ROTATE, Kind.DWELL}:
+            return
+        dx, dz = block.offset_x - modal.tool_x, block.offset_z - modal.tool_z
+        self.offsets[modal.tool] = modal.tool_x, modal.tool_z
+        x, z = block.x0 + dx, block.z0 + dz
+        for to_x, to_z in _points(block):
+            self._row(block, x, z, to_x + dx, to_z + dz)
+            x, z = to_x + dx, to_z + dz
+
+    def _row(self, block: Block, x0: float, z0: float, x: float, z: float) -> None:
+        self.n.append(block.n)
+        self.line.append(block.line)
+        self.x0.append(x0)
+        self.z0.append(z0)
+        self.x.append(x)
+        self.z.append(z)
+        self.how.append(_how(block))
+        self.tool.append(block.modal.tool)
+        self.bar.append(self.opened)
+
+    def take_series(self, series: Series) -> None:
+        """Many straight moves in one."""
+        like, count = series.pattern, len(series)
+        modal: Modal = like.modal
+        dx, dz = like.offset_x - modal.tool_x, like.offset_z - modal.tool_z
+        self.offsets[modal.tool] = modal.tool_x, modal.tool_z
+        for column, values in (
+            (self.x0, series.x0 + dx), (self.z0, series.z0 + dz),
+            (self.x, series.x + dx), (self.z, series.z + dz),
+            (self.n, series.n.astype(np.int64)), (self.line, series.line.astype(np.int64)),
+        ):  # fmt: skip
+            column.frombytes(values.tobytes())
+        for column, value in ((self.how, _how(like)), (self.tool, modal.tool), (self.bar, self.opened)):
+            column.frombytes(np.full(count, value, dtype=np.int64).tobytes())
+
+
+def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]) -> CutRecord:
+    """Goes through all of a program; ``watch`` is told how many blocks have passed and may raise."""
+    rows, count = _Rows(), 0
+    for each in blocks:
+        if isinstance(each, Series):
+            rows.take_series(each)
+            count = int(each.n[-1])
+            watch(count)
+            continue
+        rows.take(each)
+        count = each.n
+        if count % _WATCHED == 0:
+            watch(count)
+    return _told(rows, count)
+
+
+def _told(rows: _Rows, blocks: int) -> CutRecord:
+    n, line, how, tool, bar = (
+        np.frombuffer(column, dtype=np.int64) if column else np.zeros(0, dtype=np.int64)
+        for column in (rows.n, rows.line, rows.how, rows.tool, rows.bar)
+    )
+    x0, z0, x, z = (
+        np.frombuffer(column) if column else np.zeros(0) for column in (rows.x0, rows.z0, rows.x, rows.z)
+    )
+    x0, z0, x, z = _unknown_start(x0.copy(), z0.copy(), x.copy(), z.copy())
+    feeds = (how & FEED) != 0
+    radius = _greatest(np.abs(np.concatenate((x0[feeds], x[feeds]))), 0.0)
+    radius = max(radius, _ON_CENTRE) if feeds.any() else 0.0
+    faces = _faces(feeds, x0, x, z, tool, radius)
+    farthest = _farthest(feeds, z0, z, tool)
+    machine = {each: rows.offsets[each] for each in rows.offsets}
+    clear, reach = -inf, {}
+    for each, (off_x, off_z) in machine.items():
+        own = tool == each
+        reach[each] = -_greatest(-x[own], inf) + off_x, _greatest(x[own], -inf) + off_x
+        clear = max(clear, _greatest(z[own], -inf) + off_z)
+    return CutRecord(
+        n, line, x0, z0, x, z, how, tool, bar, machine,
+        radius, _greatest(np.concatenate((z0[feeds], z[feeds])), -inf), _over(feeds, x0, z0, x, z, radius),
+        min(faces.values(), default=inf), {**farthest, **faces}, reach, clear, blocks,
+    )  # fmt: skip
+
+
+def _faces(feeds: Bools, x0: Floats, x: Floats, z: Floats, tool: Ints, radius: float) -> dict[int, float]:
+    """Of each tool the least Z beyond all that is cut at which a rapid brings it within that radius.
+
+    Where a cut begins there may be air, where it goes to there was metal.
+    """
+    cut = _greatest(z[feeds], inf)
+    within = max(radius - SAME, _ON_CENTRE)
+    across = ~(np.abs(x - x0) <= SAME)  # the first move of all comes from nobody knows where
+    called = np.concatenate(([True], tool[1:] != tool[:-1])) if len(tool) else across
+    before = (z > cut + SAME) | (called & (z >= cut - SAME))
+    known = ~feeds & across & before & (np.abs(x) < within)
+    return {int(each): float(z[known & (tool == each)].min()) for each in np.unique(tool[known])}
+
+
+def _farthest(feeds: Bools, z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
+    """Of each tool the greatest Z to which it goes by rapid, where that is beyond the start of all cuts."""
+    cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
+    told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
+    return {each: far for each, far in told.items() if far > cut + SAME}
+
+
+def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:
+    """The least radius to which a rapid goes out among the cuts, none of which goes to it or along it.
+
+    A boring bar is drawn off towards the centre, and what it comes to by rapid is smaller than what it cuts.
+    """
+    reached = feeds & ((np.abs(z - z0) > SAME) | (np.abs(x) >= np.abs(x0)))
+    cut = _greatest(np.abs(np.concatenate((x[feeds], x0[reached], x[reached]))), 0.0)
+    deep = z <= _greatest(z[feeds], -inf)
+    out = ~feeds & deep & (np.abs(z - z0) <= SAME) & (np.abs(x) > np.abs(x0) + SAME)
+    levels = np.abs(x[out])
+    levels = levels[(levels > cut + _ASIDE) & (levels >= radius - SAME)]
+    return float(levels.min()) if len(levels) else inf
+
+
+def _unknown_start(x0: Floats, z0: Floats, x: Floats, z: Floats) -> tuple[Floats, ...]:
+    """Where the slides stood at Cycle Start is not known: nan until an axis has been moved."""
+    for start, end in ((x0, x), (z0, z)):
+        if len(start):
+            moved = np.flatnonzero(np.abs(end - start) > SAME)
+            first = int(moved[0]) if len(moved) else len(start)
+            start[: first + 1], end[:first] = np.nan, np.nan
+    return x0, z0, x, z
+
+
+def _greatest(values: Floats, none: float) -> float:
+    known = values[~np.isnan(values)]
+    return float(known.max()) if len(known) else none
+
+
+def _how(block: Block) -> int:
+    if block.kind is Kind.RAPID:
+        return 0
+    how = FEED
+    if block.kind is Kind.THREAD:
+        how |= THREAD
+    if block.modal.c_locked:
+        how |= STILL
+    if block.plane is not None:
+        how |= SIDE if isinstance(block.plane.frame, Side) else FACE
+    if block.per_rev:
+        how |= PER_REV
+    if block.rpm < 0.0:
+        how |= REVERSE
+    return how
+
+
+def _points(block: Block) -> list[tuple[float, float]]:
+    """The ends of its straight pieces."""
+    if block.kind is not Kind.ARC:
+        return [(block.x, block.z)]
+    cx, cz = block.cx, block.cz
+    radius = hypot(block.x0 - cx, block.z0 - cz)
+    start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, cx, cz, clockwise=block.clockwise)
+    count = max(1, min(720, round(abs(sweep) / _step(radius)) + 1))
+    angles = [start + sweep * k / count for k in range(1, count)]
+    return [*((cx + radius * sin(a), cz + radius * cos(a)) for a in angles), (block.x, block.z)]
+
+
+def _step(radius: float) -> float:
+    """The angle, radians, whose chord leaves an arc of this radius by no more than is allowed."""
+    share = min(1.0, _CHORD / radius) if radius > 0.0 else 1.0
+    return min(pi / 2, 2.0 * sqrt(2.0 * share))

@@ -1,0 +1,260 @@
+"""The way from where the slides stand to a line in the middle of a program, in the order of a lathe.
+
+Out of the work by the tool and the block that were interrupted; Z clear of the part, X over the start,
+spindle and coolant; then into the work by the line. Rapids only where no metal can be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import hypot, inf, isfinite
+
+from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
+from core.interpreter.modal_state import Modal
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_lines import Interruption, RestartPoint
+from core.interpreter.restart.restart_retract import (
+    NEAR,
+    Place,
+    Retract,
+    RetractLeg,
+    ToolPlace,
+    nearest,
+    off_line,
+    off_row,
+    retract,
+)
+
+_SAME = 1e-6  # mm
+_TURN = 360.0
+_HELD = 0.5  # degrees that C may have turned under a tool that stands in a hole
+_INCH = 25.4
+_LATER = 400  # rows behind the block that was kept in which a control that was cut off may have stood
+
+
+@dataclass(frozen=True, slots=True)
+class MachineNow:
+    """The machine as it stands: machine point (x, z, c), mm and degrees, and modal state; what broke off."""
+
+    at: tuple[float, ...]
+    modal: Modal
+    broken: Interruption | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What the operator decides. ``rapid`` and ``modest``: mm/s of legs outside and inside of the work."""
+
+    coolant: bool = True
+    rapid: float = 100 * _INCH / 60
+    modest: float = 20 * _INCH / 60
+
+
+def retract_from_work(cut: CutRecord, now: MachineNow) -> tuple[Retract, int]:
+    """How the tool that stands in the work leaves it, and the number of that tool."""
+    broken = now.broken
+    if broken is None or broken.tool not in cut.offsets:
+        return _unknown(cut, now), now.modal.tool
+    tool = broken.tool
+    x, z = _tip(cut, now.at, tool)
+    place = _stale(cut, broken, x, z) if broken.stale else None
+    if place is not None:
+        return _held(retract(cut, place, max(broken.done, place.block)), now), tool
+    if hypot(now.at[0] - broken.at[0], now.at[1] - broken.at[1]) <= NEAR:
+        found = _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now)
+        return (found if found.lies is not ToolPlace.UNKNOWN else _off_the_row(cut, broken, x, z)), tool
+    if cut.outside(x, z, tool):
+        return Retract(ToolPlace.CLEAR), tool
+    was = retract(cut, Place(broken.block, tool, *_tip(cut, broken.at, tool)), broken.done)
+    return _on_the_way(was, _tip(cut, broken.at, tool), x, z), tool
+
+
+def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float]:
+    off_x, off_z = cut.offsets[tool]
+    return at[0] - off_x, at[1] - off_z
+
+
+def _unknown(cut: CutRecord, now: MachineNow) -> Retract:
+    """Nothing was interrupted that is known: every tool of the program must stand where no metal can be."""
+    clear = now.at[1] >= cut.clear_z - _SAME or all(
+        cut.outside(*_tip(cut, now.at, tool), tool) for tool in cut.offsets
+    )
+    return Retract(ToolPlace.CLEAR if clear else ToolPlace.UNKNOWN)
+
+
+def _stale(cut: CutRecord, broken: Interruption, x: float, z: float) -> Place | None:
+    """The first row from the one that was kept on at which the tool stands now; None: at none of them."""
+    row = max(0, cut.row_behind(broken.block))
+    for each in range(row, min(row + _LATER, len(cut))):
+        if int(cut.tool[each]) != broken.tool:
+            break
+        if off_row(cut, each, x, z) <= NEAR:
+            return Place(int(cut.n[each]), broken.tool, x, z)
+    return None
+
+
+def _off_the_row(cut: CutRecord, broken: Interruption, x: float, z: float) -> Retract:
+    """Stopped on the way of a restart: somewhere on the way out of the block that had been interrupted."""
+    row = cut.row_behind(broken.block)
+    place = None if row < 0 else nearest(cut, row, x, z)
+    if place is None or int(cut.tool[row]) != broken.tool:
+        return Retract(ToolPlace.UNKNOWN)
+    was = retract(cut, Place(broken.block, broken.tool, *place), broken.done)
+    return _on_the_way(was, place, x, z)
+
+
+def _held(way: Retract, now: MachineNow) -> Retract:
+    """A mill in its hole leaves only while C stands as it stood."""
+    broken = now.broken
+    if way.lies is not ToolPlace.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
+        return way
+    turned = abs(now.at[2] - broken.at[2]) % _TURN
+    return way if min(turned, _TURN - turned) <= _HELD else replace(way, lies=ToolPlace.TURNED, hops=())
+
+
+def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
+    """The rest of the way out of a tool that has been moved along it already."""
+    at = RetractLeg(*start)
+    for number, hop in enumerate(was.hops):
+        if off_line(at.x, at.z, hop.x, hop.z, x, z) <= NEAR:
+            return replace(was, hops=was.hops[number:])
+        at = hop
+    return Retract(ToolPlace.UNKNOWN, away=was.away)
+
+
+def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
+    """The beginning of a pass that goes on from the line. C counts the turns that it really has made."""
+    point, modal = found.checkpoint, found.checkpoint.modal
+    if modal.c_locked:
+        modal = modal._replace(offset_c=_near(point.c + modal.offset_c, now.at[2]) - point.c)
+    modal = modal._replace(coolant=modal.coolant and choices.coolant)
+    return Begin(point._replace(modal=modal), found.line, way=way(found, now, choices))
+
+
+def way(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
+    """Everything between the standstill of now and the first block of the line."""
+    out = way_out(found.cut, now, choices) if found.cut is not None else ()
+    at = _end(out, now.at)
+    return (*_stops(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
+            *_starts(found, now, choices), *_in(found, at, choices))  # fmt: skip
+
+
+def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...]:
+    """Out of the work, and Z clear of the part; nothing where no way is sure."""
+    found, tool = retract_from_work(cut, now)
+    if not found.known:
+        return ()
+    x, z = now.at[0], now.at[1]
+    legs: list[Leg] = []
+    if found.hops:
+        off_x, off_z = cut.offsets[tool]
+        for hop in found.hops:
+            to_x, to_z = hop.x + off_x, hop.z + off_z
+            free = cut.outside(x - off_x, z - off_z, tool) and cut.outside(hop.x, hop.z, tool)
+            legs += _leg(
+                x,
+                z,
+                to_x,
+                to_z,
+                choices,
+                rapid=free and not _through_front(cut, x - off_x, z - off_z, hop, tool),
+            )
+            x, z = to_x, to_z
+    return (*legs, *_leg(x, z, x, max(z, clear_of(cut)), choices, rapid=True))
+
+
+def clear_of(cut: CutRecord) -> float:
+    """Machine Z that is clear of the part, mm: the farthest out that the program goes."""
+    return cut.clear_z if isfinite(cut.clear_z) else -inf
+
+
+def _through_front(cut: CutRecord, x: float, z: float, hop: RetractLeg, tool: int) -> bool:
+    """Whether a straight way between two free places goes through the corner of the bar."""
+    over = min(abs(x), abs(hop.x)) >= cut.over - _SAME and x * hop.x > 0.0
+    before = min(z, hop.z) >= cut.front(tool) - _SAME
+    return not (over or before)
+
+
+def starting(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
+    """What will start to turn, flow or switch on: the operator has to confirm it."""
+    return tuple(step for step in _starts(found, now, choices) if isinstance(step, FunctionStep))
+
+
+def _stops(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
+    """What runs and must not, before anything moves."""
+    if now.spindle and now.spindle != wanted.spindle:
+        yield FunctionStep(SpindleStop(), "M05")
+    if now.coolant and not wanted.coolant:
+        yield FunctionStep(Coolant(False), "M09")
+    for name in sorted(now.outputs - wanted.outputs):
+        yield FunctionStep(Output(name, False), f"{name.upper()} OFF")
+
+
+def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[ApproachStep]:
+    point, wanted = found.checkpoint, found.checkpoint.modal
+    if wanted.c_locked:
+        yield FunctionStep(SpindleLock(orient=False), "M89")
+        yield CTurn(_near(point.c + wanted.offset_c, now.at[2]), (wanted.c_rpm or 10.0) * 6.0, "C")
+    elif wanted.spindle:
+        surface = wanted.surface_speed if wanted.css else None
+        text = f"{'M03' if wanted.spindle > 0 else 'M04'}"
+        yield FunctionStep(SpindleRun(wanted.spindle * wanted.rpm, surface), text)
+    for name in sorted(wanted.outputs - now.modal.outputs):
+        yield FunctionStep(Output(name, True), f"{name.upper()} ON")
+    if wanted.coolant and choices.coolant:
+        yield FunctionStep(Coolant(True), "M08")
+
+
+def _over(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+    """Z clear of the part where the start is farther out, then X over the first place before the work."""
+    x, z = _before(found)[0]
+    clear = max(at[1], z)
+    yield from _leg(at[0], at[1], at[0], clear, choices, rapid=True)
+    yield from _leg(at[0], clear, x, clear, choices, rapid=True)
+
+
+def _in(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+    """Down to where the work begins by rapid, and into it by the way that leads out of it."""
+    places = _before(found)
+    x, z = places[0][0], max(at[1], places[0][1])
+    cut, row_tool = found.cut, found.checkpoint.modal.tool
+    for number, (to_x, to_z) in enumerate(places):
+        free = number == 0
+        if cut is not None and row_tool in cut.offsets and not free:
+            off_x, off_z = cut.offsets[row_tool]
+            hop = RetractLeg(to_x - off_x, to_z - off_z)
+            free = cut.outside(x - off_x, z - off_z, row_tool) and cut.outside(hop.x, hop.z, row_tool)
+            free = free and not _through_front(cut, x - off_x, z - off_z, hop, row_tool)
+        yield from _leg(x, z, to_x, to_z, choices, rapid=free)
+        x, z = to_x, to_z
+
+
+def _before(found: RestartPoint) -> list[tuple[float, float]]:
+    """Machine points from the one before the work to that of the line."""
+    goal = found.checkpoint.machine
+    modal = found.checkpoint.modal
+    hops = [(hop.x + modal.tool_x, hop.z + modal.tool_z) for hop in found.back.hops]
+    return [*reversed(hops), goal]
+
+
+def _end(legs: tuple[Leg, ...], at: tuple[float, ...]) -> tuple[float, float]:
+    x, z = at[0], at[1]
+    for leg in legs:
+        x, z = x if leg.x is None else leg.x, z if leg.z is None else leg.z
+    return x, z
+
+
+def _leg(x: float, z: float, to_x: float, to_z: float, choices: Choices, *, rapid: bool) -> list[Leg]:
+    along_x, along_z = abs(to_x - x) > _SAME, abs(to_z - z) > _SAME
+    if not (along_x or along_z):
+        return []
+    text = ("X" if along_x else "") + ("Z" if along_z else "")
+    feed = choices.rapid if rapid else choices.modest
+    return [Leg(to_x if along_x else None, to_z if along_z else None, feed, rapid, text)]
+
+
+def _near(angle: float, now: float) -> float:
+    """The machine angle that stands for ``angle`` and is the nearest to where C is."""
+    return angle + round((now - angle) / _TURN) * _TURN

@@ -1,0 +1,207 @@
+"""Lines from which a program can be restarted: what its text says of each, and what the search answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import NamedTuple
+
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.omniturn.omniturn_program import Program
+from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
+from core.interpreter.omniturn.plain_moves import ReadyLines
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_retract import Retract, ToolPlace
+
+_NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
+
+
+class LineRange(NamedTuple):
+    """Lines ``first`` to ``last``, counted from 1, and why none of them is good."""
+
+    first: int
+    last: int
+    why: str
+
+
+class RestartLines:
+    """What the text of a program says about each of its lines."""
+
+    def __init__(self, program: Program) -> None:
+        self._steps = program.steps
+        self.count = len(program.steps)
+        order = attrgetter("first")
+        self.stretches = sorted((*_structured(program), *_open(program.steps)), key=order)
+        self.repeated = sorted(_repeated(program), key=order)
+        self._apart = sorted((*self.stretches, *self.repeated), key=order)
+
+    def why_not(self, line: int) -> str:
+        """Why no program can go on from this line; empty when its text has nothing against it."""
+        if not 1 <= line <= self.count:
+            return f"There is no line {line}; the program has {self.count}."
+        for stretch in self.stretches:
+            if stretch.first <= line <= stretch.last:
+                return f"Line {line} {stretch.why}"
+        return "" if self._steps[line - 1] is not None else f"Line {line} is empty."
+
+    def repeats(self, line: int) -> bool:
+        """Whether the run may come to it more than once, or never: within a loop or a subroutine."""
+        return any(each.first <= line <= each.last for each in self.repeated)
+
+    def before(self, line: int) -> int:
+        """The nearest line above it, loops and subroutines apart, that is good by its text; 0: none is."""
+        return self._nearest(line, -1)
+
+    def after(self, line: int) -> int:
+        """The nearest line below it, loops and subroutines apart, that is good by its text; 0: none is."""
+        return self._nearest(line, 1)
+
+    def _nearest(self, line: int, way: int) -> int:
+        at = min(line + way, self.count) if way < 0 else line + way
+        while 1 <= at <= self.count:
+            stretch = next((each for each in self._apart if each.first <= at <= each.last), None)
+            if stretch is not None:
+                at = stretch.last + 1 if way > 0 else stretch.first - 1
+            elif self._steps[at - 1] is None:
+                at += way
+            else:
+                return at
+        return 0
+
+
+def _structured(program: Program) -> Iterator[LineRange]:
+    """Contours, and what no call can reach: their first lines are good, what is inside is not."""
+    structure = program.structure
+    for start, end in structure.contours.items():
+        yield LineRange(start + 2, end + 1, f"describes the contour of line {start + 1}.")
+    spans = sorted(_subroutines(program))
+    at = structure.main_end + 1
+    for start, end, _number in (*spans, (len(program.steps) + 1, 0, 0)):
+        if at < start:
+            yield LineRange(at, start - 1, "stands after the end of the program.")
+        at = max(at, end + 1)
+
+
+def _repeated(program: Program) -> Iterator[LineRange]:
+    """Loops behind their LS, and subroutines."""
+    for start, end in program.structure.loop_ends.items():
+        yield LineRange(start + 2, end + 1, f"is inside the loop of lines {start + 1} to {end + 1}.")
+    for start, end, number in _subroutines(program):
+        yield LineRange(start, end, f"is in subroutine {number}.")
+
+
+def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
+    """First line, last line and number of each."""
+    structure = program.structure
+    for number, start in structure.subroutines.items():
+        yield start + 1, structure.subroutine_ends.get(number, len(program.steps) - 1) + 1, number
+
+
+def _open(steps: ReadyLines) -> Iterator[LineRange]:
+    """Plane switching, nose compensation and corners: from the line after the one that begins them."""
+    plane = nose = corner = 0
+    for number, step in enumerate(steps, start=1):
+        if not isinstance(step, Statement):
+            if corner and step is not None:
+                yield _corner(corner, number)
+                corner = 0
+            continue
+        if corner and step.moves:
+            yield _corner(corner, number)
+            corner = 0
+        if step.moves and step.one_shot is None and ("R" in step.words or "C" in step.words):
+            corner = number
+        if step.flow == PLANE:
+            plane, done = _plane(step, number, plane)
+            if done:
+                yield LineRange(done + 1, number, f"is in the plane switching that begins on line {done}.")
+        if not nose and _NOSE_ON.intersection(step.modal):
+            nose = number
+        elif nose and (_NOSE_OFF in step.modal or "T" in step.words):
+            why = f"is under the nose compensation that begins on line {nose}."
+            yield LineRange(nose + 1, number, why)
+            nose = 0
+
+
+def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
+    """(line on which plane switching begins or 0, line on which one that ends here began or 0)."""
+    name = step.plane.name if step.plane is not None else ""
+    if name == "END":
+        return 0, begun
+    return (number if name and not begun else begun), 0
+
+
+def _corner(begun: int, ends: int) -> LineRange:
+    return LineRange(begun + 1, ends, f"is in the corner of line {begun}.")
+
+
+# --- What the search for a line answers: a good line with what it inherits, or why it is none.
+
+
+class LoopPass(NamedTuple):
+    """One pass of a loop; ``first`` and ``last`` are its lines, LS and LF."""
+
+    first: int
+    last: int
+    number: int
+    of: int
+
+
+class Called(NamedTuple):
+    """A call under way: the line that calls, and the number of the subroutine."""
+
+    line: int
+    subroutine: int
+
+
+class LineVisit(NamedTuple):
+    """The ``number``-th time, of ``of`` in the whole run, that the program comes to a line, and in what."""
+
+    number: int = 1
+    of: int = 1
+    within: tuple[LoopPass | Called, ...] = ()
+
+
+class Interruption(NamedTuple):
+    """Where the program was interrupted: elementary block, machine point, mm; blocks begun without a gap.
+
+    ``stale``: the control was cut off, so that the tool may have gone on for a second behind that.
+    """
+
+    block: int
+    tool: int
+    at: tuple[float, ...]
+    begun: int
+    stale: bool = False
+
+    @property
+    def done(self) -> int:
+        """Up to this block the material is known to be cut."""
+        return max(self.begun, self.block) if self.block <= self.begun + 1 else self.begun
+
+
+@dataclass(frozen=True, slots=True)
+class RestartPoint:
+    """A good line in one of its passes, what it inherits, and the way back from its place out of the work.
+
+    ``left_out``: lines that were not cut and would be left out, as (first, last); (0, 0): none.
+    """
+
+    line: int
+    checkpoint: Checkpoint
+    back: Retract = field(default_factory=lambda: Retract(ToolPlace.CLEAR))
+    cut: CutRecord | None = None
+    visit: LineVisit = field(default_factory=LineVisit)
+    was: LineVisit | None = None  # the pass that was interrupted, where the line is run more than once
+    left_out: tuple[int, int] = (0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class NoRestart:
+    """Why a program cannot go on from a line, and the nearest lines from which it can; 0: there is none."""
+
+    line: int
+    why: str
+    before: int = 0
+    after: int = 0

@@ -1,0 +1,481 @@
+"""How a tool is retracted from the work, and by the same way brought back to it: legs that cross no metal.
+
+Known to be free is where this tool has been since the collet was last opened, and what lies over the largest
+radius that the program cuts or before its face. Beyond that a leg is sure only where the program itself takes
+the tool off so. The rules, and what was taken from nobody's guess: docs/decisions/0036-way-out.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from math import hypot, inf, isnan
+from typing import NamedTuple
+
+import numpy as np
+
+from core.interpreter.restart.cut_record import (
+    FACE,
+    FEED,
+    PER_REV,
+    REVERSE,
+    SAME,
+    SIDE,
+    STILL,
+    THREAD,
+    Bools,
+    CutRecord,
+    Floats,
+)
+
+NEAR = 0.1  # mm: no farther from the path a tool stands on it
+_END = 0.005  # mm: nearer to its end a row is done
+_ASIDE = 0.01  # mm: a cut that leaves a radius or a Z by less stays on it
+_BETWEEN = 1.1  # mm: no tool is narrower, so that nothing is left between passes nearer to each other
+_BACK_A_LITTLE = 0.25  # mm
+_FROM_A_SHOULDER = 0.1  # mm: no nearer to a face that is still to be cut
+_ON_CENTRE = 0.05  # mm of radius; a tool there drills or taps
+_AHEAD, _BACK, _LEGS = 400, 400, 60  # rows looked at; legs that an operator can still follow
+_FAR = 100_000  # rows in which the next way off the part is looked for
+_TRIED = 24  # rows back from which the program's own way is tried
+
+
+class ToolPlace(Enum):
+    """How a tool stands: clear of the work or in it, and in what of it that has a way of its own out."""
+
+    CLEAR = "clear"
+    WORK = "work"
+    THREAD = "thread"
+    TAP = "tap"
+    MILL = "mill"  # C is held
+    TURNED = "turned"  # a mill whose part has been turned since
+    UNKNOWN = "unknown"
+
+
+class RetractLeg(NamedTuple):
+    """A straight way to a point of the tip, mm."""
+
+    x: float
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class Retract:
+    """``hops`` lead from where the tool stands to where no metal can be; without, but for ``CLEAR``, none do.
+
+    ``away`` is how the tool leaves in any case: the signs of (x, z) of the first leg; (0, 0): nobody knows.
+    """
+
+    lies: ToolPlace
+    hops: tuple[RetractLeg, ...] = ()
+    away: tuple[int, int] = (0, 0)
+
+    @property
+    def known(self) -> bool:
+        """Whether a way is known."""
+        return self.lies is ToolPlace.CLEAR or bool(self.hops)
+
+
+class Place(NamedTuple):
+    """Where a program was or will be: behind ``block``, or within it, the tip of ``tool`` at (x, z)."""
+
+    block: int
+    tool: int
+    x: float
+    z: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Seg:
+    x0: float
+    z0: float
+    x: float
+    z: float
+    how: int
+    row: int
+
+    @property
+    def length(self) -> float:
+        return hypot(self.x - self.x0, self.z - self.z0)
+
+    @property
+    def outwards(self) -> float:
+        return abs(self.x) - abs(self.x0)
+
+
+def retract(cut: CutRecord, place: Place, done: int) -> Retract:
+    """The way from this place to where no metal can be; what was cut are the blocks up to ``done``."""
+    row = cut.row_behind(place.block)
+    if row < 0 or int(cut.tool[row]) != place.tool:
+        return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
+    row, on = _on_row(cut, row, place)
+    if not on:
+        return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
+    return _Search(cut, place, row, done).found()
+
+
+def _clear(cut: CutRecord, place: Place) -> bool:
+    return cut.outside(place.x, place.z, place.tool)
+
+
+def _on_row(cut: CutRecord, row: int, place: Place) -> tuple[int, bool]:
+    """The row of the block on which the tool stands, and whether it does; the end of a block comes first."""
+    rows = range(cut.first_row(row), row + 1)
+    best = min(rows, key=lambda each: (round(off_row(cut, each, place.x, place.z), 4), -each))
+    return best, off_row(cut, best, place.x, place.z) <= NEAR
+
+
+def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
+    """How far a point lies off a row, mm."""
+    x0, z0, x1, z1 = (float(each[row]) for each in (cut.x0, cut.z0, cut.x, cut.z))
+    if isnan(x0) or isnan(z0):
+        return hypot(x - x1, z - z1)
+    return off_line(x0, z0, x1, z1, x, z)
+
+
+def nearest(cut: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
+    """The point of a row that is nearest to (x, z), mm; None where it is not known whence the row comes."""
+    x0, z0, x1, z1 = (float(each[row]) for each in (cut.x0, cut.z0, cut.x, cut.z))
+    dx, dz = x1 - x0, z1 - z0
+    size = dx * dx + dz * dz
+    if isnan(size) or not size:
+        return None
+    share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size))
+    return x0 + share * dx, z0 + share * dz
+
+
+def off_line(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
+    """How far a point lies off the straight piece from (x0, z0) to (x1, z1), mm."""
+    dx, dz = x1 - x0, z1 - z0
+    size = dx * dx + dz * dz
+    share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size)) if size > 0.0 else 0.0
+    return hypot(x0 + share * dx - x, z0 + share * dz - z)
+
+
+class _Search:
+    """From one place on one row."""
+
+    def __init__(self, cut: CutRecord, place: Place, row: int, done: int) -> None:
+        self.cut, self.place, self.row, self.done = cut, place, row, done
+        self.x, self.z = place.x, place.z
+        self.how = int(cut.how[row])
+        left = hypot(float(cut.x[row]) - self.x, float(cut.z[row]) - self.z)
+        self.within = left > _END and place.block <= int(cut.n[row])  # and not at its end
+
+    def found(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
+        how = self.how
+        if how & (FACE | SIDE):
+            return self._off_the_mill(how & (FACE | SIDE))
+        if self._tap():
+            return Retract(ToolPlace.TAP)
+        clear = _clear(self.cut, self.place) or (self._brings_it(self.row) and not self.within)
+        clear = clear or (not how & FEED and self.z >= self.cut.begins)
+        if clear and not (self.within and how & FEED):
+            return Retract(ToolPlace.CLEAR)
+        on = self._going_on()
+        if on is not None:
+            return on
+        if how & STILL:
+            return self._off_the_mill(self._axis_of_the_mill())
+        ahead = self._as_the_program_does()
+        if ahead is not None:
+            return ahead
+        if how & THREAD and self.within:
+            return Retract(ToolPlace.THREAD, away=self._thread_away())
+        return self._as_it_came()
+
+    # --- as the program takes it off ----------------------------------------------------------------------
+
+    def _ahead(self) -> Iterator[_Seg]:
+        """What comes next with this tool and this bar, the rest of the row first."""
+        cut, row = self.cut, self.row
+        if self.within:
+            yield _Seg(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.how, row)
+        tool, bar = int(cut.tool[row]), int(cut.bar[row])
+        for each in range(row + 1, min(row + 1 + _AHEAD, len(cut))):
+            if int(cut.tool[each]) != tool or int(cut.bar[each]) != bar:
+                return
+            yield self._seg(each)
+
+    def _seg(self, row: int) -> _Seg:
+        cut = self.cut
+        return _Seg(
+            float(cut.x0[row]),
+            float(cut.z0[row]),
+            float(cut.x[row]),
+            float(cut.z[row]),
+            int(cut.how[row]),
+            row,
+        )
+
+    def _going_on(self) -> Retract | None:
+        """The rapids that the program would make next from here, where they lead out of the work."""
+        hops: list[RetractLeg] = []
+        for seg in self._ahead():
+            if seg.how & FEED or len(hops) >= _LEGS:
+                return None
+            hops.append(RetractLeg(seg.x, seg.z))
+            if self._out(hops[-1]) or self._brings_it(seg.row):
+                return self._made(hops)
+        return None
+
+    def _as_the_program_does(self) -> Retract | None:
+        """Along X to where the program next goes by rapid towards Z+ past this Z, and out with it.
+
+        None where cuts come before that may still have to make room for it.
+        """
+        level, first = self.z + _ASIDE, self.row + 1
+        grew = shrank = False
+        if self.within and self.how & FEED:
+            sideways = self._rest_of_the_cut(level)
+            if sideways is None:
+                return None
+            grew, shrank = sideways > _ASIDE, sideways < -_ASIDE
+        elif self.within:
+            first = self.row
+        rows = self._with_this_tool(first)
+        passes = np.flatnonzero(((self.cut.how[rows] & FEED) == 0) & self._comes_past(rows, level))
+        if not len(passes):
+            return None
+        crossing = first + int(passes[0])
+        cuts = slice(first, crossing)
+        if self._in_the_way(cuts, level):
+            return None
+        out = self._sideways(cuts)
+        grew, shrank = grew or bool((out > _ASIDE).any()), shrank or bool((out < -_ASIDE).any())
+        steps = (self._seg(row) for row in range(crossing + 1, min(crossing + _AHEAD, rows.stop)))
+        return self._out_with(self._seg(crossing), steps, grew=grew, shrank=shrank)
+
+    def _rest_of_the_cut(self, level: float) -> float | None:
+        """How far outwards the rest of this row goes, mm, 0 in a thread; None: it is in the way itself."""
+        x, z = float(self.cut.x[self.row]), float(self.cut.z[self.row])
+        sideways = 0.0 if self.how & THREAD else abs(x) - abs(self.x)
+        here = z > self.z - _FROM_A_SHOULDER and abs(sideways) > _ASIDE
+        return None if here or z > level else sideways
+
+    def _with_this_tool(self, first: int) -> slice:
+        """The rows from here on that this tool makes on this bar, no more than are looked at."""
+        cut = self.cut
+        far = slice(first, first + _FAR)
+        other = (cut.tool[far] != cut.tool[self.row]) | (cut.bar[far] != cut.bar[self.row])
+        ends = np.flatnonzero(other)
+        return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
+
+    def _comes_past(self, rows: slice, level: float) -> Bools:
+        return (self.cut.z[rows] > level) & (self.cut.z0[rows] <= level)
+
+    def _in_the_way(self, rows: slice, level: float) -> bool:
+        """Whether a cut among these rows comes up to this Z, or goes along X at it."""
+        cut = self.cut
+        feeds = (cut.how[rows] & FEED) != 0
+        upper = np.maximum(cut.z[rows], cut.z0[rows])
+        here = (upper > self.z - _FROM_A_SHOULDER) & (np.abs(self._sideways(rows)) > _ASIDE)
+        held = (cut.how[rows] & (STILL | FACE | SIDE)) != 0
+        return bool((feeds & ((upper > level) | here | held)).any())
+
+    def _sideways(self, rows: slice) -> Floats:
+        """How far each cut among these rows goes outwards, mm; threads, and rapids, are none."""
+        cut = self.cut
+        out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
+        return np.where((cut.how[rows] & (FEED | THREAD)) == FEED, out, 0.0)
+
+    def _out_with(self, seg: _Seg, steps: Iterator[_Seg], *, grew: bool, shrank: bool) -> Retract | None:
+        share = (max(self.z, seg.z0) - seg.z0) / (seg.z - seg.z0)
+        to_x = seg.x0 + share * (seg.x - seg.x0)
+        out = abs(to_x) - abs(self.x)
+        if (to_x < -SAME) != (self.x < -SAME) and max(abs(to_x), abs(self.x)) > _ON_CENTRE:
+            return None
+        if out < -_ASIDE and shrank:
+            return None
+        if out > _ASIDE and grew and abs(to_x) < self.cut.over - SAME and not self._swept(abs(to_x)):
+            return None
+        hops = [RetractLeg(to_x, self.z), RetractLeg(seg.x, seg.z)]
+        while not self._out(hops[-1]):
+            after = next(steps, None)
+            if after is None or after.how & FEED or len(hops) >= _LEGS:
+                return None
+            hops.append(RetractLeg(after.x, after.z))
+        return self._made(hops)
+
+    def _out(self, hop: RetractLeg) -> bool:
+        """Whether a rapid of the program that ends here has left the work."""
+        return hop.z >= self.cut.begins - SAME or self.cut.outside(hop.x, hop.z, self.place.tool)
+
+    def _swept(self, end: float) -> bool:
+        """Whether passes of this tool that are done have left nothing between here and this radius.
+
+        Neighbouring ones nearer to each other than any tool is wide; and what a pass was drawn off through.
+        """
+        cut, z, side = self.cut, self.z, -1.0 if self.x < 0.0 else 1.0
+        low, high = np.minimum(cut.z0, cut.z), np.maximum(cut.z0, cut.z)
+        past = (cut.tool == self.place.tool) & (cut.bar == cut.bar[self.row]) & (cut.n <= self.done)
+        past &= (np.arange(len(cut)) < self.row) & (low <= z + SAME) & (high >= z - SAME)
+        rows = np.flatnonzero(past & (high - low > _ASIDE) & ((cut.how & (STILL | THREAD)) == 0))
+        share = (z - cut.z0[rows]) / (cut.z[rows] - cut.z0[rows])
+        radii = side * (cut.x0[rows] + share * (cut.x[rows] - cut.x0[rows]))
+        reached = abs(self.x)
+        for radius, row in sorted(zip(radii.tolist(), rows.tolist(), strict=True)):
+            if radius <= reached + SAME:
+                continue
+            if radius - reached > _BETWEEN and self._drawn_off_from(row, side) > reached + _ASIDE:
+                return False
+            reached = radius
+            if reached >= end - _ASIDE:
+                return True
+        return False
+
+    def _drawn_off_from(self, row: int, side: float) -> float:
+        """The radius from which the cut before this rapid came out to its level; inf: none did."""
+        cut = self.cut
+        before = row - 1
+        if before < 0 or cut.how[row] & FEED or not cut.how[before] & FEED or cut.z[row] < cut.z0[row]:
+            return inf
+        return side * float(cut.x0[before]) if abs(cut.z[before] - cut.z0[before]) <= _ASIDE else inf
+
+    # --- as it came ---------------------------------------------------------------------------------------
+
+    def _as_it_came(self) -> Retract:
+        """Back along its own path until the program's own way out is sure, or until it is out.
+
+        None through a thread, nor past an opened collet or another tool.
+        """
+        points = [RetractLeg(self.x, self.z)]
+        for seg in self._back():
+            if not self.within and len(points) == 1:
+                points[0] = RetractLeg(seg.x, seg.z)
+            ahead = self._from(seg, points[-1]) if len(points) <= _TRIED else None
+            if ahead is not None:
+                return self._made([*_shortest([*points, ahead[0]])[1:], *ahead[1]])
+            points.append(RetractLeg(seg.x0, seg.z0))
+            if self.cut.outside(seg.x0, seg.z0, self.place.tool) or self._brings_it(seg.row - 1):
+                hops = _shortest(points)[1:]
+                return self._made(hops) if len(hops) <= _LEGS else self._lost()
+        return self._lost()
+
+    def _back(self) -> Iterator[_Seg]:
+        """What led here with this tool and this bar, the last row first."""
+        cut, row = self.cut, self.row
+        tool, bar = int(cut.tool[row]), int(cut.bar[row])
+        before: _Seg | None = None
+        for each in range(row, max(-1, row - _BACK), -1):
+            seg = self._seg(each)
+            other = int(cut.tool[each]) != tool or int(cut.bar[each]) != bar or int(cut.n[each]) > self.done
+            if other or seg.how & (THREAD | STILL | FACE | SIDE) or isnan(seg.x0) or isnan(seg.z0):
+                return
+            if before is not None and hypot(seg.x - before.x0, seg.z - before.z0) > NEAR:
+                return
+            yield seg
+            before = seg
+
+    def _from(self, seg: _Seg, at: RetractLeg) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
+        """A little way back along a cut towards Z-, and from there as the program does; None: not sure."""
+        length = hypot(seg.x0 - at.x, seg.z0 - at.z)
+        if not seg.how & FEED or at.z >= seg.z0 - _ASIDE or length <= _ASIDE:
+            return None
+        share = min(_BACK_A_LITTLE, length / 2) / length
+        hop = RetractLeg(at.x + share * (seg.x0 - at.x), at.z + share * (seg.z0 - at.z))
+        place = Place(int(self.cut.n[seg.row]), self.place.tool, hop.x, hop.z)
+        found = _Search(self.cut, place, seg.row, self.done)._as_the_program_does()
+        return None if found is None or not found.hops else (hop, found.hops)
+
+    def _brings_it(self, row: int) -> bool:
+        """Whether the row is the rapid with which the tool comes to its work after its T, from beyond it."""
+        cut = self.cut
+        if row < 0 or cut.how[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
+            return False
+        before = row - 1
+        first = before < 0 or bool(cut.tool[before] != cut.tool[row])
+        unknown = not first and (isnan(cut.x[before]) or isnan(cut.z[before]))
+        first = first or (unknown and not cut.how[before] & FEED)
+        return first and cut.beyond(float(cut.x[row]), float(cut.z[row]))
+
+    def _lost(self) -> Retract:
+        """Only where it would leave to is known: as its next rapid does, or back as it came."""
+        cut, row = self.cut, self.row
+        ways = [(seg.x - seg.x0, seg.z - seg.z0) for seg in self._ahead() if not seg.how & FEED]
+        ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
+        away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
+        return Retract(ToolPlace.UNKNOWN, away=away if away[1] >= 0 else (0, 0))
+
+    # --- threads, taps, mills -----------------------------------------------------------------------------
+
+    def _tap(self) -> bool:
+        """Whether it stands in a hole out of which the program feeds it with the spindle turned round."""
+        if abs(self.x) > _ON_CENTRE or not self.how & PER_REV or _clear(self.cut, self.place):
+            return False
+        turns = self.how & REVERSE
+        cut, row = self.cut, self.row
+        near = [self._seg(each) for each in range(max(0, row - 3), row + 1)] + list(self._ahead())[:4]
+        return any(
+            seg.how & FEED and seg.how & PER_REV and abs(seg.x) <= _ON_CENTRE and seg.how & REVERSE != turns
+            and int(cut.tool[seg.row]) == self.place.tool
+            for seg in near
+        )  # fmt: skip
+
+    def _thread_away(self) -> tuple[int, int]:
+        """Away from the thread: to where the next rapid takes it along X."""
+        for seg in self._ahead():
+            if abs(seg.x - self.x) > _ASIDE and not seg.how & FEED:
+                return _sign(seg.x - self.x), 0
+        return 0, 0
+
+    def _off_the_mill(self, axis: int) -> Retract:
+        """A mill leaves along its own axis: on the face along Z, on the side along X."""
+        low, high = self.cut.reach[self.place.tool]
+        offset = self.cut.offsets[self.place.tool][0]
+        far = low - offset if self.x < 0.0 else high - offset
+        to = RetractLeg(self.x, self._before_the_face()) if axis == FACE else RetractLeg(far, self.z)
+        away = (0, 1) if axis == FACE else (-1 if self.x < 0.0 else 1, 0)
+        out = to.z - self.z if axis == FACE else abs(far) - abs(self.x)
+        return Retract(ToolPlace.MILL, (to,), away) if out > SAME else Retract(ToolPlace.CLEAR)
+
+    def _before_the_face(self) -> float:
+        face, own = self.cut.front(self.place.tool), self.cut.tool == self.place.tool
+        return face if face < inf else float(np.nanmax(self.cut.z[own]))
+
+    def _axis_of_the_mill(self) -> int:
+        """FACE or SIDE as its plane switching says, as its next rapid takes it off, or as it has gone in."""
+        cut, row = self.cut, self.row
+        near = slice(max(0, row - _BACK), row + _AHEAD)
+        own = cut.how[near][cut.tool[near] == self.place.tool]
+        for axis in (FACE, SIDE):
+            if (own & axis).any():
+                return axis
+        off = next((seg for seg in self._ahead() if not seg.how & FEED and seg.length > _ASIDE), None)
+        seg = off or self._seg(row)
+        return SIDE if abs(seg.x - seg.x0) > abs(seg.z - seg.z0) else FACE
+
+    def _made(self, hops: list[RetractLeg]) -> Retract:
+        kept: list[RetractLeg] = []
+        at = RetractLeg(self.x, self.z)
+        for hop in hops:
+            if hypot(hop.x - at.x, hop.z - at.z) > SAME:
+                kept.append(hop)
+                at = hop
+        if not kept:
+            return Retract(ToolPlace.CLEAR)
+        lies = ToolPlace.THREAD if self.how & THREAD and self.within else ToolPlace.WORK
+        away = _sign(kept[0].x - self.x), _sign(kept[0].z - self.z)
+        return Retract(lies, tuple(kept), away)
+
+
+def _sign(value: float) -> int:
+    return (value > _ASIDE) - (value < -_ASIDE)
+
+
+def _shortest(points: list[RetractLeg]) -> list[RetractLeg]:
+    """A path without its detours: where it comes back to itself, what lies between is left out."""
+    kept, at = [points[0]], 0
+    while at < len(points) - 1:
+        start, end = points[at], points[at + 1]
+        reached = at + 1
+        for k in range(len(points) - 1, at + 1, -1):
+            ends_here = off_line(*start, *end, *points[k]) <= SAME
+            passes = off_line(*points[k - 1], *points[k], *start) <= SAME
+            if ends_here or passes:
+                reached = k
+                break
+        kept.append(points[reached])
+        at = reached
+    return kept

@@ -1,0 +1,276 @@
+"""The state in which a line of a program begins: the program gone through up to that line, and no further.
+
+Where the slides stood at Cycle Start and what inputs answered is not known. A second pass, from another start
+and with other answers, goes beside the first until both agree; while they differ, no line is good.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable
+from dataclasses import replace
+
+from core.interpreter.actions import AskInput, ProgramEnd
+from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.job_setup import Setup
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter, PassToLine
+from core.interpreter.omniturn.omniturn_program import Program, read_program
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.restart.cut_record import CutRecord, record_cuts
+from core.interpreter.restart.loop_passes import Visits, visits_of
+from core.interpreter.restart.restart_lines import (
+    Interruption,
+    LineVisit,
+    NoRestart,
+    RestartLines,
+    RestartPoint,
+)
+from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
+from core.language.source import Source
+
+Watch = Callable[[float], None]
+
+_ELSEWHERE = (7.3, -11.9, 0.0)  # mm: the other start; no program's words fall together with it
+_SAME = 1e-7  # mm
+_WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+_NEAR = 64  # lines looked at one by one for the place from which positions are known
+_UP, _DOWN = 3, 100  # lines tried
+
+
+class StateRebuild:
+    """One program under fixed circumstances; a later line goes on from where an earlier one was found.
+
+    ``watch`` is told how many blocks have passed and may raise to give the work up.
+    """
+
+    def __init__(self, source: Source, setup: Setup, watch: Watch) -> None:
+        self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
+        self.watch = watch
+        self._program: Program = read_program(source, setup.strict)
+        self.lines = RestartLines(self._program)
+        self._asks = _asks(self._program, self.lines)
+        self._cut: CutRecord | None = None
+        self._visits: tuple[int, Visits] | None = None
+        self._begin_anew()
+
+    @property
+    def cut(self) -> CutRecord:
+        """All that the program cuts; gone through once."""
+        if self._cut is None:
+            self._cut = record_cuts(
+                Interpreter(self._program, replace(self._setup, start=_ELSEWHERE)).series(), self.watch
+            )
+        return self._cut
+
+    def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
+        """What line ``line`` inherits the ``visit``-th time, or why the program cannot go on from it.
+
+        0: the pass that was interrupted, or the first. ``broken`` is where the program was interrupted.
+        """
+        found = self._look(line, visit, broken)
+        if isinstance(found, RestartPoint):
+            return found
+        return NoRestart(line, found, self._good(line, -1, broken), self._good(line, 1, broken))
+
+    def _look(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
+        why = self.lines.why_not(line)
+        if why:
+            return why
+        if not self.lines.repeats(line):
+            return self._goes_to(line) or self._found(line, self._walk, LineVisit(), broken)
+        visits = self._visits_of(line)
+        number = visit or visits.at(broken.block if broken is not None else 0)
+        why = visits.why_not(line, number)
+        anchor, nth = visits.anchor(number) if not why else (0, 0)
+        why = why or self._goes_to(anchor)
+        if why:
+            return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
+        found = self._within(line, anchor, nth, visits.told(number), broken)
+        if isinstance(found, RestartPoint) and broken is not None:
+            return replace(found, was=visits.told(visits.at(broken.block)))
+        return found
+
+    def _visits_of(self, line: int) -> Visits:
+        if self._visits is None or self._visits[0] != line:
+            self._visits = line, visits_of(self._program, self._setup, line, self.watch)
+        return self._visits[1]
+
+    def _within(
+        self, line: int, anchor: int, nth: int, visit: LineVisit, broken: Interruption | None
+    ) -> RestartPoint | str:
+        """From the line of the main program on, which is reached, to the pass that is wanted."""
+        walks = [self._from(self._walk, anchor)]
+        if self._other is not None:
+            walks.append(self._from(self._other, anchor))
+        for walk in walks:
+            lost = self._to_visit(walk, line, nth)
+            if lost:
+                return f"Line {line} is no place to go on: {lost}"
+        walk, known = walks[0], self._other is None or _alike(*walks)
+        why = self._why_not_here(line, walk, known=known)
+        return why or self._found(line, walk, visit, broken)
+
+    def _from(self, walk: PassToLine, anchor: int) -> PassToLine:
+        setup = replace(walk.setup, begin=Begin(walk.checkpoint, anchor))
+        return PassToLine(self._program, setup)
+
+    def _to_visit(self, walk: PassToLine, line: int, nth: int) -> str:
+        for number in range(nth):
+            for block in walk.again(line) if number else walk.before(line):
+                self._mind()
+                if isinstance(block.action, AskInput):
+                    return f"what input {block.action.terminal} answered on line {block.line} is not known."
+        return ""
+
+    def _mind(self) -> None:
+        self._count += 1
+        if self._count % _WATCHED == 0:
+            self.watch(self._count)
+
+    def _found(
+        self, line: int, walk: PassToLine, visit: LineVisit, broken: Interruption | None
+    ) -> RestartPoint | str:
+        point, cut = walk.checkpoint, self.cut
+        done = broken.done if broken is not None else point.blocks
+        back = _back(cut, point)
+        if back.lies is ToolPlace.CLEAR or (back.known and point.blocks <= done):
+            return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
+        if point.blocks > done:
+            first, last = _left_out(cut, done, point.blocks)
+            which = f"line {first}" if first == last else f"lines {first} to {last}"
+            return f"Line {line} begins in metal that {which} would have had to cut."
+        return (
+            f"Line {line} begins in the work, and no sure way leads there. {_HOW.get(back.lies, '')}".strip()
+        )
+
+    def _good(self, line: int, way: int, broken: Interruption | None) -> int:
+        """The nearest line that the pass itself confirms; few upwards, where each costs a pass of its own."""
+        for _ in range(_DOWN if way > 0 else _UP):
+            line = self.lines.after(line) if way > 0 else self.lines.before(line)
+            if not line or isinstance(self._look(line, 0, broken), RestartPoint):
+                return line
+        return 0
+
+    def _begin_anew(self) -> None:
+        self._at, self._count = 1, 0
+        self._moved = False
+        self._ended = 0
+        self._asked = 0  # line whose input the second pass answers differently
+        self._lost = ""  # why nothing is known any more
+        self._walk = PassToLine(self._program, self._setup)
+        self._other: PassToLine | None = PassToLine(self._program, replace(self._setup, start=_ELSEWHERE))
+
+    def _goes_to(self, line: int) -> str:
+        """Go to the line; why it is not good, empty when it is."""
+        if line < self._at:
+            self._begin_anew()
+        while self._at < line and not (self._ended or self._lost or self._walk.failed):
+            if self._at in self._asks:
+                self._ask()
+            self._pass_to(self._stop(line))
+            other = self._other
+            if other is not None and not other.failed and _alike(self._walk, other):
+                self._other = None
+        return self._why_not(line)
+
+    def _stop(self, line: int) -> int:
+        """Where both passes are compared next: behind each line while little is known, at each input."""
+        near = self._at + (1 if self._at < _NEAR else self._at) if self._other is not None else line
+        if self._at in self._asks:
+            return self._at + 1
+        place = bisect_right(self._asks, self._at)
+        ask = self._asks[place] if place < len(self._asks) else line
+        return min(line, near, ask)
+
+    def _pass_to(self, line: int) -> None:
+        """Both passes to the line; the first one tells what is asked and how far out it goes."""
+        asked, self._at = self._at, line
+        for block in self._walk.before(line):
+            self._mind()
+            if block.action is None:
+                self._moved = True
+            elif isinstance(block.action, ProgramEnd):
+                self._ended = block.line
+            elif isinstance(block.action, AskInput) and (self._walk.called or block.line != asked):
+                self._lost = f"what input {block.action.terminal} answered on line {block.line} is not known."
+        if self._other is not None:
+            for _ in self._other.before(line):
+                pass
+
+    def _ask(self) -> None:
+        """From here on the second pass is the one in which the input of this line answers otherwise."""
+        if self._other is not None:
+            self._lost = f"what the input of line {self._at} answered is not known."
+            return
+        begin = Begin(self._walk.checkpoint, self._at)
+        self._asked = self._at
+        self._other = PassToLine(
+            self._program, replace(self._setup, begin=begin, inputs=lambda _terminal: True)
+        )
+
+    def _why_not(self, line: int) -> str:
+        return self._why_not_here(line, self._walk, known=self._other is None)
+
+    def _why_not_here(self, line: int, walk: PassToLine, *, known: bool) -> str:
+        reasons = (
+            (walk.failed, f"The program has errors before line {line}."),
+            (self._ended, f"The program ends on line {self._ended}, before line {line}."),
+            (self._lost, f"Line {line} is no place to go on: {self._lost}"),
+            (walk.shaping, f"Line {line} is under nose compensation or in a corner."),
+            (walk.checkpoint.modal.mill, f"Line {line} is in plane switching."),
+            (not known and self._asked, f"Line {line} depends on the input that line {self._asked} asks."),
+            (
+                not known and not self._moved,
+                f"Nothing has moved before line {line}: start the program from its first line.",
+            ),
+            (not known, f"Where the slides stand at line {line} depends on where they stood at Cycle Start."),
+        )
+        return next((why for wrong, why in reasons if wrong), "")
+
+
+_HOW = {
+    ToolPlace.TAP: "A tap stands in its thread there.",
+    ToolPlace.THREAD: "A threading tool stands in its thread there.",
+}
+
+
+def _back(cut: CutRecord, point: Checkpoint) -> Retract:
+    """From the place of the line out of the work; a tool just called stands where the last one was taken."""
+    row = cut.row_behind(point.blocks)
+    if row < 0:
+        return Retract(ToolPlace.CLEAR)
+    tool = int(cut.tool[row])
+    off_x, off_z = cut.offsets[tool]
+    x, z = point.machine
+    return retract(cut, Place(point.blocks, tool, x - off_x, z - off_z), point.blocks)
+
+
+def _left_out(cut: CutRecord, done: int, blocks: int) -> tuple[int, int]:
+    """First and last line of what was to be cut between what is done and the line."""
+    rows = (cut.n > done) & (cut.n <= blocks) & ((cut.how & 1) != 0)
+    if not rows.any():
+        return 0, 0
+    lines = cut.line[rows]
+    return int(lines[0]), int(lines[-1])
+
+
+def _asks(program: Program, lines: RestartLines) -> list[int]:
+    """Lines of the main program, loops apart, that ask an input; in order."""
+    steps = enumerate(program.steps, start=1)
+    asking = [n for n, step in steps if isinstance(step, Statement) and step.flow in {"M95", "M97"}]
+    return [number for number in asking if not lines.why_not(number)]
+
+
+def _alike(one: PassToLine, other: PassToLine) -> bool:
+    """Whether both passes stand at one point in one state, so that what follows is the same."""
+    a, b = one.checkpoint, other.checkpoint
+    if one.next_line != other.next_line or one.shaping or other.shaping or a.modal != b.modal:
+        return False
+    near = all(abs(p - q) < _SAME for p, q in zip(a.machine, b.machine, strict=True))
+    near = near and abs(a.px - b.px) < _SAME and abs(a.pz - b.pz) < _SAME
+    return near and _rest(a) == _rest(b)
+
+
+def _rest(point: Checkpoint) -> Checkpoint:
+    """All but the place, and the count of what led there."""
+    return point._replace(x=0.0, z=0.0, c=0.0, px=0.0, pz=0.0, blocks=0)

@@ -1,0 +1,170 @@
+"""CHF, CHR and RND: chamfers and roundings between lines and arcs. C ends with the first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from core.geometry.bevel import bevel, leg_of
+from core.geometry.contour import Element, Line
+from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, rounding
+from core.interpreter.actions import ProgramEnd
+from core.interpreter.adjusted_moves import element_of, standstill_at
+from core.interpreter.diagnostic_log import Log
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.linear_moves import Way
+from core.interpreter.sinumerik.sinumerik_state import State, positive
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Word
+
+_CUT = frozenset({Kind.FEED, Kind.RAPID, Kind.ARC})  # what may meet in a corner
+
+
+@dataclass(slots=True)
+class Corner:
+    """What a block asks for at its end; ``size`` in mm: CHF the chamfer, CHR its leg (beside an arc a chord),
+    RND the radius.
+    """
+
+    made: Statement
+    word: Word
+    size: float
+
+    def refuse(self, code: str, why: str, hint: str) -> ProgramError:
+        """An error at the corner's word."""
+        return self.made.refuse(self.word, code, f"{self.word.text} cannot make a corner: {why}.", hint)
+
+
+def corner_of(state: State, made: Statement, block: Block) -> Corner | None:
+    """The corner of a block that has been made. Raises ProgramError."""
+    word = made.corner
+    if word is None:
+        return None
+    corner = Corner(made, word, positive(made, word, state.length(made, word), "the size of a corner"))
+    if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
+        hint = "CHF, CHR and RND take G1, G2 and G3."
+        raise corner.refuse("corner-next", "the block is no line or arc", hint)
+    if state.plane != 18:
+        raise corner.refuse("corner-plane", "corners of X and Z need G18", "Write G18 before it.")
+    return corner
+
+
+@dataclass(slots=True)
+class _Held:
+    block: Block
+    corner: Corner
+    between: list[Block] = field(default_factory=list)
+
+
+class Corners:
+    """Holds a block with a corner until the next move is known, and cuts both."""
+
+    def __init__(self, state: State, log: Log) -> None:
+        self._state, self._log = state, log
+        self._held: _Held | None = None
+
+    def drop(self) -> None:
+        """Forget what is held."""
+        self._held = None
+
+    def take(self, block: Block, corner: Corner | None) -> Iterator[Block]:
+        """Passes on what is sure. Raises ProgramError where the corner cannot be made."""
+        held = self._held
+        if held is None:
+            if corner is None:
+                yield block
+            else:
+                self._held = _Held(block, corner)
+        elif block.action is not None and not isinstance(block.action, ProgramEnd):
+            held.between.append(block)
+        else:
+            self._held = None
+            yield from self._cut(held, block, corner)
+
+    def end(self) -> None:
+        """No block comes any more. Raises ProgramError where a corner is left."""
+        held, self._held = self._held, None
+        if held is not None:
+            raise held.corner.refuse("corner-next", "no move follows", "A corner needs two moves in a row.")
+
+    def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
+        if after.kind not in _CUT or not _moves(after):
+            why = f"the next move, on line {after.line}, is no line or arc of X and Z"
+            raise held.corner.refuse("corner-next", why, "A corner needs two moves in a row.")
+        block, (dx, dz) = held.block, _shift(held.block, after)
+        first, last = element_of(block), element_of(_moved(after, dx, dz))
+        try:
+            cut, between, rest = self._elements(held.corner, first, last)
+        except NoCornerError:
+            text = f"lines {block.line} and {after.line} run in one direction: there is no corner to cut."
+            found = held.corner.made.refuse(
+                held.corner.word, "corner-straight", text, "Take it out."
+            ).diagnostic
+            self._log.warn(found.line, found.column, found.code, found.message, found.hint)
+            yield from (block, *held.between)
+            yield from self.take(after, corner)
+            return
+        except CornerTooLargeError as problem:
+            raise self._too_large(held, after, problem) from None
+        except CornerError as problem:
+            raise held.corner.refuse("corner-next", str(problem), "Give another end point.") from None
+        yield self._along(block, cut)
+        yield self._inserted(block, between)
+        for each in held.between:
+            yield standstill_at(each, between.end, self._state.setup.limits.max_rpm)
+        there = _moved(self._along(_moved(after, dx, dz), rest), -dx, -dz)
+        yield from self.take(there, corner)
+
+    def _elements(self, corner: Corner, first: Element, last: Element) -> tuple[Element, Element, Element]:
+        if corner.word.name == "RND":
+            return rounding(first, last, corner.size)
+        leg = leg_of(first, last, corner.size) if corner.word.name == "CHF" else corner.size
+        return bevel(first, last, leg)
+
+    def _along(self, block: Block, element: Element) -> Block:
+        """The block's own move on a part of its way; a rapid takes the time of its slowest axis."""
+        (x0, z0), (x, z) = element.start, element.end
+        way = Way(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
+        rapid = block.kind is Kind.RAPID
+        feed = way.rapid_rate(self._state.setup.limits.speeds) if rapid else block.feed
+        made = replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=self._rpm(block, x))
+        if isinstance(element, Line):
+            return made
+        cx, cz = element.centre
+        return replace(made, kind=Kind.ARC, cx=cx, cz=cz, clockwise=element.clockwise)
+
+    def _inserted(self, block: Block, element: Element) -> Block:
+        """The corner: a move of X and Z alone; C has ended with the block before it."""
+        straight = replace(block, kind=Kind.FEED) if isinstance(element, Line) else block
+        return replace(self._along(straight, element), c0=block.c, text=f"{block.text} ›")
+
+    def _rpm(self, block: Block, x: float) -> float:
+        if block.css is None or not block.modal.spindle:
+            return block.rpm
+        return self._state.rpm_at(x)
+
+    def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
+        of = held.block if problem.first else after
+        left = element_of(of).length
+        why = f"it takes {problem.needed:.4f} mm of the move on line {of.line}, which has {left:.4f} mm"
+        return held.corner.refuse("corner-too-large", why, "Make it smaller.")
+
+
+def _moves(block: Block) -> bool:
+    return (block.x, block.z) != (block.x0, block.z0)
+
+
+def _shift(block: Block, after: Block) -> tuple[float, float]:
+    """From the frame of the second to that of the first: an offset may have changed between them."""
+    return after.offset_x - block.offset_x, after.offset_z - block.offset_z
+
+
+def _moved(block: Block, dx: float, dz: float) -> Block:
+    """The same move in another frame."""
+    if not dx and not dz:
+        return block
+    return replace(
+        block, x0=block.x0 + dx, z0=block.z0 + dz, x=block.x + dx, z=block.z + dz,
+        cx=block.cx + dx, cz=block.cz + dz, offset_x=block.offset_x - dx, offset_z=block.offset_z - dz,
+    )  # fmt: skip

@@ -1,0 +1,138 @@
+"""G2 and G3 in the plane of X and Z: end and centre, end and radius, or an opening angle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, cos, dist, hypot, radians, sin, tan
+
+from core.geometry.arcs import Point, centre_from_radius
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.sinumerik.linear_moves import NO_WAY, Way, block_of, check_feed, way_of
+from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_statement import Statement
+from core.language.diagnostics import ProgramError
+from core.language.sinumerik.sinumerik_words import Form, Word
+
+_TOLERANCE = 0.01  # mm by which the radii at both ends may differ
+
+
+def arc(state: State, made: Statement) -> Block:
+    """The arc of a block. Raises ProgramError where its words give none."""
+    if state.plane != 18:
+        raise made.refuse(
+            made.g.get("motion"), "arc-plane", "arcs of X and Z need G18.", "Write G18 before it."
+        )
+    way = way_of(state, made)
+    # G2 is clockwise as seen with X up and Z to the right: with X down, as blocks count, it is the other way.
+    clockwise = state.motion == 3
+    centre, way = _centre(state, made, way, clockwise)
+    offset = way.offset_x
+    feed = check_feed(state, made, way.x0 - offset, way.x - offset)
+    made_block = block_of(state, made, way, Kind.ARC, feed)
+    return replace(made_block, cx=centre[0] - way.offset_x, cz=centre[1] - way.offset_z, clockwise=clockwise)
+
+
+def _centre(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[Point, Way]:
+    """Machine coordinates of the centre, and the way with its end where the words did not give one."""
+    words, by_centre = made.words, {"I", "K"} & made.words.keys()
+    if "CR" in words and ("AR" in words or by_centre):
+        text = "the arc has CR and another way to say where its centre is."
+        raise made.refuse(words["CR"], "arc-both", text, "Keep one of them.")
+    if "CR" in words:
+        return _by_radius(state, made, way, clockwise), way
+    if "AR" in words:
+        if {"X", "Z"} & words.keys():
+            return _by_angle(state, made, way, clockwise), way
+        return _turned(state, made, way, clockwise)
+    if not by_centre:
+        text = "the arc has neither CR, AR nor I and K."
+        raise made.refuse(made.g.get("motion"), "arc-centre-missing", text, "Add one of them.")
+    centre = _by_words(state, made, way)
+    _check_radii(made, way, centre)
+    return centre, way
+
+
+def _by_words(state: State, made: Statement, way: Way) -> Point:
+    """I and K: distances from the start, or coordinates with AC( )."""
+    x = way.x0 + _component(state, made, "I", way.x0, way.offset_x)
+    return x, way.z0 + _component(state, made, "K", way.z0, way.offset_z)
+
+
+def _component(state: State, made: Statement, name: str, start: float, offset: float) -> float:
+    word = made.words.get(name)
+    if word is None:
+        return 0.0
+    value = state.length(made, word)
+    if word.form is not Form.AC:
+        return value  # a radius, whatever DIAMON says
+    return value / (2.0 if name == "I" and state.modal.diameter else 1.0) + offset - start
+
+
+def _by_radius(state: State, made: Statement, way: Way, clockwise: bool) -> Point:
+    """CR: over 0 for arcs of up to half a turn, under 0 for larger ones."""
+    word = made.words["CR"]
+    radius, chord = state.length(made, word), way.length
+    _demand_ends(made, word, chord)
+    if chord > 2 * abs(radius) + _TOLERANCE:
+        text = (
+            f"{word.text} is too small: the ends are {chord:.4f} mm apart, half of which it takes at least."
+        )
+        raise made.refuse(word, "arc-radius", text, "Correct CR or the end point.")
+    side = clockwise if radius > 0 else not clockwise
+    return centre_from_radius((way.x0, way.z0), (way.x, way.z), abs(radius), clockwise=side)
+
+
+def _by_angle(state: State, made: Statement, way: Way, clockwise: bool) -> Point:
+    """AR and the end point: the centre lies on the bisector of the chord, r = chord / (2 sin(angle / 2))."""
+    word, chord = made.words["AR"], way.length
+    _demand_ends(made, word, chord)
+    half = radians(_angle(state, made, word)) / 2
+    if {"I", "K"} & made.words.keys():
+        raise made.refuse(word, "arc-both", "the arc has AR, an end point and a centre.", "Keep two of them.")
+    # To the right of the way for a clockwise arc; for more than half a turn the cotangent changes side.
+    aside = (0.5 if clockwise else -0.5) / tan(half)
+    dx, dz = way.x - way.x0, way.z - way.z0
+    return (way.x0 + way.x) / 2 + aside * dz, (way.z0 + way.z) / 2 - aside * dx
+
+
+def _turned(state: State, made: Statement, way: Way, clockwise: bool) -> tuple[Point, Way]:
+    """AR and the centre: the end is the start turned about it."""
+    word = made.words["AR"]
+    if not {"I", "K"} & made.words.keys():
+        text = "AR stands without an end point and without I and K."
+        raise made.refuse(word, "arc-centre-missing", text, "Add one of them.")
+    centre = _by_words(state, made, way)
+    x, z = way.x0 - centre[0], way.z0 - centre[1]
+    if hypot(x, z) < NO_WAY:
+        raise made.refuse(word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K.")
+    angle = radians(_angle(state, made, word))
+    turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
+    radius = hypot(x, z)
+    end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
+    return centre, way._replace(x=end[0], z=end[1])
+
+
+def _angle(state: State, made: Statement, word: Word) -> float:
+    angle = state.number(made, word)
+    if not 0.0 < angle < 360.0:
+        text = f"{word.text}: an opening angle lies over 0 and under 360."
+        raise made.refuse(word, "arc-angle", text, "A full circle takes I and K.")
+    return angle
+
+
+def _demand_ends(made: Statement, word: Word, chord: float) -> None:
+    if chord < NO_WAY:
+        text = f"the arc by {word.name} ends where it starts."
+        raise made.refuse(word, "arc-no-chord", text, "A full circle takes I and K.")
+
+
+def _check_radii(made: Statement, way: Way, centre: Point) -> None:
+    word = made.words.get("I") or made.words.get("K")
+    first, last = dist((way.x0, way.z0), centre), dist((way.x, way.z), centre)
+    if first < NO_WAY:
+        raise made.refuse(word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K.")
+    if abs(first - last) > _TOLERANCE:
+        text = f"the arc's radius is {first:.4f} mm at its start and {last:.4f} mm at its end."
+        hint = "I and K are distances from the start, I a radius; AC( ) makes them coordinates."
+        error: ProgramError = made.refuse(word, "arc-radius", text, hint)
+        raise error

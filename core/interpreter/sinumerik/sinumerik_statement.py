@@ -1,0 +1,149 @@
+"""Words of a block made ready: sorted, and refused where they may not stand together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.sinumerik import sinumerik_words as known
+from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, alarm, refused
+from core.language.sinumerik.sinumerik_words import Line, Word
+
+_DWELL_WORDS = frozenset({"F", "S"})
+_ENDS = frozenset({2, 17, 30})
+
+
+@dataclass(slots=True)
+class Statement:
+    """One block. ``g`` are its G codes by group, ``words`` the others by name, ``sets`` its R parameters."""
+
+    line: Line
+    g: dict[str, Word] = field(default_factory=dict)
+    m: dict[int, Word] = field(default_factory=dict)
+    words: dict[str, Word] = field(default_factory=dict)
+    sets: list[Word] = field(default_factory=list)
+    keys: dict[str, Word] = field(default_factory=dict)
+
+    def code(self, group: str) -> int | None:
+        """The G code of this group."""
+        word = self.g.get(group)
+        return None if word is None else int(word.value or 0)
+
+    @property
+    def axes(self) -> list[str]:
+        """The axes that have a word in it."""
+        return [name for name in known.AXES if name in self.words]
+
+    @property
+    def offset_key(self) -> Word | None:
+        """TRANS or ATRANS."""
+        return self.keys.get("TRANS") or self.keys.get("ATRANS")
+
+    @property
+    def corner(self) -> Word | None:
+        """CHF, CHR or RND."""
+        return next((self.words[name] for name in sorted(known.CORNERS) if name in self.words), None)
+
+    @property
+    def ends(self) -> bool:
+        """M2, M17 or M30."""
+        return bool(_ENDS & self.m.keys())
+
+    def refuse(self, word: Word | None, code: str, text: str, hint: str) -> ProgramError:
+        """An error of ours at this word."""
+        line, column = self.line, word.column if word else 1
+        axis = word.name if word and word.name in known.AXES else ""
+        return ProgramError(refused(line.number, column, code, line.block, text, hint, axis=axis))
+
+    def alarm(self, word: Word | None, number: int, text: str, hint: str) -> ProgramError:
+        """An alarm of the control at this word."""
+        line, column = self.line, word.column if word else 1
+        axis = word.name if word and word.name in known.AXES else ""
+        return ProgramError(_alarm(line, column, number, text, hint, axis))
+
+
+def statement(line: Line) -> Statement:
+    """The block made ready. Raises ProgramError for what may not stand in one block."""
+    made = Statement(line)
+    for word in line.words:
+        _sort(made, word)
+    if made.m or made.keys:
+        _check_m(made)
+    if made.keys or "dwell" in made.g:
+        _check_alone(made)
+    _check_corner(made)
+    return made
+
+
+def _alarm(line: Line, column: int, number: int, text: str, hint: str, axis: str = "") -> Diagnostic:
+    return alarm(line.number, column, number, line.block, text, hint, axis=axis)
+
+
+def _sort(made: Statement, word: Word) -> None:
+    if word.name == "G":
+        _sort_g(made, word)
+    elif word.name == "M":
+        number = int(word.value or 0)
+        if number not in known.M_CODES:
+            raise made.refuse(word, "m-unknown", f"{word.text} is no code of this control.", "Take it out.")
+        made.m[number] = word
+    elif word.name in known.KEYS:
+        made.keys[word.name] = word
+    elif word.name[0] == "R" and word.name not in known.CORNERS:
+        made.sets.append(word)
+    elif word.name in made.words:
+        raise made.alarm(word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them.")
+    else:
+        made.words[word.name] = word
+
+
+def _sort_g(made: Statement, word: Word) -> None:
+    group = known.G_GROUPS.get(int(word.value or 0))
+    if group is None:
+        raise made.refuse(word, "g-unknown", f"{word.text} is no code of this control.", "Take it out.")
+    before = made.g.get(group)
+    if before is not None:
+        text = f"{before.text} and {word.text} are of one group ({group})."
+        raise made.alarm(word, ONE_GROUP, text, "One G code of a group per block.")
+    made.g[group] = word
+
+
+def _check_m(made: Statement) -> None:
+    if len(made.m) > known.MOST_M:
+        text = f"the block holds {len(made.m)} M codes."
+        raise made.refuse(list(made.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most.")
+    for group in ({3, 4, 5}, {0, 1, 2, 17, 30}):
+        found = sorted(group & made.m.keys())
+        if len(found) > 1:
+            text = f"M{found[0]} and M{found[1]} exclude each other."
+            raise made.refuse(made.m[found[1]], "m-conflict", text, "Keep one of them.")
+    if "DIAMON" in made.keys and "DIAMOF" in made.keys:
+        text = "DIAMON and DIAMOF are of one group."
+        raise made.alarm(made.keys["DIAMOF"], ONE_GROUP, text, "Keep one of them.")
+
+
+def _check_alone(made: Statement) -> None:
+    """G4, TRANS and ATRANS have a block of their own."""
+    dwell, key = made.g.get("dwell"), made.offset_key
+    if dwell is not None:
+        others = made.words.keys() - _DWELL_WORDS or made.m or made.keys or made.sets or len(made.g) > 1
+        if others or len(made.words) != 1:
+            text = "G4 needs a block of its own, with F (seconds) or S (revolutions)."
+            raise made.refuse(dwell, "own-block", text, "Split the block.")
+    if key is not None:
+        others = made.words.keys() - set(known.AXES) or made.m or made.g or made.sets or len(made.keys) > 1
+        if others:
+            text = f"{key.name} needs a block of its own, with axes and nothing else."
+            raise made.refuse(key, "own-block", text, "Split the block.")
+
+
+def _check_corner(made: Statement) -> None:
+    if known.CORNERS.isdisjoint(made.words):
+        return
+    corners = sorted(known.CORNERS & made.words.keys())
+    if len(corners) > 1:
+        text = f"{corners[0]} and {corners[1]} stand in one block."
+        raise made.refuse(made.words[corners[1]], "corner-both", text, "Keep one of them.")
+    if corners and not {"X", "Z"} & made.words.keys():
+        text = f"{corners[0]} stands in a block without X or Z."
+        raise made.refuse(made.words[corners[0]], "corner-without-move", text, "Put it behind a move.")

@@ -1,0 +1,74 @@
+"""Where a word sends the axis C, and which way round: signed travel from the actual position. Degrees.
+
+The table is that of the modulo axis 0..<360 and of the linear axis -360..+360; nothing here knows of words,
+offsets or machines, so that it can be tried with any numbers.
+"""
+
+from __future__ import annotations
+
+from core.language.sinumerik.sinumerik_words import Form
+
+TURN = 360.0
+ROUNDING = 1e-9
+"""Degrees that are noise of sums in binary: a target as near as this is reached."""
+
+WRONG_MODULO = 16830
+WRONG_RANGE = 10720
+NO_ROTARY = {Form.DC: 16800, Form.ACP: 16810, Form.ACN: 16820}
+"""Alarms of the forms that only a modulo rotary axis takes."""
+
+
+class TargetError(Exception):
+    """No such target; ``number`` of the alarm, ``str()`` says why."""
+
+    def __init__(self, number: int, text: str) -> None:
+        super().__init__(text)
+        self.number = number
+
+
+def wrapped(angle: float) -> float:
+    """The angle as a modulo axis shows it, 0..<360; what is a turn but for noise is 0."""
+    rest = angle % TURN
+    return 0.0 if TURN - rest <= ROUNDING else rest
+
+
+def modulo_travel(form: Form, value: float, position: float) -> float:
+    """Signed travel of a modulo axis from ``position`` (any number of turns) to ``value``, or by it (IC).
+
+    Raises TargetError for a target outside 0..<360.
+    """
+    if form is Form.IC:
+        return value
+    if not 0.0 <= value < TURN:
+        raise TargetError(WRONG_MODULO, f"{value:.9g} is no position of a modulo axis, which has 0 to <360")
+    at = wrapped(position)
+    if form is Form.AC:
+        return _unless_noise(value - at)
+    way = wrapped(value - at)
+    if way <= ROUNDING:
+        return 0.0
+    if form is Form.ACP:
+        return way
+    if form is Form.ACN:
+        return way - TURN
+    return way if way <= TURN / 2 + ROUNDING else way - TURN
+
+
+def linear_travel(form: Form, value: float, position: float) -> float:
+    """Signed travel of an axis that does not wrap, from ``position`` to ``value``, or by it (IC).
+
+    Raises TargetError for DC, ACP and ACN, which only a modulo rotary axis has.
+    """
+    if form in NO_ROTARY:
+        raise TargetError(NO_ROTARY[form], f"{form} needs a modulo rotary axis")
+    return value if form is Form.IC else _unless_noise(value - position)
+
+
+def check_reach(end: float) -> None:
+    """Raises TargetError where a linear C would stand beyond -360..+360 of the machine's own count."""
+    if abs(end) > TURN + ROUNDING:
+        raise TargetError(WRONG_RANGE, f"the end point {end:g} lies beyond -360 to +360 of the machine")
+
+
+def _unless_noise(way: float) -> float:
+    return 0.0 if abs(way) <= ROUNDING else way

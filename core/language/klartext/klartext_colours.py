@@ -1,0 +1,68 @@
+"""The parts of a line of Klartext by kind; what cannot be read is marked by the reader that runs it."""
+
+from __future__ import annotations
+
+import re
+
+from core.language.klartext.klartext_line import read_line
+from core.language.syntax_colours import Ink, Span
+
+_VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q\s*[0-9]+)"
+_PATTERNS = (
+    (Ink.COMMENT, r"\*.*"),
+    (Ink.CALL, r'(?:CALL\s+)?LBL\s*(?:[0-9]+|"[^"]*")|REP\s*[0-9]+|TOOL\s+CALL(?:\s*(?:[0-9]+|"[^"]*"))?'),
+    (Ink.CODE, r"(?:BEGIN|END)\s+PGM|PLANE(?:\s+(?:AXIAL|POINTS|SPATIAL|RELATIV|RESET))?|STOP|M\s*[0-9]+"),
+    (
+        Ink.CODE,
+        r"TRANS\s+DATUM(?:\s+(?:AXIS|RESET))?|CYCL\s+DEF\s*[0-9.]*|BLK\s+FORM\s*[0-9.]*|FN\s*[0-9]+\s*:?",
+    ),
+    (Ink.RUN, rf"F\s*(?:MAX|AUTO)|F{_VALUE}|S{_VALUE}"),
+    (Ink.KEY, rf"MOVE|TURN|STAY|MB\s*MAX|(?:MB|DIST){_VALUE}|(?:SYM|SEQ)\s*[+-]|(?:COORD|TABLE)\s+ROT"),
+    (Ink.POSITION, rf"(?:P[123][XYZ]|SP[ABC]|D[LR]|I?[XYZABC]){_VALUE}"),
+    (Ink.KEY, r"Q\s*[0-9]+"),
+    (Ink.CODE, r"L(?![A-Z0-9])|R[0LR](?![A-Z0-9])"),
+)
+_WORDS = [(ink, re.compile(pattern, re.IGNORECASE)) for ink, pattern in _PATTERNS]
+_HEAD = re.compile(r"\s*(/?\s*[0-9]*\s*/?)")
+_TO_BLANK = re.compile(r"\S*")
+
+
+def spans(text: str) -> list[Span]:
+    """The coloured parts of a line, a fault last so that it is seen."""
+    line = read_line(1, text)
+    end = len(text) if line.comment is None else _semicolon(text)
+    found = [*_words(text, end)]
+    if end < len(text):
+        found.append(Span(end, len(text) - end, Ink.COMMENT))
+    if line.error is not None:
+        at = min(line.error.column, len(text)) - 1
+        word = _TO_BLANK.match(text, max(at, 0))
+        size = len(word.group()) if word is not None else 0
+        found.append(Span(max(at, 0), max(size, 1), Ink.FAULT))
+    return found
+
+
+def _semicolon(text: str) -> int:
+    """Where the comment begins: a semicolon in a quoted name begins none."""
+    quoted = False
+    for at, sign in enumerate(text):
+        quoted ^= sign == '"'
+        if sign == ";" and not quoted:
+            return at
+    return len(text)
+
+
+def _words(text: str, end: int) -> list[Span]:
+    found = []
+    head = _HEAD.match(text, 0, end)
+    at = head.end() if head is not None else 0
+    if head is not None and head.group(1).strip():
+        found.append(Span(head.start(1), len(head.group(1).rstrip()), Ink.NUMBER))
+    while at < end:
+        match = next(((ink, m) for ink, each in _WORDS if (m := each.match(text, at, end))), None)
+        if match is not None and match[1].end() > at:
+            found.append(Span(at, match[1].end() - at, match[0]))
+            at = match[1].end()
+        else:
+            at += 1
+    return found

@@ -1,0 +1,171 @@
+"""One line of Klartext: number, skip sign, block and comment."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from core.language.diagnostics import ProgramError
+from core.language.klartext import klartext_faults, l_block, plane_block, structure_blocks
+from core.language.klartext.klartext_nodes import (
+    AxisWord,
+    Feed,
+    Heading,
+    KlartextLine,
+    Move,
+    Node,
+    Stop,
+    Value,
+)
+from core.language.klartext.line_cursor import Cursor
+
+# --- L moves of plain numbers, which nearly all lines of a long program are: read by two patterns.
+
+
+_NUMBER = r"[+-]?[0-9]{1,6}(?:\.[0-9]{1,9})?"
+_MOVE = re.compile(
+    rf"([0-9]{{1,9}} )?L((?: I?[XYZABC]{_NUMBER}){{1,6}})( R0)?(?: F(MAX|[0-9]{{1,6}}(?:\.[0-9]{{1,6}})?))?"
+)
+_WORD = re.compile(rf"(I?)([XYZABC])({_NUMBER})")
+
+
+def read_plain(number: int, text: str) -> KlartextLine | None:
+    """The move of a line that holds nothing else; None for every other line."""
+    match = _MOVE.fullmatch(text)
+    if match is None:
+        return None
+    block, _, r0, speed = match.groups()
+    axes = []
+    seen = set()
+    for word in _WORD.finditer(text, match.start(2), match.end(2)):
+        sign, axis, digits = word.groups()
+        seen.add(axis)
+        value = Value(float(digits) + 0.0, column=word.start(3) + 1)
+        axes.append(AxisWord(axis, value, sign == "I", word.start() + 1))
+    if len(seen) < len(axes):
+        return None
+    feed = None if speed is None else _feed(speed, match.start(4))
+    move = Move(tuple(axes), r0 is not None, feed)
+    return KlartextLine(number, move, None if block is None else int(block))
+
+
+def _feed(speed: str, at: int) -> Feed:
+    if speed == "MAX":
+        return Feed("max", None, at)
+    return Feed("value", Value(float(speed), column=at + 1), at)
+
+
+LONGEST_LINE = 8192
+_HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
+_L = re.compile(r"L(?![A-Z0-9])")
+_M = re.compile(r"M(?=\s*[0-9])")
+_Q = re.compile(r"Q(?=\s*[0-9])")
+_FN = re.compile(r"FN\s*([0-9]+)\s*:?")
+_FN_0 = re.compile(r"FN\s*0\s*:\s*Q(?=\s*[0-9])")
+
+# Blocks of the control that are outside the subset: the longest name first where one begins another.
+_OUTSIDE = (
+    *("CYCL CALL", "CALL PGM", "CALL SELECTED", "SEL PGM", "SEL TABLE", "SEL PATTERN", "SEL CONTOUR"),
+    *("CONTOUR DEF", "PATTERN DEF", "TOOL DEF", "TCH PROBE", "FUNCTION", "POLARKIN", "DECLARE", "STRING"),
+    *("TRANS MIRROR", "TRANS ROTATION", "TRANS SCALE", "APPR", "DEP", "CHF", "RND", "CTP", "CP", "CR", "CT"),
+    *("CC", "LP", "LN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC", "C", "SPL", "QL", "QR", "QS"),
+    *("WHILE", "IF", "STRAIGHT"),
+)
+_OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-Z])")) for name in _OUTSIDE)
+
+
+def read_line(number: int, text: str) -> KlartextLine:
+    """What line ``number`` says. Never raises: an error is in the line."""
+    if (plain := read_plain(number, text)) is not None:
+        return plain
+    if len(text) > LONGEST_LINE:
+        problem = klartext_faults.syntax(
+            number, 1, f"The line has {len(text)} characters.", "Break it into lines."
+        )
+        return KlartextLine(number, error=problem.diagnostic)
+    code, comment = _without_comment(text)
+    head = _HEAD.match(code)
+    assert head is not None  # every part of it may be missing
+    block, skip = head.group(2), bool(head.group(1) or head.group(3))
+    number_of_block = int(block) if block is not None and len(block) <= 9 else None
+    try:
+        node = _node(Cursor(number, code.rstrip(), head.end()))
+    except ProgramError as problem:
+        return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic)
+    return KlartextLine(number, node, number_of_block, skip, comment)
+
+
+def _without_comment(text: str) -> tuple[str, str | None]:
+    """Code and comment; a semicolon in a quoted name begins none."""
+    if ";" not in text:
+        return text, None
+    quoted = False
+    for at, sign in enumerate(text):
+        if sign == '"':
+            quoted = not quoted
+        elif sign == ";" and not quoted:
+            return text[:at], text[at + 1 :].strip()
+    return text, None
+
+
+def _node(cursor: Cursor) -> Node | None:
+    if cursor.done:
+        return None
+    if cursor.text[-1] != "~" and cursor.take(_L):
+        return l_block.move(cursor)
+    if cursor.text[cursor.at] == "*":
+        return Heading(cursor.rest()[1:].strip().removeprefix("-").strip())
+    if cursor.text[-1] == "~":
+        raise klartext_faults.unsupported(cursor.line, len(cursor.text), "A block over several lines (~)")
+    return _by_keyword(cursor) or _by_letter(cursor)
+
+
+def _by_keyword(cursor: Cursor) -> Node | None:
+    column = cursor.column
+    for words, read in _KEYWORDS.items():
+        if cursor.keyword(words):
+            return read(cursor, column)
+    return None
+
+
+def _stop(cursor: Cursor, _column: int) -> Node:
+    if not cursor.done:
+        raise cursor.expected("STOP stands alone")
+    return Stop()
+
+
+_KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
+    "BEGIN PGM": lambda cursor, _: structure_blocks.begin(cursor),
+    "END PGM": lambda cursor, _: structure_blocks.end(cursor),
+    "BLK FORM": lambda cursor, _: structure_blocks.blank_form(cursor),
+    "TOOL CALL": lambda cursor, _: structure_blocks.tool_call(cursor),
+    "PLANE": plane_block.plane,
+    "TRANS DATUM": structure_blocks.datum,
+    "CYCL DEF": structure_blocks.cycle,
+    "CALL LBL": lambda cursor, _: structure_blocks.call(cursor),
+    "LBL": lambda cursor, _: structure_blocks.label(cursor),
+    "STOP": _stop,
+}
+
+
+def _by_letter(cursor: Cursor) -> Node:
+    if _M.match(cursor.upper, cursor.at):
+        return l_block.codes_alone(cursor)
+    if cursor.take(_FN_0):
+        return structure_blocks.assign(cursor, spelled=True)
+    if cursor.take(_Q):
+        return structure_blocks.assign(cursor, spelled=False)
+    raise _no_block(cursor)
+
+
+def _no_block(cursor: Cursor) -> ProgramError:
+    """What begins no block of the subset, by its name where the control knows it."""
+    column = cursor.column
+    if function := _FN.match(cursor.upper, cursor.at):
+        return klartext_faults.unsupported(cursor.line, column, f"FN {int(function.group(1)[:4])}")
+    for name, pattern in _OUTSIDE_PATTERNS:
+        if pattern.match(cursor.upper, cursor.at):
+            return klartext_faults.unsupported(cursor.line, column, name)
+    text = f"'{cursor.next_word}' begins no block."
+    hint = cursor.advice("A block begins with L, PLANE, TOOL CALL, LBL or the like.")
+    return klartext_faults.syntax(cursor.line, column, text, hint)

@@ -1,0 +1,216 @@
+"""A place on a line, and the words that can be taken from there. Case-blind; columns count from 1."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+from core.language.diagnostics import ProgramError
+from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
+from core.language.typography import typed
+
+_NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
+_VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|Q\s*([0-9]+))(?![0-9A-Z.,])")
+_PLAIN = re.compile(rf"([+-]?)\s*({_NUMBER})(?![0-9.,])")
+_TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
+_WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
+_QUOTED = re.compile(r'"([^"]*)"')
+_WORD = re.compile(r"[^\s]+")
+_HIGHEST_Q = 1999
+
+
+@lru_cache(maxsize=256)
+def _keyword(words: str) -> re.Pattern[str]:
+    """``TRANS DATUM`` with any blanks between, and no letter behind."""
+    return re.compile(r"\s+".join(map(re.escape, words.split())) + r"(?![A-Z])")
+
+
+class Cursor:
+    """Reads one line from left to right; ``upper`` is the line in capitals, of the same length."""
+
+    def __init__(self, line: int, text: str, at: int = 0) -> None:
+        self.line = line
+        self.text = text
+        # Letters such as ß have capitals of another length, and no word of the language holds one.
+        self.upper = (
+            text.upper()
+            if text.isascii()
+            else "".join(sign.upper() if sign.isascii() else sign for sign in text)
+        )
+        self.at = at
+        self.blanks()
+
+    @property
+    def column(self) -> int:
+        """Column of what comes next."""
+        return self.at + 1
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing is left."""
+        return self.at >= len(self.upper)
+
+    @property
+    def next_word(self) -> str:
+        """What comes next up to a blank, as written."""
+        match = _WORD.match(self.text, self.at)
+        return match.group() if match else ""
+
+    def blanks(self) -> None:
+        """Go to the next sign that is no blank."""
+        upper, at, end = self.upper, self.at, len(self.upper)
+        while at < end and upper[at].isspace():
+            at += 1
+        self.at = at
+
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+        """What the pattern matches here, and go behind it."""
+        match = pattern.match(self.upper, self.at)
+        if match is not None:
+            self.at = match.end()
+            self.blanks()
+        return match
+
+    def keyword(self, *choices: str) -> str | None:
+        """The first of the keywords that stands here; go behind it."""
+        for words in choices:
+            if self.take(_keyword(words)):
+                return words
+        return None
+
+    def rest(self) -> str:
+        """All that is left, as written."""
+        text = self.text[self.at :].strip()
+        self.at = len(self.upper)
+        return text
+
+    def value(self, what: str) -> Value:
+        """A signed number or Q parameter. Raises ProgramError naming ``what`` lacks one."""
+        column, match = self.column, self.take(_VALUE)
+        if match is None:
+            raise self.expected(f"{what} has no value", "Write a number such as +10, or a Q parameter.")
+        sign, number, q = match.groups()
+        if q is not None:
+            return Value(0.0, self._q(int(q) if len(q) <= 4 else _HIGHEST_Q + 1, column), sign == "-", column)
+        return Value(_number(sign, number), column=column)
+
+    def number(self, what: str) -> Value:
+        """A number; no Q parameter here."""
+        column, match = self.column, self.take(_PLAIN)
+        if match is None:
+            raise self.expected(f"{what} has no number", "Write a number.")
+        return Value(_number(*match.groups()), column=column)
+
+    def whole(self, what: str, most: int) -> int:
+        """A whole number without a sign, up to ``most``."""
+        column, match = self.column, self.take(_WHOLE)
+        if match is None:
+            raise self.expected(f"{what} needs a whole number")
+        digits = match.group()
+        if len(digits) > 9 or int(digits) > most:
+            text = f"{what} goes up to {most}."
+            raise klartext_faults.fault(
+                self.line, column, klartext_faults.INPUT_VALUE, text, "Correct the number."
+            )
+        return int(digits)
+
+    def name(self, what: str, most: int) -> int | str:
+        """A number, or a name in quotes."""
+        start = self.at
+        match = self.take(_QUOTED)
+        if match is None:
+            return self.whole(what, most)
+        name = self.text[start + 1 : start + len(match.group(1)) + 1]
+        if not name.strip():
+            raise klartext_faults.syntax(
+                self.line, start + 1, f"{what} has an empty name.", "Write the name."
+            )
+        return name
+
+    def expected(self, message: str, hint: str = "") -> ProgramError:
+        """A syntax error here, saying what stands in the place."""
+        here = f"; '{self.next_word}' stands here" if not self.done else "; the line ends here"
+        return klartext_faults.syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
+
+    def advice(self, hint: str) -> str:
+        """A hint, and what to do where text or a typographic character stands in the place."""
+        word = "" if self.done else self.next_word
+        instead = next(filter(None, map(typed, word)), None)
+        if instead is not None:
+            return instead[1]
+        return f"{hint} A comment begins with ;.".lstrip() if _TEXT.match(word) else hint
+
+    def parameter(self) -> int:
+        """The number of a Q parameter."""
+        column = self.column
+        return self._q(self.whole("Q", 9999), column)
+
+    def _q(self, number: int, column: int) -> int:
+        if number > _HIGHEST_Q:
+            text = f"Q parameters go up to Q{_HIGHEST_Q}."
+            raise klartext_faults.fault(
+                self.line, column, klartext_faults.INPUT_VALUE, text, "Take another parameter."
+            )
+        return number
+
+
+def _number(sign: str, digits: str) -> float:
+    number = float(digits.replace(",", "."))
+    return -number if sign == "-" and number else number
+
+
+# --- Words that several blocks share: feeds, retracts, axis words.
+
+
+_FEED = re.compile(r"F\s*(MAX|AUTO)(?![A-Z0-9])")
+_FEED_VALUE = re.compile(r"F(?=\s*[+-]?\s*[0-9.,Q])")
+_FEED_WORD = re.compile(r"F(?![A-Z])")
+_RETRACT = re.compile(r"MB(?![A-Z])|MB(?=MAX)")
+
+
+def feed(cursor: Cursor) -> Feed | None:
+    """``F200``, ``FQ5``, ``FMAX``, ``F AUTO`` where one stands here."""
+    column = cursor.column
+    fixed = cursor.take(_FEED)
+    if fixed is not None:
+        return Feed(fixed.group(1).lower(), None, column)
+    if cursor.take(_FEED_VALUE):
+        return Feed("value", cursor.value("F"), column)
+    if cursor.take(_FEED_WORD):
+        raise cursor.expected("F has no value", "Write a number, Q, MAX or AUTO behind F.")
+    return None
+
+
+def retract(cursor: Cursor) -> Retract | None:
+    """``MB50``, ``MB 50``, ``MB MAX`` where one stands here."""
+    column = cursor.column
+    if cursor.take(_RETRACT) is None:
+        return None
+    if cursor.keyword("MAX"):
+        return Retract(None, column)
+    return Retract(cursor.number("MB"), column)
+
+
+@lru_cache(maxsize=16)
+def _axis_word(letters: str, incremental: bool) -> re.Pattern[str]:
+    return re.compile(rf"({'I?' if incremental else ''})([{letters}])(?=\s*[+\-0-9.,Q])")
+
+
+def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tuple[AxisWord, ...]:
+    """All axis words that stand here, each letter once. Raises ProgramError for a doubled one."""
+    pattern = _axis_word(letters, incremental)
+    found: list[AxisWord] = []
+    while True:
+        column, match = cursor.column, cursor.take(pattern)
+        if match is None:
+            return tuple(found)
+        sign, axis = match.groups()
+        if any(word.axis == axis for word in found):
+            raise doubled(cursor, column, f"{sign}{axis}")
+        found.append(AxisWord(axis, cursor.value(f"{sign}{axis}"), sign == "I", column))
+
+
+def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
+    """The error for a word that stands twice."""
+    return klartext_faults.syntax(cursor.line, column, f"{what} stands twice in the block.", "Take one out.")

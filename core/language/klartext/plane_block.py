@@ -1,0 +1,137 @@
+"""PLANE blocks: how the plane is told, and how the rotary axes are brought to it."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+
+from core.language.klartext import klartext_faults
+from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
+from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+
+POINT_WORDS = tuple(f"P{point}{axis}" for point in "123" for axis in "XYZ")
+SPATIAL_WORDS = ("SPA", "SPB", "SPC")
+_OUTSIDE = ("EULER", "PROJECTED", "VECTOR")
+_WAYS = ("MOVE", "TURN", "STAY")
+_POINT = re.compile(r"(P[123][XYZ])(?=[\s+\-0-9.,Q]|$)")
+_SPATIAL = re.compile(r"(SP[ABC])(?=[\s+\-0-9.,Q]|$)")
+_SIDE = re.compile(r"(SYM|SEQ)\s*([+-])")
+_ROTATION = re.compile(r"(COORD|TABLE)\s+ROT(?![A-Z])")
+
+
+def plane(cursor: Cursor, column: int) -> Plane:
+    """Behind ``PLANE``. Raises ProgramError for what is missing, unknown, doubled or out of the subset."""
+    form = cursor.keyword("AXIAL", "POINTS", "SPATIAL", "RELATIV", "RESET")
+    if form is None:
+        for name in _OUTSIDE:
+            if cursor.keyword(name):
+                raise klartext_faults.unsupported(cursor.line, column, f"PLANE {name}")
+        raise cursor.expected("PLANE needs AXIAL, POINTS, SPATIAL, RELATIV or RESET")
+    words = _WORDS[form](cursor) if form in _WORDS else ()
+    return Plane(form, words, _positioning(cursor, form), column)
+
+
+def _axial(cursor: Cursor) -> tuple[AxisWord, ...]:
+    words = axis_words(cursor, "ABC")
+    if not words:
+        raise cursor.expected("PLANE AXIAL needs an axis angle", "Write A, B or C with its angle.")
+    return words
+
+
+def _points(cursor: Cursor) -> tuple[AxisWord, ...]:
+    return _all_of(cursor, POINT_WORDS, _named(cursor, _POINT))
+
+
+def _spatial(cursor: Cursor) -> tuple[AxisWord, ...]:
+    return _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL))
+
+
+def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
+    words = _named(cursor, _SPATIAL)
+    if len(words) != 1:
+        column = words[1].column if words else cursor.column
+        text = "PLANE RELATIV takes one of SPA, SPB and SPC."
+        raise klartext_faults.syntax(cursor.line, column, text, "Write one angle.")
+    return words
+
+
+_WORDS = {"AXIAL": _axial, "POINTS": _points, "SPATIAL": _spatial, "RELATIV": _relative}
+
+
+def _named(cursor: Cursor, pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:
+    found: dict[str, AxisWord] = {}
+    while True:
+        column, match = cursor.column, cursor.take(pattern)
+        if match is None:
+            return tuple(found.values())
+        name = match.group(1)
+        if name in found:
+            raise doubled(cursor, column, name)
+        found[name] = AxisWord(name, cursor.value(name), column=column)
+
+
+def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
+    """The words in the order of the manual; every one must be there."""
+    found = {word.axis: word for word in words}
+    missing = [name for name in names if name not in found]
+    if missing:
+        verb = "are" if len(missing) > 1 else "is"
+        raise cursor.expected(f"{', '.join(missing)} {verb} missing", "All of them are needed, zeros too.")
+    return tuple(found[name] for name in names)
+
+
+def _positioning(cursor: Cursor, form: str) -> Positioning:
+    way = cursor.keyword(*_WAYS)
+    if way is None:
+        if form == "RESET" and cursor.done:
+            return Positioning()
+        raise cursor.expected("MOVE, TURN or STAY is missing", "Say how the rotary axes are positioned.")
+    made = Positioning(way)
+    while not cursor.done:
+        made = _with_word(cursor, form, made)
+    return made
+
+
+def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
+    """The next word behind the way of positioning."""
+    column = cursor.column
+    if form != "RESET" and (side := cursor.take(_SIDE)):
+        _once(cursor, column, made.side, "SYM or SEQ")
+        return dataclasses.replace(made, side="".join(side.groups()))
+    if form != "RESET" and (rotation := cursor.take(_ROTATION)):
+        _once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
+        return dataclasses.replace(made, rotation=f"{rotation.group(1)} ROT")
+    if cursor.keyword("DIST"):
+        if made.way != "MOVE":
+            text = f"DIST belongs to MOVE, not to {made.way}."
+            raise klartext_faults.syntax(cursor.line, column, text, "Take it out.")
+        _once(cursor, column, made.distance, "DIST")
+        return dataclasses.replace(made, distance=cursor.number("DIST"))
+    return _with_motion(cursor, made, column)
+
+
+def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
+    if way := retract(cursor):
+        _demand_motion(cursor, made, column, "MB")
+        _once(cursor, column, made.retract, "MB")
+        return dataclasses.replace(made, retract=way)
+    if speed := feed(cursor):
+        _demand_motion(cursor, made, column, "F")
+        _once(cursor, column, made.feed, "F")
+        return dataclasses.replace(made, feed=speed)
+    if second := cursor.keyword(*_WAYS):
+        text = f"{second} stands behind {made.way}."
+        raise klartext_faults.syntax(cursor.line, column, text, "Take one of them out.")
+    raise cursor.expected("No word of a PLANE block")
+
+
+def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
+    if known:
+        raise doubled(cursor, column, what)
+
+
+def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) -> None:
+    if made.way == "STAY":
+        raise klartext_faults.syntax(
+            cursor.line, column, f"STAY moves nothing: no {what} here.", "Take it out."
+        )

@@ -1,0 +1,221 @@
+"""Source text of one line → words. Numbers follow a strict grammar; whatever is left over is an error."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from core.language.diagnostics import Diagnostic
+from core.language.omniturn import other_controls, word_faults
+from core.language.omniturn.omniturn_words import BARE, Line, Word
+
+LONGEST_LINE = 8192
+
+# Most lines of a long program are nothing but these words; they need no look at each character.
+_NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
+_USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
+_USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
+_WORD = re.compile(r"(LS|LF|RF|CA|CI|[A-Z}])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))?")
+_THREAD = re.compile(r"G3[34](?![0-9.])")
+_TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
+_ZERO_LETTER = re.compile(r"O[0-9.]*")
+_EXPONENT = re.compile(r"E[+-]?[0-9]+")
+_THREE_LETTERS = re.compile(r"[^\W\d_]{3}")
+_COMMENT = re.compile(r"\([^)]*\)?")
+_LETTERS = re.compile(r"[^\W\d_]+")
+# Three letters and more are no code; one or two are none where no number follows. Numbers may stand between.
+_LONG, _SHORT = r"(?>[^\W\d_]{3,})", r"(?>[^\W\d_]+)(?!\s*[+\-.]*\d)"
+_NEXT = rf"(?:{_LONG}|{_SHORT}|(?>[^\W\d_]{{2}})(?=\s)|\d+(?:\.\d*)?|\.\d+)"
+_PROSE = re.compile(rf"(?<![^\W\d_])(?:{_LONG}|{_SHORT})(?:[\s,.;:!?'\"/&+-]*{_NEXT})*[.,;:!?]*")
+_THREAD_SIGNS = frozenset("PCO")
+_ZERO_SLIPS = re.compile(r"(?:[GMXZFS]O+)+[A-Z]?")
+_NUMBER_SIGNS = frozenset("0123456789.")
+_SPACE = re.compile(r"\s")
+
+
+class _Code(NamedTuple):
+    """The code of a line: upper case, no blanks, no comment, and the column that each character came from."""
+
+    text: str
+    written: str
+    columns: range | list[int]
+
+
+def lex_line(number: int, text: str) -> Line:
+    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+    if len(text) > LONGEST_LINE:
+        return Line(number, errors=(word_faults.too_long(number, len(text)),))
+    if _USUAL.fullmatch(text):
+        words = _usual_words(text)
+        if words is not None:
+            return Line(number, words, text=text)
+    errors: list[Diagnostic] = []
+    if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
+        text, told = _without_prose(number, text)
+        errors += told
+    written, columns, comment, comment_column = _without_comment(number, text, errors)
+    code = _Code(written.upper() if written.isascii() else _upper(written), written, columns)
+    block_delete = code.text.startswith("/")
+    words = _Scanner(number, code, errors).words(1 if block_delete else 0)
+    return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+
+
+def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
+    """The line with blanks where text stands that is no code, and one error for each stretch of it."""
+    bare = _COMMENT.sub(lambda found: " " * len(found[0]), text)
+    habit = other_controls.whole_line(bare)
+    if habit is not None:
+        column = len(bare) - len(bare.lstrip()) + 1
+        kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
+        return kept, [word_faults.error(number, column, *habit)]
+    told: list[Diagnostic] = []
+    for found in _stretches(bare):
+        start, end = found.span()
+        if bare[start - 1 : start] == ";":  # a comment as others write it
+            start -= 1
+            told.append(word_faults.of_sign(number, start + 1, ";", after_number=False))
+        else:
+            told.append(word_faults.text_outside(number, start + 1, found[0].strip()))
+        text = text[:start] + " " * (end - start) + text[end:]
+    return text, told
+
+
+def _stretches(bare: str) -> Iterator[re.Match[str]]:
+    """Words that somebody reads, with what stands between them."""
+    thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
+    for found in _PROSE.finditer(bare):
+        words = _LETTERS.findall(found[0].upper())
+        if thread:
+            words = [word for word in words if not _THREAD_SIGNS.issuperset(word)]
+        if any(len(word) >= 3 and not _ZERO_SLIPS.fullmatch(word) for word in words):
+            yield found
+
+
+def _usual_words(text: str) -> tuple[Word, ...] | None:
+    """The words of a line of usual words; None where one of them needs a closer look."""
+    words: list[Word] = []
+    column = 1
+    for written, letter, number in _USUAL_WORD.findall(text):
+        value = float(number)
+        if letter == "F" and value <= 0:
+            return None
+        words.append(Word(letter, value, column, written))
+        column += len(written)
+    return tuple(words)
+
+
+def _upper(text: str) -> str:
+    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
+
+
+def _without_comment(
+    number: int, text: str, errors: list[Diagnostic]
+) -> tuple[str, range | list[int], str | None, int]:
+    if "(" not in text:
+        written, columns = _without_blanks(text, 1)
+        return written, columns, None, 0
+    written, kept, comments, first, at = "", list[int](), list[str](), 0, 0
+    while (start := text.find("(", at)) >= 0:
+        piece, columns = _without_blanks(text[at:start], at + 1)
+        written, kept = written + piece, kept + list(columns)
+        first = first or start + 1
+        end = text.find(")", start)
+        if end < 0:
+            errors.append(word_faults.open_comment(number, start + 1))
+            end = len(text)
+        comments.append(text[start + 1 : end])
+        at = end + 1
+    piece, columns = _without_blanks(text[at:], at + 1)
+    return written + piece, kept + list(columns), " ".join(comments), first
+
+
+def _without_blanks(text: str, column: int) -> tuple[str, range | list[int]]:
+    if not _SPACE.search(text):
+        return text, range(column, column + len(text))
+    kept = [(sign, column + i) for i, sign in enumerate(text) if not sign.isspace()]
+    return "".join(sign for sign, _ in kept), [at for _, at in kept]
+
+
+class _Scanner:
+    """Goes once through the code of a line; what it cannot read it reports and skips."""
+
+    def __init__(self, number: int, code: _Code, errors: list[Diagnostic]) -> None:
+        self._number = number
+        self._code = code
+        self._errors = errors
+        self._thread = _THREAD.search(code.text) is not None
+
+    def words(self, at: int) -> tuple[Word, ...]:
+        found: list[Word] = []
+        text = self._code.text
+        while at < len(text):
+            match = _WORD.match(text, at)
+            if match is None:
+                at = self._skip(at, after_number=bool(found) and text[at - 1].isdigit())
+                continue
+            if self._thread and match[1] in {"CA", "CI"}:
+                found.append(Word("C", None, self._column(at), self._code.written[at : at + 1]))
+                at += 1
+                continue
+            at = self._read(match, found)
+        return tuple(found)
+
+    def _read(self, match: re.Match[str], found: list[Word]) -> int:
+        """One word and the fault that may follow it; returns where to go on."""
+        letter, digits, end = match[1], match[2], match.end()
+        text = self._code.text
+        if letter == "O" and not self._thread:
+            return self._letter_o(match.start())
+        if digits is None and letter not in BARE:
+            return self._without_number(letter, match)
+        if digits is None and text[end : end + 1] in {"+", "-", "."}:
+            return self._without_number(letter, match)
+        value = None if digits is None else float(digits) if len(digits) < 32 else float("inf")
+        written = self._code.written[match.start() : end]
+        word = Word(letter, value, self._column(match.start()), written)
+        fault = word_faults.of_word(self._number, word, digits)
+        if fault is not None:
+            self._errors.append(fault)
+        found.append(word)
+        return self._after_number(end) if digits is not None else end
+
+    def _without_number(self, letter: str, match: re.Match[str]) -> int:
+        text, end = self._code.text, match.end()
+        follower = text[end : end + 1]
+        if follower == "O":
+            return self._letter_o(end)
+        if follower == "," or other_controls.sign(follower) is not None:
+            return self._skip(end, after_number=False)
+        column = self._column(match.start())
+        self._errors.append(word_faults.no_number(self._number, column, letter, follower))
+        skipped = _TO_NEXT_LETTER.match(text, end)
+        return skipped.end() if skipped else end
+
+    def _after_number(self, at: int) -> int:
+        text = self._code.text
+        exponent = _EXPONENT.match(text, at)
+        if exponent is not None:
+            self._errors.append(word_faults.exponent(self._number, self._column(at)))
+            return exponent.end()
+        if text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS):
+            return self._letter_o(at)
+        return at
+
+    def _letter_o(self, at: int) -> int:
+        self._errors.append(word_faults.letter_o(self._number, self._column(at)))
+        match = _ZERO_LETTER.match(self._code.text, at)
+        return match.end() if match else at + 1
+
+    def _skip(self, at: int, *, after_number: bool) -> int:
+        sign = self._code.written[at]
+        after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
+        self._errors.append(
+            word_faults.of_sign(self._number, self._column(at), sign, after_number=after_number)
+        )
+        match = _TO_NEXT_LETTER.match(self._code.text, at)
+        return match.end() if match else at + 1
+
+    def _column(self, at: int) -> int:
+        return self._code.columns[at]

@@ -1,0 +1,126 @@
+"""Lines of plane switching: statements in parentheses, from (~PLXC) or (~PLZC) to (END).
+
+The original control's checker does not know them, so programs hide them from it as comments.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from core.language.diagnostics import ProgramError
+from core.language.omniturn.omniturn_words import Word
+from core.language.omniturn.word_faults import error
+
+_ENTRY = re.compile(r"\s*\(\s*~\s*(PLXC|PLZC)\s*\)\s*", re.IGNORECASE)
+_BARE_ENTRY = re.compile(r"\s*\(\s*PL[XZ]C\s*\)\s*", re.IGNORECASE)
+_FIRST_WORD = re.compile(r"\s*\(\s*[XYZFGHD]\s*[+-]?\s*[0-9.]", re.IGNORECASE)
+_STATEMENT = re.compile(r"\s*\(([^()]*)\)\s*")
+_WORD = re.compile(r"([A-Z])\s*([+-]?\s*(?:[0-9][0-9\s]*(?:\.[0-9\s]*)?|\.\s*[0-9][0-9\s]*))\s*")
+_END = re.compile(r"\s*M(?:30|02)\s*(?:\([^()]*\)\s*)?", re.IGNORECASE)
+_LETTERS = frozenset("XYZFGIJHD")
+_MOST = 10_000.0
+_MOST_FEED = 100_000.0
+_HINT = "Between the entry and (END) stand only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
+
+
+class PlaneLine(NamedTuple):
+    """One line of plane switching. ``name`` is PLXC, PLZC, END, or empty for a statement of ``words``.
+
+    ``arc`` is 2 or 3 on a line with G02 or G03, else 0. Words by letter, as numbers of the program.
+    """
+
+    name: str
+    words: dict[str, Word]
+    arc: int = 0
+
+
+def plane_entry(text: str) -> PlaneLine | None:
+    """The line as an entry to plane switching, None where it is anything else."""
+    match = _ENTRY.fullmatch(text) if "~" in text else None
+    return PlaneLine(match[1].upper(), {}) if match else None
+
+
+def lacks_sign(text: str, following: Iterable[str]) -> bool | None:
+    """Whether an entry lacks its ~, so that it and its lines are comments; None where it is no entry at all.
+
+    ``following``: the lines behind it. True where the next of them is a line of a plane; else it may be one.
+    """
+    if _BARE_ENTRY.fullmatch(text) is None:
+        return None
+    for line in following:
+        if line.strip():
+            return _FIRST_WORD.match(line) is not None
+    return False
+
+
+def ends_program(text: str) -> bool:
+    """Whether a line inside a plane is M30 or M02: (END) has been forgotten."""
+    return _END.fullmatch(text) is not None
+
+
+def lex_plane(number: int, text: str) -> PlaneLine:
+    """A line between the entry and (END). Raises ProgramError for anything that may not stand there."""
+    match = _STATEMENT.fullmatch(text) if text.isascii() else None
+    if match is None:
+        raise _refused(number, 1, "plane-line", "This line is no statement in parentheses.", _HINT)
+    inside = match[1].upper()
+    if inside.strip() == "END":
+        return PlaneLine("END", {})
+    words: dict[str, Word] = {}
+    at, base = len(inside) - len(inside.lstrip()), match.start(1) + 1
+    while at < len(inside):
+        word_match = _WORD.match(inside, at)
+        if word_match is None:
+            shown = inside[at : at + 8].strip()
+            message = f"'{shown}' is no word of plane switching."
+            raise _refused(number, base + at, "plane-word", message, _HINT)
+        word = _word(number, base + at, word_match)
+        if word.letter in words:
+            message = f"The line holds {word.letter} twice."
+            raise _refused(number, word.column, "word-twice", message, "Take one out.")
+        words[word.letter] = word
+        at = word_match.end()
+    return _sorted(number, words)
+
+
+def _word(number: int, column: int, match: re.Match[str]) -> Word:
+    letter, digits = match[1], re.sub(r"\s", "", match[2])
+    word = Word(letter, float(digits[:32]), column, letter + digits)
+    if letter not in _LETTERS:
+        raise _refused(number, column, "plane-word", f"{word.text} is no word of plane switching.", _HINT)
+    value = word.value or 0.0
+    if letter == "G" and digits not in {"02", "03"}:
+        message = f"{word.text}: of the G codes only G02 and G03 may stand in a plane."
+        raise _refused(number, column, "plane-word", message, _HINT)
+    if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
+        raise _refused(
+            number, column, "out-of-range", f"{word.text} is out of range.", "Look for a lost point."
+        )
+    return word
+
+
+def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
+    if not words:
+        raise _refused(number, 1, "plane-word", "The statement is empty.", _HINT)
+    for letter in ("H", "D"):
+        if letter in words and len(words) > 1:
+            message = f"{letter} stands with other words."
+            raise _refused(number, words[letter].column, "not-alone", message, f"Write ({letter}n) alone.")
+    code = words.get("G")
+    for letter in ("I", "J"):
+        if letter in words and code is None:
+            message = f"{words[letter].text} belongs to an arc, and neither G02 nor G03 is on the line."
+            raise _refused(number, words[letter].column, "word-unused", message, "G02 and G03 are one shot.")
+        if code is not None and letter not in words:
+            message = f"{letter} is missing: I and J are the coordinates of the arc's centre."
+            raise _refused(number, code.column, "arc-coordinate-missing", message, f"Add {letter}.")
+    if code is not None and "Z" in words:
+        message = "An arc of a plane moves X and Y alone."
+        raise _refused(number, words["Z"].column, "word-unused", message, "Move Z on another line.")
+    return PlaneLine("", words, int(code.value or 0) if code else 0)
+
+
+def _refused(line: int, column: int, code: str, message: str, hint: str) -> ProgramError:
+    return ProgramError(error(line, column, code, message, hint))

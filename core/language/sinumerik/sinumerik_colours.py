@@ -1,0 +1,40 @@
+"""The parts of a line by kind, for whoever colours a text: the same lexer that reads it to run."""
+
+from __future__ import annotations
+
+from core.language.sinumerik.sinumerik_lexer import lex_line
+from core.language.sinumerik.sinumerik_words import CORNERS, KEYS
+from core.language.sinumerik.subprogram_files import HEADER
+from core.language.syntax_colours import Ink, Span
+
+_OF_NAME = {"G": Ink.CODE, "M": Ink.CODE, "F": Ink.RUN, "S": Ink.RUN, "LIMS": Ink.RUN}
+
+
+def spans(text: str) -> list[Span]:
+    """The coloured parts of a line, faults last so that they are seen."""
+    if HEADER.fullmatch(text):
+        return [Span(0, len(text), Ink.CALL)]
+    line = lex_line(1, text)
+    code = text[: line.comment_column - 1] if line.comment_column else text
+    found = []
+    if not line.block.startswith("in line"):
+        at = code.upper().find(line.block)
+        found.append(Span(at, len(line.block), Ink.NUMBER))
+    for word in line.words:
+        ink = Ink.KEY if word.name in KEYS | CORNERS else _OF_NAME.get(word.name, Ink.POSITION)
+        found.append(Span(word.column - 1, _written(code, word.column - 1, len(word.text)), ink))
+    if line.call:
+        found.append(Span(line.call_column - 1, len(line.call), Ink.CALL))
+    if line.comment_column:
+        found.append(Span(line.comment_column - 1, len(text) - line.comment_column + 1, Ink.COMMENT))
+    faults = (error.column for error in line.errors if error.column)
+    return found + [Span(column - 1, 1, Ink.FAULT) for column in faults]
+
+
+def _written(code: str, at: int, signs: int) -> int:
+    """How far a word of so many signs reaches, blanks inside it counted."""
+    end = at
+    while signs and end < len(code):
+        signs -= not code[end].isspace()
+        end += 1
+    return end - at

@@ -1,0 +1,255 @@
+"""Source text of one SINUMERIK block → words. What the grammar does not name is an error."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.diagnostics import Diagnostic
+from core.language.sinumerik import sinumerik_words as known
+from core.language.sinumerik.sinumerik_alarms import SYNTAX, alarm, refused
+from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
+from core.language.typography import typed
+
+# --- What stands behind a letter, behind = or in brackets: a number or an R parameter, and what it may be.
+
+
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+PARAMETER = re.compile(r"R([0-9]+)")
+_LONGEST_CODE = 4  # digits
+
+
+class Value(NamedTuple):
+    """A number, or the number of the R parameter that gives it; and where it ends."""
+
+    number: float | None
+    r: int | None
+    end: int
+
+
+def value_at(text: str, at: int) -> Value | None:
+    """The value that begins at this place; None where none does."""
+    r = PARAMETER.match(text, at)
+    if r is not None:
+        number = int(r[1][:9])
+        return Value(None, number, r.end()) if number <= known.MOST_R else None
+    match = NUMBER.match(text, at)
+    return None if match is None else Value(float(match[0]), None, match.end())
+
+
+def beyond(word: Word) -> tuple[str, str] | None:
+    """What is wrong with the number of a word, and what to do; None where nothing is."""
+    if word.value is None:
+        return None
+    if word.name in {"G", "M"}:
+        digits = word.text[1:]
+        if digits.isdigit() and len(digits) <= _LONGEST_CODE:
+            return None
+        return f"{word.text} is no code", "Codes are whole numbers of up to four digits."
+    low, high = known.REACH["R" if PARAMETER.fullmatch(word.name) else word.name]
+    if low <= word.value <= high:
+        return None
+    return f"{word.text} is out of range", f"{word.name} lies between {low:g} and {high:g}."
+
+
+_HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
+# Nearly all words are these; they need no look at each sign.
+_PLAIN = re.compile(rf"\s*([GMXZCIKFS])({NUMBER.pattern})(?=[\sA-Z]|$)")
+_NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
+_ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=\s*")
+_FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
+_REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
+_PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
+_MOST_PASSES = 9999
+
+
+def lex_line(number: int, text: str) -> Line:
+    """The words of line ``number``. Never raises: errors are in the line, each with its column."""
+    code, comment = _without_comment(text)
+    upper = code.upper() if code.isascii() else _upper(code)
+    head = _HEAD.match(upper)
+    assert head is not None  # every part of it may be missing
+    level, kind, count, label = head.groups()
+    block = f"{kind}{count}" if kind else label or f"in line {number}"
+    scanner = _Scanner(number, block, upper)
+    if len(text) > LONGEST_LINE:
+        scanner.refuse(1, f"the block has {len(text)} characters", f"{LONGEST_LINE} are the most; split it.")
+    else:
+        scanner.scan(head.end())
+    return Line(
+        number,
+        block,
+        tuple(scanner.words),
+        label or "",
+        None if level is None else int(level or 0),
+        scanner.call,
+        scanner.call_column,
+        scanner.passes,
+        comment,
+        code[head.end() :].strip(),
+        tuple(scanner.errors),
+    )
+
+
+def _upper(text: str) -> str:
+    """ASCII upper case only: ``ß`` and ``ı`` are nothing that could turn into words."""
+    return "".join(sign.upper() if sign.isascii() else sign for sign in text)
+
+
+def _without_comment(text: str) -> tuple[str, int]:
+    at = text.find(";")
+    return (text, 0) if at < 0 else (text[:at], at + 1)
+
+
+class _Scanner:
+    """Goes once through the code of a block; what it cannot read it reports and skips."""
+
+    def __init__(self, number: int, block: str, text: str) -> None:
+        self.words: list[Word] = []
+        self.errors: list[Diagnostic] = []
+        self.call, self.call_column, self.passes = "", 0, 1
+        self._number, self._block, self._text = number, block, text
+
+    def scan(self, at: int) -> None:
+        """All words from ``at`` on."""
+        text = self._text
+        while at < len(text):
+            if match := _PLAIN.match(text, at):
+                at = self._plain(match)
+            elif text[at].isspace():
+                at += 1
+            elif match := _ASSIGNED.match(text, at):
+                at = self._assigned(match)
+            elif match := _NAME.match(text, at):
+                at = self._named(match)
+            elif text[at].isalpha() and text[at].isascii():
+                at = self._letter(at)
+            else:
+                _, hint = typed(text[at]) or ("", "Take it out; a comment begins with ;")
+                at = self._skip(at, f"{text[at]} is no word", hint)
+
+    def _plain(self, match: re.Match[str]) -> int:
+        """A letter and its number, with nothing behind that could belong to it."""
+        letter, number = match.groups()
+        word = Word(letter, float(number), match.start(1) + 1, letter + number)
+        if fault := beyond(word):
+            self.refuse(word.column, *fault)
+        self.words.append(word)
+        return match.end()
+
+    def refuse(self, column: int, text: str, hint: str) -> None:
+        """A syntax alarm at this column."""
+        self._tell(alarm(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+
+    def _tell(self, fault: Diagnostic) -> None:
+        """The first mistake of a block is told; what follows may come of it."""
+        if not self.errors:
+            self.errors.append(fault)
+
+    def _skip(self, at: int, text: str, hint: str) -> int:
+        self.refuse(at + 1, text, hint)
+        rest = _REST_OF_WORD.match(self._text, at)
+        return rest.end() if rest else at + 1
+
+    def _outside(self, at: int, end: int, name: str, why: str) -> int:
+        """A word of the language that this control does not execute."""
+        fault = refused(self._number, at + 1, "not-in-subset", self._block, f"{name}: {why}.", "Take it out.")
+        self._tell(fault)
+        rest = _REST_OF_WORD.match(self._text, end)
+        return rest.end() if rest and not self._text[end : end + 1].isspace() else end
+
+    def _letter(self, at: int) -> int:
+        """A letter and its number."""
+        text, letter = self._text, self._text[at]
+        if letter == "N" and text[at + 1 : at + 2].isdigit():
+            return self._skip(at, "the block number does not stand first", "Write it at the start.")
+        if letter not in known.LETTERS:
+            why = known.LETTERS_OUTSIDE.get(letter, "this control has no such word")
+            return self._outside(at, at + 1, letter, why)
+        match = NUMBER.match(text, at + 1)
+        if match is None:
+            instead = typed(self._text[at + 1 : at + 2])
+            hint = instead[1] if instead else f"Write {letter} with a number, or {letter}=…"
+            return self._skip(at, f"{letter} has no number", hint)
+        return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
+
+    def _named(self, match: re.Match[str]) -> int:
+        """A key word, or the name of a subprogram, which stands alone in its block."""
+        name, at, end = match[0], match.start(), match.end()
+        if name in known.KEYS:
+            self.words.append(Word(name, None, at + 1, name))
+            return end
+        base = name.rstrip("0123456789")
+        if name in known.NAMES_OUTSIDE or base == "CYCLE":
+            return self._outside(at, end, name, "this control does not execute it")
+        if name in known.ASSIGNED or base in known.ASSIGNED - {"X", "Z", "C", "I", "K", "F", "S"}:
+            return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
+        if self.words or self.call or self._text[end : end + 1] == "(":
+            return self._skip(
+                at, f"{name} is no word", "A comment begins with ;, and a subprogram's name stands alone."
+            )
+        return self._called(name, at, end)
+
+    def _called(self, name: str, at: int, end: int) -> int:
+        self.call, self.call_column = name, at + 1
+        passes = _PASSES.match(self._text, end)
+        if passes is None:
+            rest = self._text[end:]
+            if rest.strip():
+                self.refuse(end + 1, f"{rest.strip()} stands behind {name}", "A call stands alone.")
+            return len(self._text)
+        self.passes = int(passes[1][:9])
+        if not 1 <= self.passes <= _MOST_PASSES:
+            self.refuse(end + 1, f"P{passes[1]} is no number of passes", f"Write P1 to P{_MOST_PASSES}.")
+        if self._text[passes.end() :].strip():
+            self.refuse(passes.end() + 1, f"more stands behind {name}", "A call stands alone.")
+        return len(self._text)
+
+    def _assigned(self, match: re.Match[str]) -> int:
+        """A word with =."""
+        name, at, end = match[1], match.start(), match.end()
+        is_r = PARAMETER.fullmatch(name)
+        if is_r is None and name not in known.ASSIGNED:
+            why = known.LETTERS_OUTSIDE.get(name, "this control has no such word")
+            return self._outside(at, end, name, why)
+        if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
+            return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
+        form = Form.PLAIN
+        found = _FORM.match(self._text, end)
+        if found is not None and not PARAMETER.match(self._text, end):
+            return self._target(name, at, found)
+        value = value_at(self._text, end)
+        if value is None:
+            return self._skip(at, f"{name}= has no value", "Write a number or an R parameter.")
+        written = "".join(self._text[at : value.end].split())
+        return self._keep(Word(name, value.number, at + 1, written, form, value.r), value.end)
+
+    def _target(self, name: str, at: int, found: re.Match[str]) -> int:
+        """AC( ), IC( ), DC( ), ACP( ), ACN( )."""
+        form, bracket = found[1], found[2]
+        if form not in known.FORMS.get(name, frozenset()):
+            allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or an R parameter"
+            return self._skip(at, f"{form} is nothing that {name}= takes", f"It takes {allowed}.")
+        if bracket is None:
+            return self._skip(at, f"{form} lacks its brackets", f"Write {name}={form}(…).")
+        value = value_at(self._text, found.end())
+        if value is None:
+            return self._skip(at, f"{form} has no value in its brackets", f"Write {name}={form}(…).")
+        close = value.end
+        while self._text[close : close + 1].isspace():
+            close += 1
+        if self._text[close : close + 1] != ")":
+            return self._skip(at, f"the bracket of {form} is not closed", f"Write {name}={form}(…).")
+        written = "".join(self._text[at : close + 1].split())
+        word = Word(name, value.number, at + 1, written, Form(form), value.r)
+        return self._keep(word, close + 1)
+
+    def _keep(self, word: Word, end: int) -> int:
+        after = self._text[end : end + 1]
+        if after in {".", "+", "-", "*", "=", "(", ")", ","}:
+            return self._skip(word.column - 1, f"{word.text}{after} is no number", "Correct the number.")
+        fault = beyond(word)
+        if fault:
+            self.refuse(word.column, *fault)
+        self.words.append(word)
+        return end
