@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 
-_MADE = Interrupted(
+_MADE = InterruptedJob(
     program="PIN.NC",
     job="a1",
     text="b2",
@@ -22,6 +22,6 @@ _MADE = Interrupted(
 )
 
 
-def broken_off(**changes: object) -> Interrupted:
+def broken_off(**changes: object) -> InterruptedJob:
     """Line 8 of PIN.NC with T3 in part 5, but for what is given."""
     return replace(_MADE, **changes)  # type: ignore[arg-type]

@@ -17,7 +17,7 @@ from core.language.source import Dialect
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from core.interpreter.elementary_blocks import Block
-    from core.proving.timeline import Timeline
+    from core.proving.program_timeline import Timeline
 
 _HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
 
@@ -32,7 +32,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the blocks in the order of execution; diagnostics go to stderr, 1 when there are errors."""
-    from core.proving.timeline import Timeline, timed_blocks
+    from core.proving.program_timeline import Timeline, timed_blocks
 
     path = Path(args.file)
     around = circumstances(args)

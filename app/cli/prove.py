@@ -15,7 +15,7 @@ from app.cli.progress import Progress
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
-    from core.proving.report import Report
+    from core.proving.proof_report import Report
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -43,7 +43,7 @@ def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
 
 def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
     from app.cli.shown import report_json, stops_of
-    from core.proving.prove import prove
+    from core.proving.prove_program import prove
 
     source = read_source(path, args)
     with Progress(f"proving {path.name}") as progress:

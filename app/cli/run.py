@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from app.desk.headless import Outcome
     from core.executor.job import Job
     from core.language.source import Dialect
-    from core.proving.report import Report
+    from core.proving.proof_report import Report
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -37,7 +37,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Prove, then run one cycle; 1 when the program or the run has errors."""
     from core.executor.job import make_job
-    from core.proving.prove import prove
+    from core.proving.prove_program import prove
 
     path = Path(args.file)
     if not args.headless:

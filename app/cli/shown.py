@@ -10,7 +10,7 @@ from core.language.source import Dialect
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
     from core.language.diagnostics import Diagnostic
-    from core.proving.report import Report
+    from core.proving.proof_report import Report
 
 MM_PER_INCH = 25.4
 

@@ -10,7 +10,7 @@ from app.cli.shown import Json, degrees, millimetres, seconds
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
     from core.interpreter.working_plane import Swivel
-    from core.proving.report import MillFigures, Report
+    from core.proving.proof_report import MillFigures, Report
 
 HEAD = (
     "    n  line  kind           X          Y          Z         A        B        C"

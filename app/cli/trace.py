@@ -18,7 +18,7 @@ from core.language.source import Dialect
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
     from core.machine.model import Machine
-    from core.proving.timeline import Timeline
+    from core.proving.program_timeline import Timeline
 
 
 def _interval(text: str) -> float:
@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
     1 when the program has errors.
     """
-    from core.proving.timeline import Timeline
+    from core.proving.program_timeline import Timeline
 
     path = Path(args.file)
     if args.json and args.out is None:
@@ -114,7 +114,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, pat
 
 
 def _write(timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], path: Path) -> None:
-    from core.proving.trace import setpoints
+    from core.proving.setpoint_trace import setpoints
 
     write(table.header)
     with Progress(f"tracing {path.name}") as progress:

@@ -21,7 +21,7 @@ def drawer(machine: Machine) -> Draw:
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
         from app.desk.picture import sketched
-        from core.proving.timeline import Timeline, timed_blocks
+        from core.proving.program_timeline import Timeline, timed_blocks
 
         blocks = timed_blocks(Timeline.of(job.reading, job.setup, machine))
         return sketched(_seen(blocks, frame), watch)

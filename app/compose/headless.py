@@ -17,8 +17,8 @@ from app.compose.shop_floor import open_shop_floor
 from app.desk.headless import HeadlessRun
 from app.desk.home import home
 from core.executor.executor import Executor
-from core.executor.interrupted import Interrupted
-from core.executor.interruption import Note
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.interruption_watch import Note
 from core.executor.snapshot import Event
 from core.machine.model import Machine
 from core.ports import DriverError
@@ -127,7 +127,7 @@ def _remembered(machine: Machine, *, anew: bool, say: Callable[[str], None]) -> 
         journal.close()
 
 
-def _demand_anew(left: Interrupted, *, anew: bool) -> None:
+def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
     if not anew:
         raise CommandError(
             f"a job was interrupted, {left.words}; T{left.tool} may stand in the part. Go on there with the"

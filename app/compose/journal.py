@@ -10,7 +10,7 @@ from pathlib import Path
 from app.desk.home import home
 from app.offsets.offset_book import OffsetBook, ZeroBook
 from app.programs.run_record import tell_cut_off
-from core.executor.interrupted import Interrupted, of_plain, plain
+from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store import backup
@@ -39,9 +39,9 @@ class Journal:
         self._store: Store | None = None
         self._program = ""
         self._trouble = ""
-        self._noted: Interrupted | None = None  # what a power cut would leave interrupted
+        self._noted: InterruptedJob | None = None  # what a power cut would leave interrupted
         self._closing = threading.Event()
-        self.left: Interrupted | None = None  # what the last one has left
+        self.left: InterruptedJob | None = None  # what the last one has left
         try:
             self._store = Store.open(folder)
             tell_cut_off(self._store)
@@ -73,7 +73,7 @@ class Journal:
         parts = sum(event.kind == "part" for event in tuple(held))
         return Held("", events=len(held), parts=parts).words
 
-    def note(self, what: Interrupted | None) -> None:
+    def note(self, what: InterruptedJob | None) -> None:
         """Keep what a power cut would leave interrupted now; None: nothing."""
         self._noted = what
         value = plain(what) if what is not None else None

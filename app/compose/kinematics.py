@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.geometry.kinematics import Kinematics, Rotary, Slide
+from core.geometry.mill_kinematics import Kinematics, Rotary, Slide
 from core.machine.kinematics import RotaryModel
 from core.machine.model import Axis, Machine
 

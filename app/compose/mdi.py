@@ -30,7 +30,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 
     def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
         from app.compose.proof import proof_of
-        from core.proving.prove import prove
+        from core.proving.prove_program import prove
 
         tools, secondary = offsets()
         setup = replace(

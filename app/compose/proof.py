@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.executor.job import Job, Proof
-from core.proving.report import Report
+from core.proving.proof_report import Report
 
 
 def proof_of(job: Job, report: Report) -> Proof:

@@ -34,10 +34,9 @@ from app.editor.editor import Editor
 from app.editor.versions import Bench, NoArchive
 from app.offsets.effect import Effect
 from core.executor.executor import Executor
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Event, Snapshot
-from core.executor.thread import ExecutorThread
-from core.executor.watchdog import Watchdog
+from core.executor.watchdog import ExecutorThread, Watchdog
 from core.interpreter.modal_state import Modal
 from core.machine.model import Machine
 from core.ports import Clock, DriverError
@@ -206,7 +205,7 @@ def _stops(journal: Journal) -> Sequence[EventRow]:
         return ()
 
 
-def _kept_nowhere(_what: Interrupted | None) -> None:
+def _kept_nowhere(_what: InterruptedJob | None) -> None:
     """A desk without a store remembers nothing."""
 
 

@@ -52,14 +52,14 @@ def workshop(
 
     def prove_job(job: Job, watch: Watch) -> Proved:
         from app.compose.proof import proof_of
-        from core.proving.prove import prove
+        from core.proving.prove_program import prove
 
         report = prove(job.reading, job.setup, machine, watch)
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(job: Job, watch: Watch) -> Picture:
         from app.desk.picture import sketched
-        from core.proving.timeline import Timeline, timed_series
+        from core.proving.program_timeline import Timeline, timed_series
 
         return sketched(timed_series(Timeline.of(job.reading, job.setup, machine)), watch)
 

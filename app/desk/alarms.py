@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from core.alarms import CATALOGUE, Code
-from core.executor.alarms import told
+from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event
 from core.store.rows import EventRow
 
@@ -63,7 +63,7 @@ def read_back(row: EventRow) -> Alarm | None:
     """An alarm as it was written into the log; None for what is none, or has no number."""
     found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
     code = _BY_NUMBER.get(int(found[1])) if found is not None else None
-    return None if found is None or code is None else told(code, found[3], row.line, 0.0)
+    return None if found is None or code is None else make_alarm(code, found[3], row.line, 0.0)
 
 
 def _local(at: str) -> str:

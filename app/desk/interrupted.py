@@ -10,7 +10,7 @@ from app.desk import formats
 from app.desk.session import Loaded
 from app.desk.settings import Units
 from app.desk.words import tr
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect
 
@@ -78,7 +78,7 @@ def may_go_on(loaded: Loaded) -> bool:
     return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
 
 
-def instead(found: Interrupted, name: str) -> str:
+def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
         "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT"
@@ -91,12 +91,12 @@ def _first(loaded: Loaded) -> str:
     return next((line.strip() for line in lines if line.strip()), "")
 
 
-def _changed(found: Interrupted, loaded: Loaded) -> bool:
+def _changed(found: InterruptedJob, loaded: Loaded) -> bool:
     job = loaded.job
     return job is not None and job.source.name == found.program and job.text_digest != found.text
 
 
-def _pass(found: Interrupted, loaded: Loaded) -> str:
+def _pass(found: InterruptedJob, loaded: Loaded) -> str:
     """Which time the line was gone through, where it is more than once in a part."""
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
@@ -106,7 +106,7 @@ def _pass(found: Interrupted, loaded: Loaded) -> str:
     return tr(" PASS {now} OF {all}").format(now=now, all=len(passes)) if now and len(passes) > 1 else ""
 
 
-def _places(found: Interrupted, snapshot: Snapshot, units: Units) -> str:
+def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
     """From home, as the readout FROM HOME counts: where the tool stood, and where it stands by now."""
     stood = _figures(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):

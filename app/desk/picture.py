@@ -19,12 +19,12 @@ from app.desk.drawing.chords import arc_pieces
 from app.desk.drawing.trail import SAME, Floats, Pencil, Stroke, Trail, bounds_of
 from app.desk.drawing.turned import TurnedSketch, way_of
 from app.desk.swivel.scene import Scene, SceneSketch
-from core.geometry.extent import arc_sweep
-from core.geometry.face import Face
+from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.virtual_mill import Face
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 
 if TYPE_CHECKING:
-    from core.geometry.mill import PlaneMove, Spot
+    from core.geometry.virtual_mill import PlaneMove, Spot
 
 WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.desk.pulse import Pulse
 from app.shopfloor.conditions import Condition, conditions_of
 from app.shopfloor.execution import Execution, mode_of
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.model import Machine
 
@@ -26,7 +26,7 @@ class Reading:
 
     values: Mapping[str, Value]
     conditions: Mapping[str, tuple[Condition, ...]] = field(default_factory=dict)
-    interrupted: Interrupted | None = None
+    interrupted: InterruptedJob | None = None
     alarms: tuple[Alarm, ...] = ()  # what the catalogue says of what is active
 
     def alarm(self, code: str) -> Alarm | None:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.shopfloor.reading import Reading
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm
 
 NAME = "status.json"
@@ -40,7 +40,7 @@ def status_of(machine: str, reading: Reading) -> Status:
     }
 
 
-def _interrupted(found: Interrupted | None) -> Status | None:
+def _interrupted(found: InterruptedJob | None) -> Status | None:
     """The job that did not come to its end; ``at`` is UTC, ISO 8601."""
     if found is None:
         return None

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from core.alarms.axes import AXES
-from core.alarms.control import CONTROL
-from core.alarms.entry import Code, Entries, Entry
-from core.alarms.program import PROGRAM
-from core.alarms.spindle import CHUCK, SPINDLE
-from core.alarms.station import STATION
-from core.alarms.wires import WIRES
+from core.alarms.alarm_entry import Code, Entries, Entry
+from core.alarms.axis_alarms import AXES
+from core.alarms.bus_alarms import WIRES
+from core.alarms.control_alarms import CONTROL, PROGRAM
+from core.alarms.spindle_alarms import CHUCK, SPINDLE
+from core.alarms.station_alarms import STATION
 
 SUBJECTS: tuple[tuple[str, Entries], ...] = (
     ("Slides and axis drives", AXES),

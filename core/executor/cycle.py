@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.alarms import CATALOGUE, Code
-from core.executor.alarms import TroubleError, held_by
-from core.executor.bench import Bench
-from core.executor.feed import BlockFeed, Pass, needs_speed
-from core.executor.limits import check_block
-from core.executor.moving import Moving, Progress
+from core.executor.machine_context import MachineContext
+from core.executor.path_section import PathMotion, Progress
+from core.executor.raised_alarm import AlarmError, code_of_hold
+from core.executor.read_ahead import ProgramPass, ReadAhead, check_block, needs_speed
 from core.executor.snapshot import State
-from core.executor.standstill import Next, Standstill
-from core.executor.waits import Wait, at_speed
+from core.executor.standstill import Next, Standstill, Wait, at_speed
 from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
@@ -32,9 +30,9 @@ class Cycle:
 
     def __init__(
         self,
-        bench: Bench,
-        mover: Moving,
-        source: Pass,
+        bench: MachineContext,
+        mover: PathMotion,
+        source: ProgramPass,
         begins: Modal,
         enter: Callable[[State], None],
         ended: Callable[[ProgramEnd | None], None],
@@ -44,7 +42,7 @@ class Cycle:
         self._enter = enter
         self._ended = ended
         self._needs_end = source.left is None
-        self._feed = BlockFeed(source, lambda block: check_block(block, bench.machine))
+        self._feed = ReadAhead(source, lambda block: check_block(block, bench.machine))
         self._state = State.RUN
         self._still = Standstill(bench, self._feed)
         self._spin_up: Wait | None = None  # before motion that was stopped goes on
@@ -90,7 +88,7 @@ class Cycle:
         if self._state not in _GOING:
             return
         self._reason, self._held_at = reason, self._bench.now
-        self._bench.stopped(*(held_by(reason, by) if code is None else (code, reason.lower())))
+        self._bench.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
         if self._mover.moving:
             self._mover.hold()
             self._change(State.HOLDING)
@@ -191,7 +189,7 @@ class Cycle:
         """A spindle that does not come to speed is a hold here: the program is not lost with it."""
         try:
             over = wait.over(self._bench.now)
-        except TroubleError:
+        except AlarmError:
             self._spin_up = None
             self.hold("SPINDLE NOT AT ITS SPEED")
             return
@@ -242,7 +240,7 @@ class Cycle:
                 self._read()
                 self._mover.begin(self._feed.take())
             case Next.END if self._needs_end:
-                raise TroubleError("no-end")
+                raise AlarmError("no-end")
             case Next.END:
                 self._ended(None)
             case _:

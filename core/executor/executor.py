@@ -7,27 +7,25 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
-from core.executor.alarms import TroubleError, log_alarm, told, words
-from core.executor.bench import Bench
-from core.executor.commanded import CommandedOutputs
+from core.executor.attempt import Attempt, ReportedAttempt
+from core.executor.command_handler import Orders
+from core.executor.commanded_outputs import CommandedOutputs
 from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Reset, Wheel
-from core.executor.conductor import Conductor
-from core.executor.feed import Pass
-from core.executor.gate import guard_open
-from core.executor.guard import Attempt, Guard
-from core.executor.interpret import interpret
-from core.executor.interrupted import Interrupted
-from core.executor.interruption import Note
-from core.executor.job import Job
-from core.executor.orders import Orders
-from core.executor.publish import Publisher
-from core.executor.snapshot import Event, Snapshot, State
-from core.executor.spindle import SpindleControl
-from core.executor.states import ACTIVE, CYCLE
-from core.executor.station_watch import StationWatch
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.interruption_watch import Note
+from core.executor.job import Job, interpret
+from core.executor.machine_context import MachineContext
+from core.executor.machine_control import MachineControl
+from core.executor.operator_station import StationWatch
+from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_alarm
+from core.executor.read_ahead import ProgramPass
+from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
+from core.executor.snapshot_publisher import Publisher
+from core.executor.spindle_control import SpindleControl
+from core.executor.start_conditions import guard_open
 from core.interpreter.job_setup import Setup
 from core.machine.model import Machine
-from core.motion.errors import MotionError
+from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError
 
 _STALL = 0.2  # s between two ticks that tell of a stalled host
@@ -39,7 +37,7 @@ _COMMANDS = 100  # looked at in one tick
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
-def _kept_nowhere(_what: Interrupted | None) -> None:
+def _kept_nowhere(_what: InterruptedJob | None) -> None:
     """Nothing outlives this executor."""
 
 
@@ -55,15 +53,15 @@ class Executor:
         machine: Machine,
         ports: MachinePorts,
         on_event: Callable[[Event], None],
-        passes: Callable[[Job, Setup], Pass] = interpret,
+        passes: Callable[[Job, Setup], ProgramPass] = interpret,
         note: Note = _kept_nowhere,
-        left: Interrupted | None = None,
+        left: InterruptedJob | None = None,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         outputs = CommandedOutputs(ports.io, machine.outputs)
-        self._bench = Bench(
+        self._bench = MachineContext(
             machine,
             replace(ports, io=outputs),
             on_event,
@@ -74,7 +72,7 @@ class Executor:
             outputs,
         )
         self._station = StationWatch()
-        self._conductor = Conductor(self._bench, passes, note, left)
+        self._conductor = MachineControl(self._bench, passes, note, left)
         self._orders = Orders(self._bench, self._conductor, self._station)
         self._publisher = Publisher()
         self._told = 1.0
@@ -94,7 +92,7 @@ class Executor:
 
     def tick(self) -> None:
         """Once every 10 to 20 ms: look, obey, supervise, go on, publish. Raises nothing."""
-        with Guard(self.failed) as look:
+        with ReportedAttempt(self.failed) as look:
             self._look()
         if look.error is not None:
             self._blind()
@@ -109,33 +107,33 @@ class Executor:
         then stands still. Should this executor ever tick again, the alarm is what it begins with.
         """
         self._silent = why
-        alarm = told("control-silent", why, self._bench.line, self.snapshot.t)
+        alarm = make_alarm("control-silent", why, self._bench.line, self.snapshot.t)
         log_alarm(alarm)
         shown = replace(self.snapshot, state=State.FAULT, alarms=(*self.snapshot.alarms, alarm))
         self.snapshot = shown
-        self._bench.tell(Event(shown.t, "alarm", words(alarm), alarm.line, alarm))
+        self._bench.tell(Event(shown.t, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _mind_watchdog(self) -> None:
         if self._silent:
             why, self._silent = self._silent, ""
-            raise TroubleError("control-silent", why)
+            raise AlarmError("control-silent", why)
 
     def failed(self, error: BaseException) -> None:
         """A driver that does not answer, or a mistake of the control itself: nothing may go on."""
         if isinstance(error, DriverError):
-            self._conductor.alarm(TroubleError(error.code, str(error)))
+            self._conductor.alarm(AlarmError(error.code, str(error)))
         else:
             self._conductor.failed(error)
 
     def shut(self) -> None:
         """The end of the executor: nothing is left moving or switched on. Raises nothing."""
-        with Guard(self.failed):
+        with ReportedAttempt(self.failed):
             self._conductor.shut()
         self._show()
 
     def _show(self) -> None:
         """Where the machine cannot be read any more, its state and alarms at least."""
-        with Guard(self.failed) as publishing:
+        with ReportedAttempt(self.failed) as publishing:
             self.snapshot = self._publish()
         if publishing.error is not None:
             standing = self._conductor.standing
@@ -207,7 +205,7 @@ class Executor:
         self._conductor.disturbance.look()
         self._conductor.supervisor.look(self._conductor.state)
         if self._conductor.state in _POWERED and not self._bench.sample.enabled:
-            raise TroubleError("power-lost")
+            raise AlarmError("power-lost")
 
     def _go_on(self) -> None:
         self._conductor.go_on()
@@ -220,17 +218,17 @@ class Executor:
 
     def _guarded(self, part: Callable[[], None]) -> None:
         """What a part of a tick has to tell becomes an alarm, and the other parts go on."""
-        with Guard(self.failed):
+        with ReportedAttempt(self.failed):
             try:
                 part()
-            except TroubleError as trouble:
+            except AlarmError as trouble:
                 self._conductor.alarm(trouble)
             except MotionError as error:
-                self._conductor.alarm(TroubleError("program", str(error)))
+                self._conductor.alarm(AlarmError("program", str(error)))
             except TrippedError:
                 pass  # refused, since the feeder has stopped something: the next look tells what
             except DriverError as error:
-                self._conductor.alarm(TroubleError(error.code, str(error)))
+                self._conductor.alarm(AlarmError(error.code, str(error)))
 
     def _publish(self) -> Snapshot:
         return self._publisher.snapshot(self._bench, self._conductor)

@@ -9,15 +9,48 @@ from __future__ import annotations
 
 import math
 
-from core.executor import ride
-from core.executor.bench import Bench
-from core.executor.clicks import Clicks
+from core.executor import jogging
 from core.executor.commands import Wheel
-from core.executor.jog import LONGEST_LEASE, Jogger, at_the_end
-from core.executor.ride import Piece
+from core.executor.jogging import LONGEST_LEASE, Jogger, Ramp, at_the_end
+from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State
 from core.machine.hardware.wheel import ENABLE, WHEEL, selector
 from core.machine.model import Axis
+
+# --- counts and clicks ----------------------------------------------------------------------------------
+
+
+_FASTEST = 1000.0  # clicks a second and
+_AT_ONCE = 10  # clicks more are what a hand can do; 300 a second is a hard spin
+_AWAY = 0.1  # s between two looks; what was turned in a longer one is old
+
+
+class WheelClicks:
+    """``per``: counts of one click; a negative number turns the wheel round."""
+
+    def __init__(self, per: int) -> None:
+        self._per = per
+        self._last: tuple[float, int] | None = None  # time and counts of the last look
+        self._base = 0  # counts that have become clicks
+        self.still = 0.0  # s since it has last moved
+        self.leapt = False  # this look: a leap that no hand makes
+
+    def take(self, counts: int, now: float) -> int:
+        """Clicks since the last look, signed. Half a click waits: a wheel that rests on its edge is still."""
+        before, self._last = self._last, (now, counts)
+        if before is None:
+            self._base = counts
+            return 0
+        passed, moved = now - before[0], abs(counts - before[1])
+        self.leapt = moved > abs(self._per) * (_FASTEST * passed + _AT_ONCE)
+        if self.leapt or passed > _AWAY:
+            self._base, self.still = counts, 0.0
+            return 0
+        clicks = int((counts - self._base) / self._per)  # towards 0
+        self._base += clicks * self._per
+        self.still = 0.0 if clicks else self.still + passed
+        return clicks
+
 
 LONGEST_CLICK = 0.254  # mm (.01 in)
 LONGEST_TURN = 0.5  # degrees
@@ -30,12 +63,12 @@ _ROUNDING = 1e-9
 class Handwheel:
     """``axis`` is what it moves, empty for nothing; ``ended`` tells why it was taken away."""
 
-    def __init__(self, bench: Bench, jogger: Jogger) -> None:
+    def __init__(self, bench: MachineContext, jogger: Jogger) -> None:
         model = bench.machine.hardware.analog.get(WHEEL)
         self._bench = bench
         self._jogger = jogger
         self._there = model is not None and bench.ports.blocks is None
-        self._clicks = Clicks(model.counts_per_click if model else 1)
+        self._clicks = WheelClicks(model.counts_per_click if model else 1)
         self.axis = ""
         self.ended = ""
         self._step = 0.0
@@ -153,7 +186,7 @@ class Handwheel:
         if axis.travel is None or not self._bench.sample.homed[index]:
             return wanted
         here = self._bench.sample.demand[index]
-        low, high = axis.travel[0] + ride.MARGIN, axis.travel[1] - ride.MARGIN
+        low, high = axis.travel[0] + jogging.LIMIT_MARGIN, axis.travel[1] - jogging.LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
             self._tell(at_the_end(axis.name, wanted - allowed))
@@ -172,7 +205,7 @@ class _Ride:
         self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
         self.goal = wanted
 
-    def pieces(self, _start: float, p: float, v: float) -> list[Piece]:
+    def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
         """For ``Jogger.chase``: as fast as is needed to be a tenth of a second behind."""
         way = self._wanted - p
         longest = max(self._top * _BEHIND + v * v / (2.0 * self._amax), self._step)
@@ -180,4 +213,4 @@ class _Ride:
             way = math.copysign(longest, way)
             self.goal = p + way
         least = max(abs(way), v * v / (2.0 * self._amax))
-        return ride.reach(v, way, min(self._top, least / _BEHIND), self._amax)
+        return jogging.reach_ramps(v, way, min(self._top, least / _BEHIND), self._amax)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from core.interpreter.dialects import ReadProgram
+from core.executor.read_ahead import ProgramPass
+from core.interpreter.dialects import ReadProgram, line_alone
 from core.interpreter.job_setup import Setup
 from core.interpreter.machine_requirements import Need
 from core.interpreter.modal_state import Modal
@@ -86,3 +89,22 @@ def outdated(job: Job, left: Modal) -> str:
     if RAPID in job.carries and not math.isclose(job.setup.last_rapid, left.rapid_rate):
         return "the rapid rate is another one now"
     return ""
+
+
+# --- a job interpreted ----------------------------------------------------------------------------------
+
+
+def interpret(job: Job, setup: Setup) -> ProgramPass:
+    """One pass; its blocks end at the first error, which ``problems`` then tells."""
+    if setup.begin is not None and setup.begin.single:
+        line = line_alone(job.source, setup)
+        return ProgramPass(
+            line.blocks(to_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint
+        )
+    interpreter = job.reading.begin(setup)
+    return ProgramPass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
+
+
+def circumstances(setup: Setup, start: tuple[float, ...], inputs: Callable[[str], bool]) -> Setup:
+    """The job's setup at this machine now: from where the slides stand, with its inputs live."""
+    return dataclasses.replace(setup, start=start, inputs=inputs)

@@ -6,14 +6,63 @@ back.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.tracks import Track, Tracks
-from core.motion.plan import plan
-from core.motion.profile import Profile
+from core.motion.motion_plan import plan
+from core.motion.motion_profile import Profile
 from core.ports import AxisSink, DriverError, Segments
+
+# --- what the queue holds -------------------------------------------------------------------------------
+
+
+class Track(NamedTuple):
+    """From time ``since`` on this plan is played; its own time zero is at ``origin``."""
+
+    since: float
+    origin: float
+    profile: Profile
+
+    def state(self, t: float) -> tuple[float, float]:
+        """Distance along the path and speed at ``t``."""
+        s, v = self.profile.at(t - self.origin)
+        return float(s[0]), float(v[0])
+
+    def block(self, t: float) -> int:
+        """Number of the block being played at ``t``."""
+        return int(self.profile.block_at(t - self.origin)[0])
+
+
+class Tracks:
+    """The plans in the order in which they are played."""
+
+    def __init__(self) -> None:
+        self._tracks: list[Track] = []
+
+    def clear(self) -> None:
+        """Nothing is queued."""
+        self._tracks = []
+
+    @property
+    def last(self) -> Track | None:
+        """How the queue ends."""
+        return self._tracks[-1] if self._tracks else None
+
+    def at(self, t: float) -> Track | None:
+        """The plan that is played at ``t``; before the first one, that."""
+        for track in reversed(self._tracks):
+            if track.since <= t:
+                return track
+        return self._tracks[0] if self._tracks else None
+
+    def replace(self, t: float, tracks: Sequence[Track], now: float) -> None:
+        """What was spliced at ``t``; what is over by ``now`` is forgotten."""
+        kept = [track for track in self._tracks if track.since < t]
+        over = max((i for i, track in enumerate(kept) if track.since <= now), default=0)
+        self._tracks = [*kept[over:], *tracks]
+
 
 _AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 _SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import partial
 
 from core.alarms import Reaction
-from core.executor.bench import Bench
-from core.executor.guard import Attempt
+from core.executor.attempt import Attempt
+from core.executor.machine_context import MachineContext
 from core.ports import DriverError, Stop
 
 _log = logging.getLogger(__name__)
@@ -23,7 +23,7 @@ Step = tuple[str, Callable[[], None]]
 class SafeStop:
     """``react`` does every step, ``again`` those that failed. Ctrl-C is all that they let through."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: MachineContext) -> None:
         self._bench = bench
         self._failed: list[Step] = []
         self._tried_at = 0.0

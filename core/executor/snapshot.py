@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from core.alarms import Code
-from core.executor.interrupted import Interrupted
+from core.executor.interrupted_job import InterruptedJob
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
 
@@ -111,7 +111,7 @@ class Snapshot:
     proof_wanted: bool = False  # a job is loaded that no proof covers
     starts: Starts = Starts.PROGRAM  # what Cycle Start begins
     prepared: str = ""  # digest of the line or restart that Cycle Start would begin
-    interrupted: Interrupted | None = None  # a program that did not come to its end
+    interrupted: InterruptedJob | None = None  # a program that did not come to its end
     confirmed: bool = False  # that a start at the first line is meant all the same
     lines: int = 0  # of MDI that were begun since the executor was started
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
@@ -143,3 +143,41 @@ class Event:
     text: str
     line: int = 0
     alarm: Alarm | None = None  # of an alarm, an E-stop and a stop: what the catalogue says of it
+
+
+# --- which state may follow which -----------------------------------------------------------------------
+
+
+# Only E-stop and alarm may come from anywhere; nothing leads from them back into motion.
+_ALWAYS = {State.ESTOP, State.FAULT}
+_UNDER_WAY = {State.RUN, State.WAIT, State.HOLDING, State.HOLD, State.BLOCK_END, State.PROGRAM_STOP}
+
+TRANSITIONS: dict[State, frozenset[State]] = {
+    State.ESTOP: frozenset({State.DISABLED}),
+    State.DISABLED: frozenset({State.IDLE, *_ALWAYS}),
+    State.IDLE: frozenset({State.RUN, State.JOG, State.HOME, State.DISABLED, *_ALWAYS}),
+    State.RUN: frozenset({*_UNDER_WAY, State.IDLE, *_ALWAYS} - {State.RUN}),
+    State.WAIT: frozenset({*_UNDER_WAY, State.IDLE, *_ALWAYS} - {State.WAIT}),
+    State.HOLDING: frozenset({State.HOLD, State.BLOCK_END, State.IDLE, *_ALWAYS}),
+    State.HOLD: frozenset({State.RUN, State.WAIT, State.IDLE, *_ALWAYS}),
+    State.BLOCK_END: frozenset({State.RUN, State.WAIT, State.HOLD, State.IDLE, *_ALWAYS}),
+    State.PROGRAM_STOP: frozenset({State.RUN, State.WAIT, State.BLOCK_END, State.IDLE, *_ALWAYS}),
+    State.JOG: frozenset({State.IDLE, *_ALWAYS}),
+    State.HOME: frozenset({State.IDLE, *_ALWAYS}),
+    State.FAULT: frozenset({State.ESTOP, State.DISABLED, State.IDLE}),
+}
+
+ACTIVE = frozenset({State.RUN, State.WAIT, State.HOLDING})  # the cycle goes on by itself
+STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})  # Cycle Start goes on
+CYCLE = ACTIVE | STOPPED
+BY_HAND = frozenset({State.IDLE, State.JOG})  # the machine is worked by hand: its spindle switch is one
+
+
+class TransitionError(Exception):
+    """The executor asked for a change of state that the table does not hold."""
+
+
+def demand_allowed(old: State, new: State) -> None:
+    """Raises TransitionError unless ``new`` may follow ``old``."""
+    if new not in TRANSITIONS[old]:
+        raise TransitionError(f"state {old.value} cannot become {new.value}")

@@ -2,12 +2,163 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import Enum, auto
 
-from core.executor.bench import Bench
-from core.executor.feed import BlockFeed, needs_speed
-from core.executor.waits import Wait, at_speed, carry_out, in_position
+from core.alarms import Code
+from core.executor import start_conditions
+from core.executor.machine_context import MachineContext
+from core.executor.raised_alarm import AlarmError
+from core.executor.read_ahead import ReadAhead, needs_speed
+from core.executor.spindle_control import SpindleDemand
+from core.interpreter.actions import (
+    Collet,
+    Coolant,
+    Dwell,
+    Output,
+    RepeatOff,
+    SpindleLock,
+    SpindleRun,
+    SpindleStop,
+    WaitInput,
+)
 from core.interpreter.elementary_blocks import Block, Kind
+
+# --- waits and actions ----------------------------------------------------------------------------------
+
+
+_IN_POSITION = 1.0  # s for a slide that is at rest to arrive
+_COLLET_LATE = 2.0  # s beyond its time
+_CHANGE_OVER = 25.0  # s in which a spindle's drive has become C, its index found
+
+
+@dataclass(slots=True)
+class Wait:
+    """One wait. ``label`` is empty for waits that are too short to show; time held does not count."""
+
+    label: Callable[[], str]
+    done: Callable[[float], bool]
+    since: float
+    timeout: float = float("inf")
+    alarm: Code = "internal"
+
+    def over(self, now: float) -> bool:
+        """Whether it is over; raises TroubleError when it took too long."""
+        if self.done(now - self.since):
+            return True
+        if now - self.since > self.timeout:
+            raise AlarmError(self.alarm)
+        return False
+
+    def shift(self, held: float) -> None:
+        """The cycle was held so long."""
+        self.since += held
+
+
+def in_position(bench: MachineContext) -> Wait:
+    """Until the slides are where they were sent."""
+    return Wait(lambda: "", lambda _: bench.in_position(), bench.now, _IN_POSITION, "in-position")
+
+
+def at_speed(bench: MachineContext, *, thread: bool = False) -> Wait:
+    """Until the spindle turns as commanded, and for a thread until its encoder is read again after a stall.
+
+    While the operator keeps it still there is no time limit.
+    """
+    spindle = bench.spindle
+    wait = Wait(
+        lambda: spindle.why_slow or "AT SPEED",
+        lambda _: spindle.at_speed(bench.now),
+        bench.now,
+        bench.machine.spindle.timeout,
+        "at-speed",
+    )
+
+    def done(_: float) -> bool:
+        if spindle.why_slow:
+            wait.since = bench.now
+        read = spindle.turns.known or bench.ports.spindle.angle() is None
+        return spindle.at_speed(bench.now) and (read or not thread)
+
+    wait.done = done
+    return wait
+
+
+def carry_out(block: Block, bench: MachineContext) -> Wait | None:
+    """Do what an action block says; returns what has to be waited for. Raises TroubleError, DriverError.
+
+    Stops and ends of the program are the cycle's own business and do nothing here; offsets, shifts and
+    presets are in the blocks already.
+    """
+    match block.action:
+        case SpindleRun():
+            _start_spindle(block, bench)
+        case SpindleStop():
+            bench.spindle.stop()
+        case SpindleLock(orient=orient):
+            return _lock_spindle(bench, orient=orient)
+        case Coolant(on=on):
+            bench.ports.io.write("coolant", on)
+        case Output(name=name, on=on):
+            bench.ports.io.write(name, on)
+        case Collet(closed=closed):
+            return _move_collet(closed, bench)
+        case RepeatOff():
+            bench.switches.cycle_repeat = False
+            bench.say("switch", "cycle repeat off by M31")
+        case Dwell(seconds=seconds):
+            return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, bench.now)
+        case WaitInput(terminal=terminal, closed=closed):
+            return Wait(lambda: terminal, lambda _: bench.terminal(terminal) == closed, bench.now)
+        case _:
+            pass
+    return None
+
+
+def _start_spindle(block: Block, bench: MachineContext) -> None:
+    if start_conditions.unclamped(bench):
+        raise AlarmError("collet-open", line=block.line)
+    bench.spindle.ask(SpindleDemand.of(block))
+
+
+def _lock_spindle(bench: MachineContext, *, orient: bool) -> Wait:
+    """C may move once the spindle stands and its drive positions; held already it is only kept."""
+    spindle, change = bench.spindle, 0.0
+    if bench.ports.lock is None or not spindle.held:
+        spindle.stop()
+        change = 0.0 if bench.ports.lock is None else _CHANGE_OVER
+    limit = bench.machine.spindle.timeout + change
+    return Wait(
+        lambda: "C AXIS" if spindle.stopped else "SPINDLE STOP",
+        lambda _: spindle.stopped and spindle.hold(orient=orient),
+        bench.now,
+        limit,
+        "ignores-stop",
+    )
+
+
+def _move_collet(closed: bool, bench: MachineContext) -> Wait:
+    """Where the machine file forbids unclamping at speed, opening waits until the spindle has run down."""
+    waits = not closed and not bench.machine.interlocks.unclamp_while_turning
+    if waits and bench.spindle.asked:
+        raise AlarmError("unclamp", f"the spindle turns at {bench.spindle.measured:.0f} rpm")
+    timing = bench.machine.timing
+    time = timing.collet_close if closed else timing.collet_open
+    moved_at: list[float] = []
+
+    def done(passed: float) -> bool:
+        if not moved_at:
+            if waits and not bench.spindle.stopped:
+                return False
+            bench.ports.io.write("collet", closed)
+            moved_at.append(passed)
+            return False
+        switch = bench.inputs.get("collet_closed")
+        return passed - moved_at[0] >= time if switch is None else switch == closed
+
+    limit = time + _COLLET_LATE + (bench.machine.spindle.timeout if waits else 0.0)
+    return Wait(lambda: "COLLET" if moved_at else "SPINDLE STOP", done, bench.now, limit, "collet")
 
 
 class Next(Enum):
@@ -25,7 +176,7 @@ class Next(Enum):
 class Standstill:
     """``done`` is for single block: something was executed since the last stop."""
 
-    def __init__(self, bench: Bench, feed: BlockFeed) -> None:
+    def __init__(self, bench: MachineContext, feed: ReadAhead) -> None:
         self._bench, self._feed = bench, feed
         self._wait: Wait | None = None
         self._settled = True  # in position since the last motion

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.thread_way import Phases, Way
-from core.executor.turns import Turns
+from core.executor.spindle_control import SpindleAngle
+from core.executor.thread_path import Phases, ThreadPath
 from core.interpreter.elementary_blocks import Block
-from core.motion.limits import MotionLimits
+from core.motion.axis_limits import MotionLimits
 from core.ports import AxisSink, DriverError, Segments
 
 _BLEND = 0.01  # s in which a deviation is taken out
@@ -36,10 +36,12 @@ class ThreadPass:
     Raises TroubleError where the spindle does not turn or has no encoder.
     """
 
-    def __init__(self, axes: AxisSink, limits: MotionLimits, turns: Turns, blocks: Sequence[Block]) -> None:
+    def __init__(
+        self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
+    ) -> None:
         self._axes = axes
         self._turns = turns
-        self._way = Way.of(blocks, limits)
+        self._way = ThreadPath.of(blocks, limits)
         self._top = limits.vmax[1]
         self._lead, self._ramp = self._way.lead, _SHARE * self._way.a
         self.blocks = tuple(blocks)

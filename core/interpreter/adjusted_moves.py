@@ -6,8 +6,7 @@ import re
 from dataclasses import replace
 from math import pi
 
-from core.geometry.arcs import Point
-from core.geometry.contour import Arc, Element, Line, arc_between
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
 from core.interpreter import units
 from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind

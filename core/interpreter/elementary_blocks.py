@@ -14,9 +14,9 @@ from typing import NamedTuple, overload
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.extent import arc_extent
-from core.geometry.mill import PlaneMove
-from core.geometry.travel import Travel
+from core.geometry.lines_and_arcs import arc_extent
+from core.geometry.machine_travel import Travel
+from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from core.geometry.face import Face
-from core.geometry.side import Side
+from core.geometry.virtual_mill import Face, Side
 
 # --- Where the virtual mill of plane switching stands: part of the modal state between two of its moves.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from core.geometry.frames import IDENTITY, Matrix, Vector
-from core.geometry.kinematics import Kinematics, Place
+from core.geometry.mill_kinematics import Kinematics, Place
+from core.geometry.rotation_frames import IDENTITY, Matrix, Vector
 
 Corners = tuple[Vector, Vector]
 Angles = tuple[float | None, float | None, float | None]

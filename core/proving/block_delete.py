@@ -8,7 +8,7 @@ from dataclasses import replace
 from core.interpreter.machine_requirements import first_needs
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
-from core.proving.report import Report, Ways
+from core.proving.proof_report import Report, Ways
 
 # / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.
 _DELETED = {

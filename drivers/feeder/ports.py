@@ -4,17 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.ports import (
-    AxisSample,
-    Cam,
-    DriverError,
-    Geared,
-    MachinePorts,
-    Segments,
-    StationState,
-    Stop,
-    Trip,
-)
+from core.ports import AxisSample, Cam, DriverError, Geared, MachinePorts, Segments, StationState, Stop, Trip
 from drivers.feeder.client import Line
 from drivers.feeder.wire import (
     NOTHING,

@@ -1,12 +1,11 @@
-"""The block-level port: tickets, holds and overrides on the conversation; ``core.block_port.BlockSink``."""
+"""The block-level port: tickets, holds and overrides on the conversation; ``core.ports.BlockSink``."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-from core.block_port import BlockOp, BlockState, ThreadOp
-from core.ports import DriverError, code_of
+from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import codes, scripts
 from drivers.grblhal.controller import Controller
 from drivers.grblhal.gcode import line_number, line_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from core.block_port import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
+from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
 
 _LAST_NUMBER = 9_000_000
 _DOT = 0.002  # mm; see ``_arc``

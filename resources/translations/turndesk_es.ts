@@ -4649,402 +4649,402 @@
       <translation>CEROS AJUSTABLES  ·  X ES RADIO  ·  MM Y GRADOS</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>E-stop is pressed or the safety circuit is open</source>
       <translation>el paro de emergencia está oprimido o el circuito de seguridad está abierto</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>Reset, Drives On, home all axes before anything is started</source>
       <translation>Reset, encienda servos, referencie todos los ejes antes de arrancar nada</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>Reset, Drives On, home; if it stands on the switch move it off by hand first</source>
       <translation>Reset, encienda servos, referencie; si está sobre el interruptor, sáquelo antes a mano</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>Reset, Drives On, start again; if it comes again, the log says what was refused</source>
       <translation>Reset, encienda servos, arranque otra vez; si se repite, la bitácora dice qué se rechazó</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>Reset, Drives On; compare the machine file with the drives before the program is run again</source>
       <translation>Reset, encienda servos; compare el archivo de máquina con los servos antes de correr otra vez el programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>Reset, Drives On; end other programs on this computer, and restart at the line</source>
       <translation>Reset, encienda servos; cierre otros programas de esta computadora y reinicie en la línea</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive does not take its settings</source>
       <translation>un servo no acepta sus ajustes</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive has restarted</source>
       <translation>un servo se reinició</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive has tripped: its display says why</source>
       <translation>un servo se disparó: su pantalla dice por qué</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive keeps its fault</source>
       <translation>un servo conserva su falla</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive shows a fault</source>
       <translation>un servo muestra una falla</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a drive was not ready any more</source>
       <translation>un servo ya no estaba listo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a fuse or the drives' supply</source>
       <translation>un fusible o la alimentación de los servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a motor or encoder cable</source>
       <translation>un cable de motor o de encoder</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a move beyond what the drives allow</source>
       <translation>un movimiento más allá de lo que permiten los servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a node number is wrong</source>
       <translation>un número de nodo está mal</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>a slide has hit its limit switch</source>
       <translation>un carro tocó su interruptor de límite</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>an axis drive does not answer</source>
       <translation>el servo de un eje no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>an axis has moved unasked</source>
       <translation>un eje se movió sin que nadie lo pidiera</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>an axis is not where it ought to stand</source>
       <translation>un eje no está donde debe estar</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>axis drive fault</source>
       <translation>falla de servo de eje</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>axis sent, its encoder does not count</source>
       <translation>un eje recibe orden y su encoder no cuenta</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>bus cable or power</source>
       <translation>cable del bus o alimentación</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>check its supply, Reset, Drives On; home again</source>
       <translation>revise su alimentación, Reset, encienda servos; referencia otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>check the drive's power and bus cable, Reset, Drives On; home again</source>
       <translation>revise alimentación y cable de bus del servo, Reset, encienda servos; referencia otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>close the safety circuit, Reset, Drives On; home where the axis asks for it</source>
       <translation>cierre el circuito de seguridad, Reset, encienda servos; referencia donde el eje la pida</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>following error</source>
       <translation>error de seguimiento</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>homing has failed</source>
       <translation>la búsqueda de referencia falló</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it has failed</source>
       <translation>se averió</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it has to be switched off and on</source>
       <translation>hay que apagarlo y encenderlo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it is another drive than the machine file says, or has other firmware</source>
       <translation>es otro servo que el del archivo de máquina, o tiene otro firmware</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it sinks: no brake, or the brake slips</source>
       <translation>se cae: sin freno, o el freno patina</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it was moved before it was homed</source>
       <translation>se movió antes de referenciarse</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>it was moved by hand while the drives are off</source>
       <translation>se movió a mano con los servos apagados</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>its bus cable is off or damaged</source>
       <translation>su cable de bus está suelto o dañado</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>its control power broke down for a moment</source>
       <translation>su alimentación de control falló por un momento</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>its encoder or the encoder's cable</source>
       <translation>su encoder o el cable del encoder</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>its limit was hit</source>
       <translation>se tocó su límite</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>its power is off</source>
       <translation>no tiene alimentación</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>keep clear of the slide, it may jump when it comes free; look what holds it, Reset, Drives On</source>
       <translation>aléjese del carro, puede saltar al soltarse; vea qué lo detiene, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>look at switch and direction, Reset, Drives On, home again</source>
       <translation>revise interruptor y dirección, Reset, encienda servos, referencia otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>look for what keeps the slide from its place, Reset</source>
       <translation>busque qué impide al carro llegar a su lugar, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>look where the slide really stands; check encoder and coupling, Reset, Drives On, home the axis</source>
       <translation>vea dónde está el carro de verdad; revise encoder y cople, Reset, encienda servos, referencia del eje</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>look where the slide stands and that nothing is in its way, Reset, Drives On</source>
       <translation>vea dónde está el carro y que nada le estorbe, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>look where the tool stands, free the slide, Reset, Drives On; home where the axis asks for it</source>
       <translation>vea dónde está la herramienta, libere el carro, Reset, encienda servos; referencia donde el eje la pida</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>read the drive's display, put the cause right, Reset, Drives On</source>
       <translation>lea la pantalla del servo, corrija la causa, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>read the drive's display; switch the machine off and on when it does not clear</source>
       <translation>lea la pantalla del servo; apague y encienda la máquina si no se borra</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>release the E-stop, switch the drives' power on, Reset, Drives On</source>
       <translation>suelte el paro de emergencia, encienda la alimentación de los servos, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>run 'turndesk machine check' with the machine file: it names the setting</source>
       <translation>corra 'turndesk machine check' con el archivo de máquina: nombra el ajuste</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>slide does not arrive</source>
       <translation>el carro no llega</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>somebody else moves the drive: its own software, a pendant</source>
       <translation>otro mueve el servo: su propio software, un mando</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>somebody has reset it or works on it by its own software</source>
       <translation>alguien lo reinició o trabaja en él con su propio software</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>something was asked of the drives that they cannot do now</source>
       <translation>se pidió a los servos algo que ahora no pueden hacer</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>speed or travel in the machine file differ from the drives' own</source>
       <translation>velocidad o recorrido del archivo de máquina difieren de los del servo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the bus was disturbed</source>
       <translation>el bus tuvo interferencias</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the cause still stands: too hot, no motor, no encoder</source>
       <translation>la causa sigue: demasiado caliente, sin motor, sin encoder</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the computer was busy with something else for too long</source>
       <translation>la computadora estuvo ocupada con otra cosa demasiado tiempo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the controller was stopped while the slides moved</source>
       <translation>el controlador se detuvo mientras los carros se movían</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the cut is too heavy</source>
       <translation>el corte es demasiado pesado</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drive has no power or its motor cable is off</source>
       <translation>el servo no tiene potencia o su cable de motor está suelto</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drive holds it too softly, or its motor cable is off</source>
       <translation>el servo lo sostiene muy débil, o su cable de motor está suelto</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drives do not come on</source>
       <translation>los servos no encienden</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drives have lost power</source>
       <translation>los servos perdieron la potencia</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drives ran out of setpoints</source>
       <translation>los servos se quedaron sin consignas</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drives refuse</source>
       <translation>los servos rechazan</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the drives' main power is off</source>
       <translation>la potencia de los servos está apagada</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the encoder, its cable or its coupling: the slide may have moved all the same</source>
       <translation>el encoder, su cable o su cople: el carro pudo moverse de todos modos</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the motor cable is off</source>
       <translation>el cable del motor está suelto</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the position is lost</source>
       <translation>se perdió la posición</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the safety circuit has opened: door, guard, E-stop elsewhere on the machine</source>
       <translation>el circuito de seguridad se abrió: puerta, guarda, otro paro de emergencia de la máquina</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the slide is blocked</source>
       <translation>el carro está bloqueado</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the slide is blocked or runs stiff</source>
       <translation>el carro está bloqueado o corre duro</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the slide is blocked, or the tool has run into something</source>
       <translation>el carro está bloqueado, o la herramienta chocó con algo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the slide is jammed, or something pushes against it</source>
       <translation>el carro está atorado, o algo lo empuja</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the slide is jammed, or the tool has run into something</source>
       <translation>el carro está atorado, o la herramienta chocó con algo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the spindle was too fast for the thread's lead</source>
       <translation>el husillo iba demasiado rápido para el paso de la rosca</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the switch or its cable</source>
       <translation>el interruptor o su cable</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the switch was not found: its cable, or the slide went the wrong way</source>
       <translation>no se encontró el interruptor: su cable, o el carro fue al lado equivocado</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the travel in the machine file is too long</source>
       <translation>el recorrido en el archivo de máquina es demasiado largo</translation>
     </message>
     <message>
-      <location filename="core/alarms/axes.py" />
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the window for in position is too narrow in the machine file</source>
       <translation>la ventana de posición en el archivo de máquina es demasiado angosta</translation>
     </message>
@@ -5074,122 +5074,122 @@
       <translation>El control</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA, apague la máquina; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>Reset, Drives On; save program and log (F10), and restart at another line</source>
       <translation>Reset, encienda servos; guarde programa y bitácora (F10) y reinicie en otra línea</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>a driver does not come back: its wire, its adapter, the computer's disk or network</source>
       <translation>un controlador de equipo no regresa: su cable, su adaptador, el disco o la red de la computadora</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
       <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>a fuse, a relay or a terminal has switched it</source>
       <translation>un fusible, un relevador o una terminal la conmutó</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>a mistake in TurnDesk; nothing of the wrong piece was moved</source>
       <translation>un error de TurnDesk; nada del tramo malo se movió</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>a mistake in TurnDesk; the log has it</source>
       <translation>un error de TurnDesk; está en la bitácora</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>an output is not as commanded</source>
       <translation>una salida no está como se ordenó</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>another program, a backup or an update keeps this computer busy</source>
       <translation>otro programa, un respaldo o una actualización ocupa esta computadora</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>look at the tool; read what starts again, then Cycle Start; measure the part: it is not counted</source>
       <translation>vea la herramienta; lea qué arranca otra vez y luego inicio de ciclo; mida la pieza: no se cuenta</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>look where the tool stands; save the log (F10), end TurnDesk and start it again</source>
       <translation>vea dónde está la herramienta; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>look why; read what is switched again, then Cycle Start; measure the part, it is not counted</source>
       <translation>busque por qué; lea qué se conmuta otra vez y luego inicio de ciclo; mida la pieza, no se cuenta</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>setpoints ran low</source>
       <translation>se agotaron las consignas</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>somebody else switches it: a pendant, the drive's own software</source>
       <translation>otro la conmuta: un mando, el propio software del servo</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the computer is too slow or too hot, or its disk hangs</source>
       <translation>la computadora es muy lenta o está muy caliente, o su disco se traba</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the computer was too late</source>
       <translation>la computadora llegó tarde</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the control has failed</source>
       <translation>el control falló</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the control's thread is stuck or dead</source>
       <translation>el hilo del control está atorado o muerto</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the feeder has switched off</source>
       <translation>el alimentador apagó</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the machine could not be made safe</source>
       <translation>no se pudo poner la máquina en estado seguro</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the planned path does not fit together</source>
       <translation>la trayectoria planeada no empalma</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the screen was locked or the computer asleep</source>
       <translation>la pantalla estaba bloqueada o la computadora dormida</translation>
     </message>
     <message>
-      <location filename="core/alarms/control.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the slides have stopped on the path; end other programs, then Cycle Start</source>
       <translation>los carros pararon sobre la trayectoria; cierre otros programas y luego inicio de ciclo</translation>
     </message>
@@ -5204,1107 +5204,1107 @@
       <translation>alarma, servos apagados</translation>
     </message>
     <message>
-      <location filename="core/alarms/entry.py" />
+      <location filename="core/alarms/alarm_entry.py" />
       <source>the slides brake and hold, spindle off, outputs safe; Reset acknowledges</source>
       <translation>los carros frenan y se sostienen, husillo apagado, salidas seguras; Reset reconoce</translation>
     </message>
     <message>
-      <location filename="core/alarms/entry.py" />
+      <location filename="core/alarms/alarm_entry.py" />
       <source>the slides brake and lose power, spindle off, outputs safe; Reset acknowledges</source>
       <translation>los carros frenan y pierden potencia, husillo apagado, salidas seguras; Reset reconoce</translation>
     </message>
     <message>
-      <location filename="core/alarms/entry.py" />
+      <location filename="core/alarms/alarm_entry.py" />
       <source>the slides stop on the path, the spindle goes on turning; Cycle Start goes on</source>
       <translation>los carros paran sobre la trayectoria, el husillo sigue girando; inicio de ciclo continúa</translation>
     </message>
     <message>
-      <location filename="core/alarms/entry.py" />
+      <location filename="core/alarms/alarm_entry.py" />
       <source>what was asked for: a stop that somebody pressed or programmed</source>
       <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>an input or a counter led to a line that was never run before</source>
       <translation>una entrada o un contador llevó a una línea que nunca se había corrido</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>check the tool's offset and where the slides stood at the start; Reset</source>
       <translation>revise la compensación de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>compare the end of the program with the original, add M30, load it again</source>
       <translation>compare el final del programa con el original, agregue M30, cárguelo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>correct the line in the editor (F3), load the program again</source>
       <translation>corrija la línea en el editor (F3), cargue el programa otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>end of travel</source>
       <translation>fin de carrera</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>program error</source>
       <translation>error de programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the last line is missing: cut off when it was sent or copied</source>
       <translation>falta la última línea: se cortó al enviarlo o copiarlo</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the offset of the tool, or the zero of the part, is wrong</source>
       <translation>la compensación de la herramienta o el cero de la pieza está mal</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the program ends without M30 or M02</source>
       <translation>el programa termina sin M30 ni M02</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>the program was started at another place than it was proved from</source>
       <translation>el programa arrancó en otro lugar que donde se probó</translation>
     </message>
     <message>
-      <location filename="core/alarms/program.py" />
+      <location filename="core/alarms/control_alarms.py" />
       <source>this line cannot be run as it stands</source>
       <translation>esta línea no se puede correr como está</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>C moves while the spindle turns</source>
       <translation>C se mueve mientras gira el husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>E-stop is pressed</source>
       <translation>el paro de emergencia está oprimido</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>IF THE SPINDLE TURNS PRESS E-STOP; then check the inverter's cable and power, Reset</source>
       <translation>SI EL HUSILLO GIRA OPRIMA EL PARO DE EMERGENCIA; luego revise cable y alimentación del variador, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>PRESS E-STOP; look at belt and encoder before the spindle is started again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; revise banda y encoder antes de arrancar otra vez el husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>PRESS E-STOP; then find out why before it is started again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; luego busque por qué antes de arrancarlo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>Reset, Drives On; try M19 in MDI</source>
       <translation>Reset, encienda servos; pruebe M19 en MDI</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>WAIT UNTIL THE SPINDLE STANDS; check air, collet and bar, Reset</source>
       <translation>ESPERE A QUE EL HUSILLO PARE; revise aire, boquilla y barra, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>X was drawn back: look at part and insert; the thread is not finished</source>
       <translation>X se retiró: vea pieza e inserto; la rosca no está terminada</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>a fault of its drive stands</source>
       <translation>hay una falla de su variador</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>a thread needs a turning spindle</source>
       <translation>una rosca necesita un husillo que gire</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>air was lost while the spindle turned</source>
       <translation>se perdió el aire mientras el husillo giraba</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>bar or part keeps it from moving</source>
       <translation>la barra o la pieza no la deja moverse</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>baud rate or address</source>
       <translation>velocidad en baudios o dirección</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>check air and switch, Reset</source>
       <translation>revise el aire y el interruptor, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>check encoder and cable, Reset; without it no thread is cut</source>
       <translation>revise encoder y cable, Reset; sin él no se corta ninguna rosca</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>close the collet with M12, Reset, start again</source>
       <translation>cierre la boquilla con M12, Reset, arranque otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>collet does not answer</source>
       <translation>la boquilla no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>collet has opened</source>
       <translation>la boquilla se abrió</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>counts a turn in the machine file</source>
       <translation>cuentas por vuelta en el archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>encoder and spindle drive disagree</source>
       <translation>encoder y variador del husillo no coinciden</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>feed per revolution with a still spindle</source>
       <translation>avance por vuelta con el husillo parado</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>it has restarted or reports a fault</source>
       <translation>se reinició o reporta una falla</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>it is held as C</source>
       <translation>está sostenido como C</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>it was started at the drive itself</source>
       <translation>se arrancó en el propio variador</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>it was stopped from outside</source>
       <translation>se paró desde fuera</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its cable</source>
       <translation>su cable</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its cable is off, or disturbed by the motor cable</source>
       <translation>su cable está suelto, o el cable del motor lo perturba</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its index was not found</source>
       <translation>no se encontró su índice</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its pot was turned down</source>
       <translation>se bajó su perilla</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its power</source>
       <translation>su alimentación</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its supply or motor cable</source>
       <translation>su alimentación o el cable del motor</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its switch or cable</source>
       <translation>su interruptor o cable</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>let it come to speed, then Cycle Start</source>
       <translation>deje que tome velocidad y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>look at spindle and tool; Cycle Start starts it again, as it says, and goes on</source>
       <translation>vea husillo y herramienta; inicio de ciclo lo arranca otra vez, como se anuncia, y continúa</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>look at spindle and tool; Cycle Start tries again, Reset gives the program up</source>
       <translation>vea husillo y herramienta; inicio de ciclo lo intenta otra vez, Reset abandona el programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>look at the spindle, Reset; try the speed in MDI before the program is run again</source>
       <translation>vea el husillo, Reset; pruebe la velocidad en MDI antes de correr otra vez el programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>no M03 or M04 before the cut</source>
       <translation>no hay M03 ni M04 antes del corte</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>no M03 or M04 before the thread</source>
       <translation>no hay M03 ni M04 antes de la rosca</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>no air</source>
       <translation>no hay aire</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>on this machine the spindle is C, and M05 is missing before this line</source>
       <translation>en esta máquina el husillo es C, y falta M05 antes de esta línea</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>power was lost meanwhile</source>
       <translation>mientras tanto se perdió la potencia</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>put M05 before M13, load the program again</source>
       <translation>ponga M05 antes de M13, cargue el programa otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>put M05 before the line, load the program again</source>
       <translation>ponga M05 antes de la línea, cargue el programa otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>put right what is named, Reset, start again</source>
       <translation>corrija lo que se nombra, Reset, arranque otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>read the drive's display, put the cause right, Reset</source>
       <translation>lea la pantalla del variador, corrija la causa, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>something between control and spindle has switched it off: safety circuit, guard, its drive</source>
       <translation>algo entre control y husillo lo apagó: circuito de seguridad, guarda, su variador</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle below half its speed</source>
       <translation>husillo por debajo de la mitad de su velocidad</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle drive fault</source>
       <translation>falla del variador del husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle encoder lost</source>
       <translation>se perdió el encoder del husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle has stopped</source>
       <translation>el husillo se detuvo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle ignores the command</source>
       <translation>el husillo no obedece la orden</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle lost in a thread</source>
       <translation>husillo perdido en una rosca</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle not at its speed</source>
       <translation>el husillo no está en su velocidad</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle not at speed</source>
       <translation>el husillo no llega a su velocidad</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle override at 0</source>
       <translation>perilla del husillo en 0</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle start with the collet open</source>
       <translation>arranque del husillo con la boquilla abierta</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle stopped</source>
       <translation>husillo parado</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle switch off</source>
       <translation>interruptor del husillo en OFF</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>start the spindle before the thread; without an encoder use a die or tap</source>
       <translation>arranque el husillo antes de la rosca; sin encoder use tarraja o machuelo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>start the spindle in the program before this line</source>
       <translation>arranque el husillo en el programa antes de esta línea</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>start the spindle, then Cycle Start; else Reset</source>
       <translation>arranque el husillo y luego inicio de ciclo; si no, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>switch it to AUTO, let the spindle come to speed, then Cycle Start</source>
       <translation>póngalo en AUTO, deje que el husillo tome velocidad y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the belt slips</source>
       <translation>la banda patina</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the belt slips or is off</source>
       <translation>la banda patina o se salió</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the collet's switch does not answer</source>
       <translation>el interruptor de la boquilla no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the cut stalled the spindle</source>
       <translation>el corte frenó el husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the drive did not change over in time</source>
       <translation>el variador no conmutó a tiempo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the encoder's coupling is loose</source>
       <translation>el cople del encoder está flojo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the feeder had no word of the control for a moment and made the machine safe</source>
       <translation>el alimentador no supo del control por un momento y puso la máquina segura</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the inverter does not answer</source>
       <translation>el variador no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the program starts the spindle before M12</source>
       <translation>el programa arranca el husillo antes de M12</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the speed is more than it reaches with this chuck and part</source>
       <translation>la velocidad es más de la que alcanza con este mandril y pieza</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle did not come back to its speed: load, belt, drive</source>
       <translation>el husillo no volvió a su velocidad: carga, banda, variador</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle does not become C</source>
       <translation>el husillo no pasa a ser C</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle does not turn: belt, brake, or its drive is not enabled</source>
       <translation>el husillo no gira: banda, freno, o su variador no está habilitado</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle drive does not follow its command: cable, settings, local mode at its keypad</source>
       <translation>el variador del husillo no sigue su orden: cable, ajustes, modo local en su teclado</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle drive has tripped: its display says why</source>
       <translation>el variador del husillo se disparó: su pantalla dice por qué</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle may not start</source>
       <translation>el husillo no puede arrancar</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle pot stands at 0</source>
       <translation>la perilla del husillo está en 0</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle pot was turned down</source>
       <translation>se bajó la perilla del husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle still turns where the program opens the collet</source>
       <translation>el husillo todavía gira donde el programa abre la boquilla</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle switch stands at OFF</source>
       <translation>el interruptor del husillo está en OFF</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle was stopped while the program fed by the revolution</source>
       <translation>el husillo se paró mientras el programa avanzaba por vuelta</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle was switched off during the pass</source>
       <translation>el husillo se apagó durante la pasada</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>this machine has no encoder on the spindle</source>
       <translation>esta máquina no tiene encoder en el husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>too heavy a cut</source>
       <translation>un corte demasiado pesado</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>turn the spindle pot up, let it come to speed, then Cycle Start</source>
       <translation>suba la perilla del husillo, deje que tome velocidad y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/spindle.py" />
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>unclamping refused</source>
       <translation>apertura de boquilla rechazada</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>Cycle Start goes on; O switches Optional Stop off</source>
       <translation>inicio de ciclo continúa; O apaga el paro opcional</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>Cycle Start goes on; Reset gives the program up</source>
       <translation>inicio de ciclo continúa; Reset abandona el programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>Cycle Start runs the next block; S switches Single Block off</source>
       <translation>inicio de ciclo corre el bloque siguiente; S apaga bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>M00 in the program</source>
       <translation>M00 en el programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>M01 in the program, and Optional Stop is on</source>
       <translation>M01 en el programa, y el paro opcional está activo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>Reset was pressed: the program was given up</source>
       <translation>se oprimió Reset: el programa se abandonó</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>Single Block is on: each block waits for Cycle Start</source>
       <translation>bloque a bloque está activo: cada bloque espera el inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>an E-stop button was pressed</source>
       <translation>se oprimió un botón de paro de emergencia</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>check cable and power of the station; its buttons do nothing now. Then Cycle Start</source>
       <translation>revise cable y alimentación de la estación; sus botones ahora no hacen nada. Luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>close the guard; Cycle Start says what it starts again</source>
       <translation>cierre la guarda; Inicio de ciclo dice qué vuelve a arrancar</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>do what the message says, then Cycle Start</source>
       <translation>haga lo que dice el mensaje y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>feed hold</source>
       <translation>retención de avance</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>feed hold was pressed</source>
       <translation>se oprimió la retención de avance</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>guard open</source>
       <translation>guarda abierta</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>held by the control</source>
       <translation>retenido por el control</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>its cable is loose</source>
       <translation>su cable está flojo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>its own feed hold or safety door input is on</source>
       <translation>su propia entrada de retención o de puerta de seguridad está activa</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>look at the controller's hold and door inputs, then Cycle Start</source>
       <translation>revise las entradas de retención y puerta del controlador y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>look where the tool stands before anything is started</source>
       <translation>vea dónde está la herramienta antes de arrancar nada</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>make the machine safe, release the button, then Drives On</source>
       <translation>ponga la máquina segura, suelte el botón y luego encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>nothing: it was asked for</source>
       <translation>nada: se pidió</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>operator station silent</source>
       <translation>estación del operador en silencio</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>optional stop</source>
       <translation>paro opcional</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>override pot jumps</source>
       <translation>la perilla salta</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>program stop</source>
       <translation>paro de programa</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>put right what is named, then Cycle Start</source>
       <translation>corrija lo que se nombra y luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>single block</source>
       <translation>bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>stopped by hand</source>
       <translation>parado a mano</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the controller holds</source>
       <translation>el controlador retiene</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the feed or spindle pot has a worn track</source>
       <translation>la perilla de avance o de husillo tiene la pista gastada</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the guard was opened in the cycle</source>
       <translation>la guarda se abrió en el ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the guard's switch or cable</source>
       <translation>el interruptor de la guarda o su cable</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the safety circuit has opened</source>
       <translation>el circuito de seguridad se abrió</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the spindle was stopped by hand</source>
       <translation>el husillo se paró a mano</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>the station's cable is off or damaged</source>
       <translation>el cable de la estación está suelto o dañado</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>turn the pot slowly through its range; if it still jumps change it. Then Cycle Start</source>
       <translation>gire despacio la perilla por todo su rango; si aún salta cámbiela. Luego inicio de ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/station.py" />
+      <location filename="core/alarms/station_alarms.py" />
       <source>what is told here</source>
       <translation>lo que se dice aquí</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>E-stop at the controller</source>
       <translation>paro de emergencia en el controlador</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP; check cable, terminators and interface, then start the control again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; revise cable, terminadores e interfaz y luego arranque otra vez el control</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP; it moves what it has and then rests. Check cable and power, start the control again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; mueve lo que tiene y luego para. Revise cable y alimentación, arranque otra vez el control</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP; look where the tool stands, end TurnDesk and start it again, home where asked</source>
       <translation>OPRIMA EL PARO DE EMERGENCIA; vea dónde está la herramienta, cierre TurnDesk y ábralo otra vez, referencia donde se pida</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>Reset, Drives On; compare its settings with the machine file ('turndesk machine check')</source>
       <translation>Reset, encienda servos; compare sus ajustes con el archivo de máquina ('turndesk machine check')</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>a line was damaged on its way</source>
       <translation>una línea se dañó en el camino</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>alarm of the controller</source>
       <translation>alarma del controlador</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>an I/O module does not answer</source>
       <translation>un módulo de E/S no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>an output cannot be switched</source>
       <translation>una salida no se puede conmutar</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>another master is on the bus</source>
       <translation>hay otro maestro en el bus</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>another program has written to the controller</source>
       <translation>otro programa escribió al controlador</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>check the cable, Reset; switch the controller off and on when it does not answer</source>
       <translation>revise el cable, Reset; apague y encienda el controlador si no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>check the module's power and cable, Reset, Drives On; look what the outputs have let go</source>
       <translation>revise alimentación y cable del módulo, Reset, encienda servos; vea qué soltaron las salidas</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>check the output in the machine file, Reset</source>
       <translation>revise la salida en el archivo de máquina, Reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>end whatever else talks to the controller, Reset, Drives On</source>
       <translation>cierre lo demás que hable con el controlador, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>it has restarted: its outputs have fallen</source>
       <translation>se reinició: sus salidas cayeron</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>it was reset unseen</source>
       <translation>se reinició sin que se viera</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its E-stop or reset input is on</source>
       <translation>su entrada de paro de emergencia o de reset está activa</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its bus cable or power</source>
       <translation>su cable de bus o alimentación</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its cable, or its line is disturbed</source>
       <translation>su cable, o su línea tiene interferencias</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its module has failed</source>
       <translation>su módulo se averió</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its reset button or input</source>
       <translation>su botón o entrada de reset</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its settings forbid what the program asks for: travel, speed, spindle</source>
       <translation>sus ajustes prohíben lo que pide el programa: recorrido, velocidad, husillo</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>its supply broke down for a moment</source>
       <translation>su alimentación falló por un momento</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>put right what is named, Reset, Drives On; home where asked</source>
       <translation>corrija lo que se nombra, Reset, encienda servos; referencia donde se pida</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>release the E-stop, Reset, Drives On</source>
       <translation>suelte el paro de emergencia, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>spindle and coolant are off: close the door, Reset, Drives On</source>
       <translation>husillo y refrigerante están apagados: cierre la puerta, Reset, encienda servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN cable is off, or a terminator is missing</source>
       <translation>el cable CAN está suelto, o falta un terminador</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN interface was unplugged</source>
       <translation>se desconectó la interfaz CAN</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the cable to the controller was pulled or damaged</source>
       <translation>el cable al controlador se jaló o se dañó</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the computer is overloaded: the slides stop at the end of what they have</source>
       <translation>la computadora está sobrecargada: los carros paran al final de lo que tienen</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the computer ran out of memory</source>
       <translation>la computadora se quedó sin memoria</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the connection to the controller is lost</source>
       <translation>se perdió la conexión con el controlador</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller does not answer</source>
       <translation>el controlador no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller hangs</source>
       <translation>el controlador se trabó</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller has lost its modes</source>
       <translation>el controlador perdió sus modos</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller refuses a block</source>
       <translation>el controlador rechaza un bloque</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller was reset</source>
       <translation>el controlador se reinició</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller's power is off</source>
       <translation>el controlador no tiene alimentación</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the door was opened in the cycle</source>
       <translation>la puerta se abrió en el ciclo</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the door's switch or cable</source>
       <translation>el interruptor de la puerta o su cable</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the drive bus has failed</source>
       <translation>falló el bus de los servos</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the feeder does not answer</source>
       <translation>el alimentador no responde</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the feeder has ended</source>
       <translation>el alimentador terminó</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the feeder has failed</source>
       <translation>el alimentador se averió</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the feeder process was ended or has failed: slides, spindle and outputs are off</source>
       <translation>el proceso alimentador se terminó o falló: carros, husillo y salidas están apagados</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the machine file does not name it, or the controller does not have it</source>
       <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the program is given up: look where the tool stands, Reset, Drives On, home</source>
       <translation>el programa se abandonó: vea dónde está la herramienta, Reset, encienda servos, referencia</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the safety door is open</source>
       <translation>la puerta de seguridad está abierta</translation>
     </message>
     <message>
-      <location filename="core/alarms/wires.py" />
+      <location filename="core/alarms/bus_alarms.py" />
       <source>what the controller's number says</source>
       <translation>lo que dice el número del controlador</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/executor/raised_alarm.py" />
       <source> line %1</source>
       <translation> línea %1</translation>
     </message>
     <message>
-      <location filename="core/executor/alarms.py" />
+      <location filename="core/executor/raised_alarm.py" />
       <source>asked for by %1</source>
       <translation>pedido por %1</translation>
     </message>
     <message>
-      <location filename="core/executor/announced.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>look first: %1; then start again</source>
       <translation>vea primero: %1; luego arranque otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 degrees</source>
       <translation>%1 grados</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 has moved by %2</source>
       <translation>%1 se movió %2</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 is %2 off its setpoint</source>
       <translation>%1 está a %2 de su consigna</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 mm</source>
       <translation>%1 mm</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 stays %2 off its setpoint</source>
       <translation>%1 queda a %2 de su consigna</translation>
     </message>
     <message>
-      <location filename="core/executor/axis_watch.py" />
+      <location filename="core/executor/following_error.py" />
       <source>%1 was sent %2, its encoder stands</source>
       <translation>%1 recibió %2, su encoder no se mueve</translation>
     </message>
     <message>
-      <location filename="core/executor/blockwise/jogger.py" />
+      <location filename="core/executor/jogging.py" />
       <source>the controller is still moving</source>
       <translation>el controlador todavía se mueve</translation>
     </message>
     <message>
-      <location filename="core/executor/blockwise/pieces.py" />
+      <location filename="core/executor/controller_motion.py" />
       <source>line %1 has no feed</source>
       <translation>la línea %1 no tiene avance</translation>
     </message>
     <message>
-      <location filename="core/executor/blockwise/pieces.py" />
+      <location filename="core/executor/controller_motion.py" />
       <source>this controller moves X and Z only</source>
       <translation>este controlador mueve sólo X y Z</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>%1 %2 by hand</source>
       <translation>%1 %2 a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>%1: outputs are switched by hand only at rest, not in state %2</source>
       <translation>%1: las salidas sólo se cambian a mano en reposo, no en el estado %2</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>a program is under way: it keeps the offsets that it was proved with</source>
       <translation>hay un programa en curso: conserva las compensaciones con que se comprobó</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>a program is under way: its spindle is stopped by feed hold and reset</source>
       <translation>hay un programa en curso: su husillo se para con retención de avance y reset</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>the collet is not opened by hand while the spindle turns</source>
       <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>the offsets of the tables are in force</source>
       <translation>las compensaciones de las tablas están vigentes</translation>
     </message>
     <message>
-      <location filename="core/executor/by_hand.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>this machine has no output %1</source>
       <translation>esta máquina no tiene la salida %1</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded.py" />
+      <location filename="core/executor/commanded_outputs.py" />
       <source>%1 HAS COME ON</source>
       <translation>SE ENCENDIÓ %1</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded.py" />
+      <location filename="core/executor/commanded_outputs.py" />
       <source>%1 HAS GONE OFF</source>
       <translation>SE APAGÓ %1</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>%1 was given up</source>
       <translation>%1 se abandonó</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>FORWARD</source>
       <translation>ADELANTE</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>REVERSE</source>
       <translation>EN REVERSA</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>SWITCH TO AUTO: %1</source>
       <translation>INTERRUPTOR EN AUTO: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>THE SPINDLE STARTS AT %1 RPM %2</source>
       <translation>EL HUSILLO ARRANCA A %1 RPM %2</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>a driver does not obey: %1</source>
       <translation>un controlador de equipo no obedece: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>reset: wait until the slides are at rest</source>
       <translation>reset: espere a que los carros estén en reposo</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>setpoints ran low; the slides stop on the path</source>
       <translation>las consignas se agotaban; los carros paran sobre la trayectoria</translation>
     </message>
     <message>
-      <location filename="core/executor/conductor.py" />
+      <location filename="core/executor/machine_control.py" />
       <source>while giving the program up: %1</source>
       <translation>al abandonar el programa: %1</translation>
     </message>
@@ -6329,32 +6329,32 @@
       <translation>EL CONTROLADOR RETIENE</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>%1 BY ITSELF</source>
       <translation>%1 POR SÍ SOLO</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>COMES ON</source>
       <translation>SE ENCIENDE</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>CONTROL WAS SILENT FOR %1 S, SWITCHED OFF: %2</source>
       <translation>EL CONTROL CALLÓ %1 S, SE APAGÓ: %2</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>GOES OFF</source>
       <translation>SE APAGA</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>THE FEEDER HAS SWITCHED OFF</source>
       <translation>EL ALIMENTADOR APAGÓ</translation>
     </message>
     <message>
-      <location filename="core/executor/disturbance.py" />
+      <location filename="core/executor/supervision.py" />
       <source>output %1</source>
       <translation>la salida %1</translation>
     </message>
@@ -6384,87 +6384,87 @@
       <translation>el control estuvo ausente %1 s</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>%1 must be homed first</source>
       <translation>%1 necesita primero su referencia</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>E-stop is pressed: release it</source>
       <translation>el paro de emergencia está oprimido: suéltelo</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>an alarm stands: clear its cause and press Reset</source>
       <translation>hay una alarma: elimine su causa y oprima Reset</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>feed hold is pressed</source>
       <translation>la retención de avance está oprimida</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>line %1: a thread needs an encoder on the spindle, and there is none</source>
       <translation>línea %1: una rosca necesita un encoder en el husillo, y no lo hay</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>line %1: this controller cannot do %2</source>
       <translation>línea %1: este controlador no puede hacer %2</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>no program is loaded</source>
       <translation>no hay programa cargado</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the drives are off: switch them on</source>
       <translation>los servos están apagados: enciéndalos</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the guard is open: close it</source>
       <translation>la guarda está abierta: ciérrela</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the machine is being jogged</source>
       <translation>la máquina se mueve a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the machine is homing</source>
       <translation>la máquina busca su referencia</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the program has errors: %1</source>
       <translation>el programa tiene errores: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the program is not proved yet</source>
       <translation>el programa aún no está comprobado</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the proof belongs to another program or to other offsets: load it again</source>
       <translation>la comprobación es de otro programa o de otras compensaciones: cárguelo de nuevo</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the spindle is not started with the collet open: close it first</source>
       <translation>el husillo no arranca con la boquilla abierta: ciérrela primero</translation>
     </message>
     <message>
-      <location filename="core/executor/gate.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>tool offset %1 has never been set</source>
       <translation>la compensación de herramienta %1 nunca se puso</translation>
     </message>
     <message>
-      <location filename="core/executor/geared_pass.py" />
+      <location filename="core/executor/geared_thread_pass.py" />
       <source>the thread could not be queued in time</source>
       <translation>la rosca no se pudo encolar a tiempo</translation>
     </message>
@@ -6534,62 +6534,62 @@
       <translation>gira más deprisa de lo que va %1; se pierden clics</translation>
     </message>
     <message>
-      <location filename="core/executor/homing.py" />
+      <location filename="core/executor/homing_order.py" />
       <source>every axis knows its position</source>
       <translation>todos los ejes conocen su posición</translation>
     </message>
     <message>
-      <location filename="core/executor/homing.py" />
+      <location filename="core/executor/homing_order.py" />
       <source>this machine has no axis %1 to home</source>
       <translation>esta máquina no tiene eje %1 que referenciar</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted.py" />
+      <location filename="core/executor/interrupted_job.py" />
       <source>%1 line %2, T%3, part %4: %5</source>
       <translation>%1 línea %2, T%3, pieza %4: %5</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted.py" />
+      <location filename="core/executor/interrupted_job.py" />
       <source>GIVEN UP BY RESET</source>
       <translation>ABANDONADO POR RESET</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted.py" />
+      <location filename="core/executor/interrupted_job.py" />
       <source>THE CONTROL LOST ITS POWER OR WAS KILLED</source>
       <translation>EL CONTROL PERDIÓ LA CORRIENTE O FUE TERMINADO A LA FUERZA</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted.py" />
+      <location filename="core/executor/interrupted_job.py" />
       <source>THE CONTROL WAS CLOSED</source>
       <translation>EL CONTROL SE CERRÓ</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>%1; %2 was loaded in its place</source>
       <translation>%1; se cargó %2 en su lugar</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>%1; the program begins anew</source>
       <translation>%1; el programa empieza de nuevo</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>go on there by SEARCHTO (F6), or press Y</source>
       <translation>siga allí con BUSCAR A (F6), u oprima la tecla Y</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>jog it clear, press Y</source>
       <translation>sáquela a mano, oprima la tecla Y</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>line %1 of %2 was interrupted and T%3 may stand in the part: %4 and then start at the first line</source>
       <translation>la línea %1 de %2 se interrumpió y T%3 puede estar en la pieza: %4 y luego arranque en la primera línea</translation>
     </message>
     <message>
-      <location filename="core/executor/interruption.py" />
+      <location filename="core/executor/interruption_watch.py" />
       <source>there is no interrupted job to be answered for now</source>
       <translation>ahora no hay trabajo interrumpido por el que responder</translation>
     </message>
@@ -6604,307 +6604,307 @@
       <translation>la velocidad de rápido es otra ahora</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>%1 is at the end of its travel in %2</source>
       <translation>%1 está al fin de su carrera en %2</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>%1 is still being jogged</source>
       <translation>%1 todavía se mueve a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>%1 is still moving; wait for the end of its step</source>
       <translation>%1 todavía se mueve; espere el final de su paso</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>%1 is still on its step</source>
       <translation>%1 todavía está en su paso</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>%1 was stopped before the end of its step</source>
       <translation>%1 se detuvo antes del final de su paso</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>C is the spindle, and the spindle turns; stop it first</source>
       <translation>C es el husillo, y el husillo gira; párelo primero</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>a jog needs a velocity and a lease above 0</source>
       <translation>mover a mano necesita velocidad y un plazo mayores que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>a step is longer than 0 and no longer than %1, not %2</source>
       <translation>un paso es mayor que 0 y no más de %1, no %2</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>a step needs a speed above 0</source>
       <translation>un paso necesita velocidad mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>the spindle's drive becomes C: let go, and begin again in two seconds</source>
       <translation>el variador del husillo pasa a ser C: suelte y empiece de nuevo en dos segundos</translation>
     </message>
     <message>
-      <location filename="core/executor/jog.py" />
+      <location filename="core/executor/jogging.py" />
       <source>this machine has no axis %1 to jog</source>
       <translation>esta máquina no tiene eje %1 que mover a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/limits.py" />
+      <location filename="core/executor/read_ahead.py" />
       <source>line %1 feeds by the revolution</source>
       <translation>la línea %1 avanza por vuelta</translation>
     </message>
     <message>
-      <location filename="core/executor/limits.py" />
+      <location filename="core/executor/read_ahead.py" />
       <source>line %1 moves %2 to %3 %4 from home</source>
       <translation>la línea %1 lleva %2 a %3 %4 de la referencia</translation>
     </message>
     <message>
-      <location filename="core/executor/limits.py" />
+      <location filename="core/executor/read_ahead.py" />
       <source>line %1 moves C while the spindle turns</source>
       <translation>la línea %1 mueve C mientras gira el husillo</translation>
     </message>
     <message>
-      <location filename="core/executor/loading.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>a program is under way: it must end or be reset before another is loaded</source>
       <translation>hay un programa en curso: debe terminar o abandonarse antes de cargar otro</translation>
     </message>
     <message>
-      <location filename="core/executor/loading.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>a start at the first line is meant</source>
       <translation>se quiere arrancar en la primera línea</translation>
     </message>
     <message>
-      <location filename="core/executor/mover.py" />
+      <location filename="core/executor/setpoint_motion.py" />
       <source>the spindle changed its speed faster than the slides could follow: check the thread</source>
       <translation>el husillo cambió de velocidad más rápido de lo que los carros podían seguir: revise la rosca</translation>
     </message>
     <message>
-      <location filename="core/executor/moving.py" />
+      <location filename="core/executor/path_section.py" />
       <source>at rest because something outside the control holds it</source>
       <translation>en reposo porque algo fuera del control lo retiene</translation>
     </message>
     <message>
-      <location filename="core/executor/moving.py" />
+      <location filename="core/executor/path_section.py" />
       <source>at rest because the override is 0</source>
       <translation>en reposo porque la perilla está en 0</translation>
     </message>
     <message>
-      <location filename="core/executor/moving.py" />
+      <location filename="core/executor/path_section.py" />
       <source>at rest where single block wants it</source>
       <translation>en reposo donde lo pide bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/executor/moving.py" />
+      <location filename="core/executor/path_section.py" />
       <source>it moves</source>
       <translation>se mueve</translation>
     </message>
     <message>
-      <location filename="core/executor/moving.py" />
+      <location filename="core/executor/path_section.py" />
       <source>there is none, or it has come to its end</source>
       <translation>no hay ninguno, o llegó a su final</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>an alarm stands: press Reset first</source>
       <translation>hay una alarma: oprima primero Reset</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>drives cannot be switched on in state %1</source>
       <translation>los servos no se pueden encender en el estado %1</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>feed override %1 is not between 0 and 1.5</source>
       <translation>la perilla de avance %1 no está entre 0 y 1.5</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>homing: %1</source>
       <translation>referencia: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>jog: %1</source>
       <translation>mover a mano: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>no jog in state %1</source>
       <translation>no se mueve a mano en el estado %1</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>press both palm buttons</source>
       <translation>oprima los dos botones de palma</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>spindle limit %1 is not between 0 and %2 rpm</source>
       <translation>el tope del husillo %1 no está entre 0 y %2 rpm</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>spindle limit %1 rpm</source>
       <translation>tope del husillo %1 rpm</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>state %1</source>
       <translation>estado %1</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>the spindle limit is raised only while the spindle stands</source>
       <translation>el tope del husillo sólo se sube con el husillo parado</translation>
     </message>
     <message>
-      <location filename="core/executor/orders.py" />
+      <location filename="core/executor/command_handler.py" />
       <source>there is no switch %1</source>
       <translation>no hay interruptor %1</translation>
     </message>
     <message>
-      <location filename="core/executor/parts.py" />
+      <location filename="core/executor/part_count.py" />
       <source>NO COUNT is on</source>
       <translation>SIN CONT está puesto</translation>
     </message>
     <message>
-      <location filename="core/executor/parts.py" />
+      <location filename="core/executor/part_count.py" />
       <source>a restart left something of it out</source>
       <translation>un rearranque omitió algo de ella</translation>
     </message>
     <message>
-      <location filename="core/executor/parts.py" />
+      <location filename="core/executor/part_count.py" />
       <source>its cycle was disturbed (%1): measure it, and add it on F10 if it is good</source>
       <translation>su ciclo fue perturbado (%1): mídala, y súmela en F10 si es buena</translation>
     </message>
     <message>
-      <location filename="core/executor/parts.py" />
+      <location filename="core/executor/part_count.py" />
       <source>part %1, %2 s</source>
       <translation>pieza %1, %2 s</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>%1, and the program says nothing of it: load it again</source>
       <translation>%1, y el programa no dice nada de eso: cárguelo de nuevo</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>ask for the way out again</source>
       <translation>pida otra vez la salida</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>no line is ready: type one and press Enter</source>
       <translation>no hay línea lista: escriba una y oprima Enter</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>no restart is ready: search a line and confirm it</source>
       <translation>no hay rearranque listo: busque una línea y confírmela</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>press Enter again</source>
       <translation>oprima Enter otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>search for the line again</source>
       <translation>busque la línea otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the collet is %1 and must be %2 at line %3: use MDI</source>
       <translation>la boquilla está %1 y debe estar %2 en la línea %3: use MDI</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the program was loaded anew: search for the line again</source>
       <translation>el programa se cargó de nuevo: busque la línea otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the slides have moved since this was proved: %1</source>
       <translation>los carros se movieron desde la comprobación: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/prepared.py" />
+      <location filename="core/executor/start_conditions.py" />
       <source>the state has changed since the line was proved: %1</source>
       <translation>el estado cambió desde que se comprobó la línea: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/renewal.py" />
+      <location filename="core/executor/changed_offsets.py" />
       <source>another program is under way: new offsets are taken by the same program only</source>
       <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
     </message>
     <message>
-      <location filename="core/executor/renewal.py" />
+      <location filename="core/executor/changed_offsets.py" />
       <source>the changed offsets are in force</source>
       <translation>las compensaciones cambiadas están en vigor</translation>
     </message>
     <message>
-      <location filename="core/executor/retreat.py" />
+      <location filename="core/executor/setpoint_motion.py" />
       <source>%1 in the pull-out: the thread is cut, its end runs out short</source>
       <translation>%1 en la salida: la rosca está cortada, su final sale corto</translation>
     </message>
     <message>
-      <location filename="core/executor/retreat.py" />
+      <location filename="core/executor/setpoint_motion.py" />
       <source>%1: the tool left the thread at Z%2, behind it this pass is not cut</source>
       <translation>%1: la herramienta salió de la rosca en Z%2, más allá esta pasada no se cortó</translation>
     </message>
     <message>
-      <location filename="core/executor/retreat.py" />
+      <location filename="core/executor/setpoint_motion.py" />
       <source>the spindle fell to %1 of %2 rpm</source>
       <translation>el husillo cayó a %1 de %2 rpm</translation>
     </message>
     <message>
-      <location filename="core/executor/retreat.py" />
+      <location filename="core/executor/setpoint_motion.py" />
       <source>the spindle turned the wrong way, at %1 rpm</source>
       <translation>el husillo giró al revés, a %1 rpm</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>%1, and the program says nothing of it</source>
       <translation>%1, y el programa no dice nada de ello</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>PROOF WITH THE CHANGED OFFSETS</source>
       <translation>COMPROBACIÓN CON LAS COMPENSACIONES CAMBIADAS</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>from line %1</source>
       <translation>desde la línea %1</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>no repeat: %1</source>
       <translation>sin repetición: %1</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>program end</source>
       <translation>fin de programa</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>program given up by reset</source>
       <translation>programa abandonado con reset</translation>
     </message>
     <message>
-      <location filename="core/executor/rounds.py" />
+      <location filename="core/executor/program_run.py" />
       <source>the line was given up by reset</source>
       <translation>la línea se abandonó con reset</translation>
     </message>
@@ -6944,97 +6944,97 @@
       <translation>ESPERANDO</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE HAS STOPPED</source>
       <translation>EL HUSILLO SE DETUVO</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE OVERRIDE AT 0</source>
       <translation>PERILLA DEL HUSILLO EN 0</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE STOPPED</source>
       <translation>HUSILLO PARADO</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE SWITCH OFF</source>
       <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>it turns at %1 rpm, %2 are commanded</source>
       <translation>gira a %1 rpm, se ordenaron %2</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>the spindle</source>
       <translation>el husillo</translation>
     </message>
     <message>
-      <location filename="core/executor/spindle.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>the spindle's drive tells a speed that is no number</source>
       <translation>el variador del husillo da una velocidad que no es un número</translation>
     </message>
     <message>
-      <location filename="core/executor/states.py" />
+      <location filename="core/executor/snapshot.py" />
       <source>state %1 cannot become %2</source>
       <translation>el estado %1 no puede pasar a %2</translation>
     </message>
     <message>
-      <location filename="core/executor/station_watch.py" />
+      <location filename="core/executor/operator_station.py" />
       <source>OPERATOR STATION SILENT</source>
       <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
     </message>
     <message>
-      <location filename="core/executor/station_watch.py" />
+      <location filename="core/executor/operator_station.py" />
       <source>OVERRIDE POT JUMPS</source>
       <translation>LA PERILLA SALTA</translation>
     </message>
     <message>
-      <location filename="core/executor/supervisor.py" />
+      <location filename="core/executor/supervision.py" />
       <source>%1: its drive tells a position that is no number</source>
       <translation>%1: su servo da una posición que no es un número</translation>
     </message>
     <message>
-      <location filename="core/executor/thread_way.py" />
+      <location filename="core/executor/thread_path.py" />
       <source>a thread has no length or no lead</source>
       <translation>una rosca no tiene largo o no tiene paso</translation>
     </message>
     <message>
-      <location filename="core/executor/turns.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>the encoder on the spindle counts nothing</source>
       <translation>el encoder del husillo no cuenta nada</translation>
     </message>
     <message>
-      <location filename="core/executor/turns.py" />
+      <location filename="core/executor/spindle_control.py" />
       <source>the spindle does not turn</source>
       <translation>el husillo no gira</translation>
     </message>
     <message>
-      <location filename="core/executor/waits.py" />
+      <location filename="core/executor/standstill.py" />
       <source>AT SPEED</source>
       <translation>A SU VELOCIDAD</translation>
     </message>
     <message>
-      <location filename="core/executor/waits.py" />
+      <location filename="core/executor/standstill.py" />
       <source>DWELL</source>
       <translation>ESPERA</translation>
     </message>
     <message>
-      <location filename="core/executor/waits.py" />
+      <location filename="core/executor/standstill.py" />
       <source>SPINDLE STOP</source>
       <translation>PARO DE HUSILLO</translation>
     </message>
     <message>
-      <location filename="core/executor/waits.py" />
+      <location filename="core/executor/standstill.py" />
       <source>cycle repeat off by M31</source>
       <translation>repetir ciclo apagado por M31</translation>
     </message>
     <message>
-      <location filename="core/executor/waits.py" />
+      <location filename="core/executor/standstill.py" />
       <source>the spindle turns at %1 rpm</source>
       <translation>el husillo gira a %1 rpm</translation>
     </message>
@@ -7049,97 +7049,97 @@
       <translation>su hilo está atorado</translation>
     </message>
     <message>
-      <location filename="core/geometry/bevel.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the chamfer would cross one of them</source>
       <translation>el chaflán cruzaría uno de ellos</translation>
     </message>
     <message>
-      <location filename="core/geometry/bevel.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the next one runs straight back</source>
       <translation>el siguiente vuelve directamente atrás</translation>
     </message>
     <message>
-      <location filename="core/geometry/bevel.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>they are too short for a chamfer of that length</source>
       <translation>son demasiado cortos para un chaflán de esa longitud</translation>
     </message>
     <message>
-      <location filename="core/geometry/bevel.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>they go on in one direction</source>
       <translation>siguen en una misma dirección</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>line itself</source>
       <translation>línea misma</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>next line</source>
       <translation>línea siguiente</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>no arc of that radius touches both between their ends</source>
       <translation>ningún arco de ese radio toca los dos entre sus extremos</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>of one of them %1</source>
       <translation>de uno de ellos %1</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the %1 is too short</source>
       <translation>el %1 es demasiado corto</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the lines go on in one direction</source>
       <translation>las líneas siguen en una misma dirección</translation>
     </message>
     <message>
-      <location filename="core/geometry/corner.py" />
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the next line runs straight back</source>
       <translation>la línea siguiente regresa sobre sí misma</translation>
     </message>
     <message>
-      <location filename="core/geometry/frames.py" />
+      <location filename="core/geometry/rotation_frames.py" />
       <source>the first and the second point are the same</source>
       <translation>el primer punto y el segundo son el mismo</translation>
     </message>
     <message>
-      <location filename="core/geometry/frames.py" />
+      <location filename="core/geometry/rotation_frames.py" />
       <source>the first and the third point are the same</source>
       <translation>el primer punto y el tercero son el mismo</translation>
     </message>
     <message>
-      <location filename="core/geometry/frames.py" />
+      <location filename="core/geometry/rotation_frames.py" />
       <source>the three points lie on one line</source>
       <translation>los tres puntos están en una línea</translation>
     </message>
     <message>
-      <location filename="core/geometry/offset.py" />
+      <location filename="core/geometry/contour_offset.py" />
       <source>it runs straight back</source>
       <translation>regresa sobre sí mismo</translation>
     </message>
     <message>
-      <location filename="core/geometry/offset.py" />
+      <location filename="core/geometry/contour_offset.py" />
       <source>its inside radius is not larger than that</source>
       <translation>su radio interior no es mayor que eso</translation>
     </message>
     <message>
-      <location filename="core/geometry/offset.py" />
+      <location filename="core/geometry/contour_offset.py" />
       <source>nothing of it is left between its neighbours</source>
       <translation>no queda nada de él entre sus vecinos</translation>
     </message>
     <message>
-      <location filename="core/geometry/offset.py" />
+      <location filename="core/geometry/contour_offset.py" />
       <source>the path beside another one would cut into it</source>
       <translation>la trayectoria junto a otro lo cortaría</translation>
     </message>
     <message>
-      <location filename="core/geometry/offset.py" />
+      <location filename="core/geometry/contour_offset.py" />
       <source>the path beside it would cut into another one</source>
       <translation>la trayectoria junto a él cortaría a otro</translation>
     </message>
@@ -11669,132 +11669,132 @@
       <translation>un signo más que no es el del teclado</translation>
     </message>
     <message>
-      <location filename="core/motion/limits.py" />
+      <location filename="core/motion/axis_limits.py" />
       <source>%1 of axis %2</source>
       <translation>%1 del eje %2</translation>
     </message>
     <message>
-      <location filename="core/motion/limits.py" />
+      <location filename="core/motion/axis_limits.py" />
       <source>Motion limit %1 is %2; give a positive number in the machine file.</source>
       <translation>El límite de movimiento %1 es %2; dé un número positivo en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/motion/limits.py" />
+      <location filename="core/motion/axis_limits.py" />
       <source>The step of the slides is %1 mm; give a positive number, or 0.</source>
       <translation>El paso de los carros es %1 mm; dé un número positivo, o 0.</translation>
     </message>
     <message>
-      <location filename="core/motion/mapped.py" />
+      <location filename="core/motion/curved_axes.py" />
       <source>Block %1: the slide needs %2 degrees of C; it turns %3.</source>
       <translation>Bloque %1: el carro necesita %2 grados de C; gira %3.</translation>
     </message>
     <message>
-      <location filename="core/motion/path.py" />
+      <location filename="core/motion/motion_path.py" />
       <source>Block %1 comes after the end of the path; begin another path.</source>
       <translation>El bloque %1 viene después del final de la trayectoria; empiece otra.</translation>
     </message>
     <message>
-      <location filename="core/motion/path.py" />
+      <location filename="core/motion/motion_path.py" />
       <source>Block %1 is not on the planned path.</source>
       <translation>El bloque %1 no está en la trayectoria planeada.</translation>
     </message>
     <message>
-      <location filename="core/motion/path.py" />
+      <location filename="core/motion/motion_path.py" />
       <source>Block %1 starts %2 mm from the end of the block before it; plan it from where the machine stands.</source>
       <translation>El bloque %1 empieza a %2 mm del final del anterior; planéelo desde donde está la máquina.</translation>
     </message>
     <message>
-      <location filename="core/motion/path.py" />
+      <location filename="core/motion/motion_path.py" />
       <source>There is no block to plan a path of; add the blocks first.</source>
       <translation>No hay bloque de que planear una trayectoria; agregue primero los bloques.</translation>
     </message>
     <message>
-      <location filename="core/motion/pieces.py" />
+      <location filename="core/motion/path_pieces.py" />
       <source>Block %1: start and end of the arc lie %2 and %3 mm from its centre; correct the centre or the end point.</source>
       <translation>Bloque %1: el principio y el final del arco están a %2 y %3 mm de su centro; corrija el centro o el punto final.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>A speed of %1 mm/s at the end of the path cannot come to rest; plan before it.</source>
       <translation>Una velocidad de %1 mm/s al final de la trayectoria no puede parar; planee antes.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>A speed of %1 mm/s cannot come to rest within the %2 mm that are left; plan from a state of this path.</source>
       <translation>Una velocidad de %1 mm/s no puede parar en los %2 mm que quedan; planee desde un estado de esta trayectoria.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>A speed of %1 mm/s is too high for what follows, which allows %2 mm/s; plan from a state of this path.</source>
       <translation>Una velocidad de %1 mm/s es demasiada para lo que sigue, que permite %2 mm/s; planee desde un estado de esta trayectoria.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>Distance %1 is not on the path from %2 to %3 mm.</source>
       <translation>La distancia %1 no está en la trayectoria de %2 a %3 mm.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>The %1 override is %2; it must lie between 0 and %3.</source>
       <translation>La perilla %1 está en %2; debe estar entre 0 y %3.</translation>
     </message>
     <message>
-      <location filename="core/motion/plan.py" />
+      <location filename="core/motion/motion_plan.py" />
       <source>The present speed is %1; it must be zero or above.</source>
       <translation>La velocidad actual es %1; debe ser cero o más.</translation>
     </message>
     <message>
-      <location filename="core/motion/rates.py" />
+      <location filename="core/motion/feed_rates.py" />
       <source>Block %1: %2.</source>
       <translation>Bloque %1: %2.</translation>
     </message>
     <message>
-      <location filename="core/motion/rates.py" />
+      <location filename="core/motion/feed_rates.py" />
       <source>a thread does not advance along Z</source>
       <translation>una rosca no avanza a lo largo de Z</translation>
     </message>
     <message>
-      <location filename="core/motion/rates.py" />
+      <location filename="core/motion/feed_rates.py" />
       <source>feed per revolution with the spindle stopped; start it first</source>
       <translation>avance por vuelta con el husillo parado; arránquelo primero</translation>
     </message>
     <message>
-      <location filename="core/motion/rates.py" />
+      <location filename="core/motion/feed_rates.py" />
       <source>the feed is not above zero; program an F</source>
       <translation>el avance no es mayor que cero; programe una F</translation>
     </message>
     <message>
-      <location filename="core/motion/rates.py" />
+      <location filename="core/motion/feed_rates.py" />
       <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
       <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
     </message>
     <message>
-      <location filename="core/motion/timeline.py" />
+      <location filename="core/motion/window_planner.py" />
       <source>A planning window of %1 blocks holds nothing; give at least 1.</source>
       <translation>Una ventana de planeo de %1 bloques no contiene nada; dé al menos 1.</translation>
     </message>
     <message>
-      <location filename="core/motion/timeline.py" />
+      <location filename="core/motion/window_planner.py" />
       <source>A sampling interval of %1 s gives no samples; give a time above zero.</source>
       <translation>Un intervalo de muestreo de %1 s no da muestras; dé un tiempo mayor que cero.</translation>
     </message>
     <message>
-      <location filename="core/motion/words.py" />
+      <location filename="core/motion/block_table.py" />
       <source>Block %1 tells of all axes, another behind it does not.</source>
       <translation>El bloque %1 habla de todos los ejes, otro después de él no.</translation>
     </message>
     <message>
-      <location filename="core/motion/words.py" />
+      <location filename="core/motion/block_table.py" />
       <source>Block %1: %2 is not a number; correct the block.</source>
       <translation>Bloque %1: %2 no es un número; corrija el bloque.</translation>
     </message>
     <message>
-      <location filename="core/motion/words.py" />
+      <location filename="core/motion/block_table.py" />
       <source>Block %1: a %2 block has no time law of its own.</source>
       <translation>Bloque %1: un bloque %2 no tiene ley de tiempo propia.</translation>
     </message>
     <message>
-      <location filename="core/motion/words.py" />
+      <location filename="core/motion/block_table.py" />
       <source>Block %1: css is %2 mm/s; program a surface speed with S.</source>
       <translation>Bloque %1: css es %2 mm/s; programe una velocidad superficial con S.</translation>
     </message>
@@ -11804,32 +11804,32 @@
       <translation>Con salto de bloque %1: %2</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>%1 Never proved: %2.</source>
       <translation>%1 Nunca comprobado: %2.</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>%1 ways through the program by its inputs were not proved; %2 were.</source>
       <translation>%1 caminos del programa según sus entradas no se comprobaron; %2 sí.</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>Fewer conditional calls in loops, or subroutines that end where they begin, make all provable.</source>
       <translation>Con menos llamadas condicionales en lazos, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>With %1 and %2: %3</source>
       <translation>Con %1 y %2: %3</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>With %1: %2</source>
       <translation>Con %1: %2</translation>
     </message>
     <message>
-      <location filename="core/proving/branches.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>input %1 %2 at line %3</source>
       <translation>la entrada %1 %2 en la línea %3</translation>
     </message>
@@ -11929,47 +11929,47 @@
       <translation>el T0 de la línea %1</translation>
     </message>
     <message>
-      <location filename="core/proving/interlock.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source>C moves while the spindle turns, and on this machine the spindle itself is C</source>
       <translation>C se mueve mientras gira el husillo, y en esta máquina el husillo mismo es C</translation>
     </message>
     <message>
-      <location filename="core/proving/interlock.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source>stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo</source>
       <translation>párelo primero con M5, o use un torno cuyo C tenga servo propio: sinumerik-modulo</translation>
     </message>
     <message>
-      <location filename="core/proving/timeline.py" />
+      <location filename="core/proving/program_timeline.py" />
       <source>change the move that the message names</source>
       <translation>cambie el movimiento que nombra el mensaje</translation>
     </message>
     <message>
-      <location filename="core/proving/travel.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source> (X as a radius)</source>
       <translation> (X como radio)</translation>
     </message>
     <message>
-      <location filename="core/proving/travel.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
       <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
     </message>
     <message>
-      <location filename="core/proving/travel.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source>check the %1 word and the shifts in force</source>
       <translation>revise la palabra %1 y los desplazamientos vigentes</translation>
     </message>
     <message>
-      <location filename="core/proving/travel.py" />
+      <location filename="core/proving/machine_checks.py" />
       <source>check the %1 word, the offset of T%2 and any G10 or G92</source>
       <translation>revise la palabra %1, la compensación de T%2 y cualquier G10 o G92</translation>
     </message>
     <message>
-      <location filename="core/proving/uncalled.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>Call it with M98P%1, or take it out.</source>
       <translation>Llámela con M98P%1, o quítela.</translation>
     </message>
     <message>
-      <location filename="core/proving/uncalled.py" />
+      <location filename="core/proving/program_branches.py" />
       <source>Subroutine %1 is called from nowhere, so it was not proved.</source>
       <translation>Nadie llama a la subrutina %1, así que no se comprobó.</translation>
     </message>

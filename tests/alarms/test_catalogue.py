@@ -12,8 +12,8 @@ from typing import Literal, get_args, get_origin
 import pytest
 
 from core.alarms import CATALOGUE, Entry, Reaction, by_number
+from core.alarms.alarm_entry import Code, OwnCode
 from core.alarms.catalogue import SUBJECTS
-from core.alarms.entry import Code, OwnCode
 from core.faults import FaultCode
 
 HOUSE = Path(__file__).parents[2]
@@ -124,7 +124,7 @@ def test_an_alarm_is_made_in_one_place() -> None:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Alarm"
     ]
-    assert makers == ["core/executor/alarms.py"]
+    assert makers == ["core/executor/raised_alarm.py"]
 
 
 def test_a_plain_entry_is_whole() -> None:

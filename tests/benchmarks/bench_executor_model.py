@@ -13,7 +13,7 @@ import time
 from hypothesis import HealthCheck, Phase, seed, settings
 from hypothesis.stateful import run_state_machine_as_test
 
-from core.executor.states import TRANSITIONS
+from core.executor.snapshot import TRANSITIONS
 from tests.executor.model import SEEN, ExecutorModel
 
 STEPS = 50_000

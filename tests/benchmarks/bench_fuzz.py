@@ -14,7 +14,7 @@ from app.compose.machine import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 
 OFFSETS = {n: ToolOffset() for n in range(1, 9)}

@@ -14,10 +14,10 @@ import time
 from collections.abc import Callable
 
 from core.interpreter.elementary_blocks import Block
-from core.motion.limits import MotionLimits
-from core.motion.path import build_path
-from core.motion.plan import plan
-from core.motion.timeline import ChunkPlanner
+from core.motion.axis_limits import MotionLimits
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
+from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import chords, rounded_chords
 
 RADIUS, CHORD, FEED, PAIRS = 50.0, 0.02, 100.0, 7

@@ -19,7 +19,7 @@ from app.compose.machine import read_machine, setup_for
 from core.interpreter.dialects import blocks_and_series, interpretation
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.benchmarks.installed import installed
 
 RUNS = 7

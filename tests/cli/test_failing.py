@@ -13,7 +13,7 @@ import pytest
 
 from app.cli.crash import report_crash, report_thread
 from app.compose.logs import Log
-from core.executor.alarms import TroubleError, alarm_of, log_alarm
+from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
 
 CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"
 
@@ -134,7 +134,7 @@ def test_a_full_disk_under_the_log_is_told_without_a_traceback(
 
 def test_a_record_of_the_log_has_time_thread_and_alarm(home: Path) -> None:
     log = Log()
-    log_alarm(alarm_of(TroubleError("driver", "setpoints of a wrong shape", 7), 0, 1.0)[0])
+    log_alarm(alarm_and_reaction(AlarmError("driver", "setpoints of a wrong shape", 7), 0, 1.0)[0])
     log.close()
     (line,) = (home / "logs" / "turndesk.log").read_text().splitlines()
     assert "MainThread" in line

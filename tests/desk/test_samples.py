@@ -9,7 +9,7 @@ from app.compose.machine import setup_for
 from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import load_source
 from core.machine.load import load_machine, named_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES
 
 

@@ -6,15 +6,15 @@ import pytest
 
 from app.desk.alarms import KEPT, StopLog, read_back
 from core.alarms import CATALOGUE, Code
-from core.executor.alarms import told, words
+from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event
 from core.store.rows import EventRow
 
 
 def event(code: Code, detail: str = "", line: int = 0) -> Event:
-    alarm = told(code, detail, line, 1.0)
+    alarm = make_alarm(code, detail, line, 1.0)
     kind = {"estop": "estop", "feed-hold": "stop"}.get(code, "alarm")
-    return Event(1.0, kind, words(alarm), line, alarm)
+    return Event(1.0, kind, log_line(alarm), line, alarm)
 
 
 def row(event: Event, at: str = "2020-02-03T04:05:06Z") -> EventRow:

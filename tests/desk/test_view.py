@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.readout import Readout, coordinates
 from app.desk.view import Tone, view_of
-from core.executor.alarms import told
+from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
 
@@ -137,11 +137,11 @@ def test_spindle_lamp_tells_what_turns(
 
 
 def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
-    told = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
-    words = {lamp.word: lamp.lit for lamp in view_of(told, Readout.POSITION, True).lamps}
+    make_alarm = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
+    words = {lamp.word: lamp.lit for lamp in view_of(make_alarm, Readout.POSITION, True).lamps}
     assert words["COOLANT"] is False
     assert "COLLET OPEN" in words
-    done = replace(told, outputs=frozenset({"coolant", "collet", "live2"}))
+    done = replace(make_alarm, outputs=frozenset({"coolant", "collet", "live2"}))
     words = {lamp.word: lamp.lit for lamp in view_of(done, Readout.POSITION, True).lamps}
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
 
@@ -175,11 +175,11 @@ def test_the_alarm_that_came_first_is_named_first() -> None:
 
 
 def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
-    silent = told("station-silent", "", 4, 0.0)
+    silent = make_alarm("station-silent", "", 4, 0.0)
     view = view_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
     assert view.stop is silent
     assert view.state == "FEED HOLD 601: OPERATOR STATION SILENT"
-    pressed = told("feed-hold", "H at the keyboard", 4, 0.0)
+    pressed = make_alarm("feed-hold", "H at the keyboard", 4, 0.0)
     view = view_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
     assert (view.stop, view.state) == (None, "FEED HOLD")
 

@@ -17,8 +17,8 @@ from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
-from core.proving.prove import prove
-from core.proving.timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.prove_program import prove
 from core.store.errors import StoreError
 from core.store.rows import VersionRow
 

@@ -17,7 +17,7 @@ from core.interpreter.restart.restart_approach import Choices, begin_at
 from core.interpreter.restart.restart_lines import RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
 TOOLS: Mapping[int, ToolOffset] = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}

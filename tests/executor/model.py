@@ -18,7 +18,6 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
 from app.compose.proof import proof_of
-from core.executor.announced import READ
 from core.executor.commands import (
     Command,
     CycleStart,
@@ -39,14 +38,14 @@ from core.executor.commands import (
     WheelOff,
 )
 from core.executor.executor import Executor
-from core.executor.feed import Pass
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot, Starts, State
-from core.executor.states import ACTIVE, BY_HAND, CYCLE, STOPPED
+from core.executor.read_ahead import ProgramPass
+from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, Starts, State
+from core.executor.start_conditions import TIME_TO_READ
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.ports import DriverError
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.executor.lines import line_job, restart_job
 from tests.executor.rig import TICK, Rig
 
@@ -125,7 +124,7 @@ SEEN = Seen()
 class Machine(Rig):
     """A rig whose ports break and that checks every tick."""
 
-    def _passes(self, job: Job, setup: Setup) -> Pass:
+    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
         self.blocks: list[Block] = []
         whole = super()._passes(job, setup)
         return whole._replace(blocks=self._kept(whole.blocks))
@@ -253,8 +252,8 @@ class Machine(Rig):
             return
         fresh = old.spindle_asked == 0.0 and (new.state in ACTIVE or old.state in ACTIVE or self.pressed)
         word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE
-        announced = self.pressed and self.announced > READ - 1e-6
-        switched = self.switched and new.state in BY_HAND and self.announced > READ - 1e-6
+        announced = self.pressed and self.announced > TIME_TO_READ - 1e-6
+        switched = self.switched and new.state in BY_HAND and self.announced > TIME_TO_READ - 1e-6
         assert fresh or word or announced or switched, (
             f"the spindle starts by itself in {new.state}: {old.announced}"
         )

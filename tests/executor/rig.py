@@ -11,10 +11,9 @@ from app.compose.machine import control_limits
 from app.compose.simulated import simulated
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
-from core.executor.feed import Pass
-from core.executor.interpret import interpret
-from core.executor.interrupted import Interrupted
-from core.executor.job import Job, Proof, make_job
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.job import Job, Proof, interpret, make_job
+from core.executor.read_ahead import ProgramPass
 from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset
@@ -46,8 +45,8 @@ class Rig:
     made: Iterable[Block] | None = None  # run these instead of interpreting
     gear: bool = True  # whether the driver follows the spindle by itself
     every: float = TICK  # s between two ticks
-    left: Interrupted | None = None  # what the last power cut left interrupted
-    notes: list[Interrupted | None] = field(
+    left: InterruptedJob | None = None  # what the last power cut left interrupted
+    notes: list[InterruptedJob | None] = field(
         default_factory=list
     )  # what a power cut would leave, as it was noted
 
@@ -61,8 +60,8 @@ class Rig:
         )
         self.executor.tick()
 
-    def _passes(self, job: Job, setup: Setup) -> Pass:
-        return interpret(job, setup) if self.made is None else Pass(iter(self.made), list)
+    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
+        return interpret(job, setup) if self.made is None else ProgramPass(iter(self.made), list)
 
     @property
     def shot(self) -> Snapshot:

@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from core.executor.commands import CycleStart, LoadJob, SetSwitch
-from core.executor.feed import Pass
-from core.executor.interpret import interpret
-from core.executor.job import Job, Proof, make_job
+from core.executor.job import Job, Proof, interpret, make_job
+from core.executor.read_ahead import ProgramPass
 from core.executor.snapshot import State
 from core.interpreter.actions import Dwell, ProgramEnd
 from core.interpreter.dialects import interpretation
@@ -50,7 +49,7 @@ class QuickRig(Rig):
 
     blocks: list[Block] = field(default_factory=list)  # of the last pass
 
-    def _passes(self, job: Job, setup: Setup) -> Pass:
+    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
         self.blocks = []
         whole = interpret(job, setup)
         return whole._replace(blocks=self._kept(whole.blocks))

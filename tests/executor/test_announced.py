@@ -6,9 +6,9 @@ import dataclasses
 
 import pytest
 
-from core.executor.announced import READ
 from core.executor.commands import CycleStart, FeedHold, Reset, SpindleLimit
 from core.executor.snapshot import State
+from core.executor.start_conditions import TIME_TO_READ
 from core.machine.load import load_machine
 from tests.executor.rig import TICK, Rig
 
@@ -70,7 +70,7 @@ def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() ->
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick()
-    rig.run(READ - 2 * TICK)
+    rig.run(TIME_TO_READ - 2 * TICK)
     rig.post(CycleStart())
     assert rig.state is State.HOLD
     assert rig.shot.start_refused == f"look first: {SAID}; then start again"
@@ -234,7 +234,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     switched_off(rig)
-    rig.run(READ)
+    rig.run(TIME_TO_READ)
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
 
@@ -242,7 +242,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
 def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_programs() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READ)
+    rig.run(TIME_TO_READ)
     rig.sim.machine.station_silent(True)
     rig.run(1.0)
     rig.sim.machine.set_spindle_auto(True)
@@ -254,7 +254,7 @@ def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_p
 def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READ)
+    rig.run(TIME_TO_READ)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick(0.5)
     never_turns(rig)
@@ -263,7 +263,7 @@ def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
 def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READ)
+    rig.run(TIME_TO_READ)
     rig.sim.machine.collet_sensor_stuck()
     rig.sim.machine.set_input("collet_closed", False)
     rig.sim.machine.set_spindle_auto(True)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from core.executor.alarms import TroubleError
-from core.executor.axis_watch import AxisWatch
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Jog, Reset, SetSwitch
+from core.executor.following_error import FollowingErrorWatch
+from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.machine.load import load_machine
 from core.ports import AxisSample
@@ -249,11 +249,11 @@ def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> A
 
 def test_a_sample_that_is_no_new_one_counts_for_no_time() -> None:
     """A wire that repeats its last answer, and a control that was away, make nothing last longer."""
-    watch = AxisWatch(load_machine().axes)
+    watch = FollowingErrorWatch(load_machine().axes)
     watch.look(sample(0.0, 0.0, 0.0), unpowered=False)
     watch.look(sample(0.01, 0.0, 0.0), unpowered=False)
     for _ in range(100):
         watch.look(sample(1.0, 0.0, 0.5), unpowered=False)
     watch.look(sample(1.01, 0.0, 0.5), unpowered=False)
-    with pytest.raises(TroubleError, match=r"Z is 0\.500 mm off"):
+    with pytest.raises(AlarmError, match=r"Z is 0\.500 mm off"):
         watch.look(sample(1.3, 0.0, 0.5), unpowered=False)

@@ -13,7 +13,7 @@ from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"

@@ -8,7 +8,7 @@ import pytest
 
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
-from core.executor.thread import ExecutorThread
+from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
 from core.machine.load import load_machine
 from core.machine.model import Machine

@@ -10,7 +10,7 @@ import pytest
 
 from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
-from core.geometry.travel import FloatArray, Travel
+from core.geometry.machine_travel import FloatArray, Travel
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal

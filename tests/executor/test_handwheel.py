@@ -7,7 +7,6 @@ import math
 
 import pytest
 
-from core.executor.clicks import Clicks
 from core.executor.commands import (
     CycleStart,
     EnableDrives,
@@ -19,6 +18,7 @@ from core.executor.commands import (
     Wheel,
     WheelOff,
 )
+from core.executor.handwheel import WheelClicks
 from core.executor.snapshot import State
 from core.machine.hardware.model import AnalogModel
 from core.machine.load import load_machine
@@ -467,7 +467,7 @@ def test_the_axis_is_the_one_that_the_switch_selects() -> None:
 
 
 def test_where_a_counter_stands_at_first_is_nothing() -> None:
-    clicks = Clicks(4)
+    clicks = WheelClicks(4)
     assert clicks.take(123456, 1.0) == 0
     assert clicks.take(123464, 1.01) == 2
     assert clicks.take(123463, 1.02) == 0
@@ -475,7 +475,7 @@ def test_where_a_counter_stands_at_first_is_nothing() -> None:
 
 
 def test_a_leap_and_what_is_old_are_no_clicks() -> None:
-    clicks = Clicks(1)
+    clicks = WheelClicks(1)
     clicks.take(0, 1.0)
     assert clicks.take(21, 1.01) == 0  # 20 in 10 ms is what a hand may
     assert clicks.leapt

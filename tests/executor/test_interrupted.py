@@ -17,7 +17,7 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.interrupted import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, of_plain, plain
+from core.executor.interrupted_job import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, of_plain, plain
 from core.executor.snapshot import Starts, State
 from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig

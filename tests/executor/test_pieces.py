@@ -7,12 +7,12 @@ import math
 
 import pytest
 
-from core.block_port import ArcOp, LineOp, RapidOp, ThreadOp
-from core.executor.alarms import TroubleError
-from core.executor.blockwise.pieces import LONGEST, Turning, pieces_of
+from core.executor.controller_motion import LONGEST, Turning, pieces_of
+from core.executor.raised_alarm import AlarmError
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.machine_requirements import first_needs, needs_of
 from core.interpreter.modal_state import Modal
+from core.ports import ArcOp, LineOp, RapidOp, ThreadOp
 
 FULL = Turning(1.0, 3500.0)
 
@@ -91,7 +91,7 @@ def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> 
     ("words", "expected"), [({"c": 90.0}, "X and Z only"), ({"x": 1.0, "feed": 0.0}, "no feed")]
 )
 def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
-    with pytest.raises(TroubleError, match=expected):
+    with pytest.raises(AlarmError, match=expected):
         list(pieces_of(block(Kind.FEED, **words), FULL))
 
 

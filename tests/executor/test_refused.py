@@ -18,8 +18,7 @@ from core.executor.commands import (
     SpindleLimit,
 )
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import State
-from core.executor.states import TRANSITIONS, TransitionError, demand_allowed
+from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_allowed
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.machine_requirements import THREAD, Need
 from core.language.source import Source

@@ -15,7 +15,7 @@ from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.executor import lines
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from core.alarms import CATALOGUE, Reaction
-from core.executor.alarms import HOLDS, held_by
 from core.executor.commands import CycleStart, FeedHold, Jog, Reset, SetSwitch
+from core.executor.raised_alarm import CODES_OF_HOLDS, code_of_hold
 from core.executor.snapshot import State
 from core.ports import DriverError, Segments
 from tests.executor.rig import Rig
@@ -177,8 +177,8 @@ def test_a_late_computer_in_a_jog_ends_the_jog_and_is_in_the_log(
 
 
 def test_a_hold_without_an_entry_tells_its_reason_all_the_same() -> None:
-    assert held_by("SOMETHING NEW", "") == ("held", "something new")
-    assert held_by("", "") == ("feed-hold", "")
+    assert code_of_hold("SOMETHING NEW", "") == ("held", "something new")
+    assert code_of_hold("", "") == ("feed-hold", "")
 
 
 def reasons() -> list[str]:
@@ -197,9 +197,9 @@ def reasons() -> list[str]:
 def test_every_reason_of_a_hold_is_in_the_catalogue() -> None:
     found = reasons()
     assert len(found) >= 3
-    assert [reason for reason in found if reason not in HOLDS] == []
+    assert [reason for reason in found if reason not in CODES_OF_HOLDS] == []
 
 
 def test_holds_are_found_by_their_words() -> None:
     holds = [entry for entry in CATALOGUE.values() if entry.reaction is Reaction.HOLD]
-    assert len(HOLDS) == len(holds)
+    assert len(CODES_OF_HOLDS) == len(holds)

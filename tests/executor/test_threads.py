@@ -13,9 +13,9 @@ import pytest
 
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Snapshot, State
-from core.executor.turns import Turns
+from core.executor.spindle_control import SpindleAngle
 from core.interpreter.job_setup import ToolOffset
-from core.motion.limits import FloatArray
+from core.motion.axis_limits import FloatArray
 from tests.executor.rig import INCH, CreepingClock, Rig
 
 TOOLS = {4: ToolOffset()}
@@ -314,14 +314,14 @@ def test_feed_override_does_not_touch_a_pass(gear: bool) -> None:
 
 
 def test_an_even_spindle_is_foretold_exactly() -> None:
-    turns = Turns()
+    turns = SpindleAngle()
     for i in range(20):
         turns.note((0.01 * i, -3.0 - 0.1 * i))
     assert turns.at(0.5) == pytest.approx((-8.0, -10.0))
 
 
 def test_nothing_is_foretold_from_too_little() -> None:
-    turns = Turns()
+    turns = SpindleAngle()
     assert turns.at(0.0) is None
     for i in range(30):
         turns.note((1.0, 5.0 + i))  # the same moment again says nothing
@@ -334,7 +334,7 @@ def test_nothing_is_foretold_from_too_little() -> None:
 
 
 def test_a_swinging_speed_is_foretold_within_a_fifth_of_a_degree() -> None:
-    turns, worst = Turns(), 0.0
+    turns, worst = SpindleAngle(), 0.0
 
     def truth(t: float) -> float:
         return 10.0 * (t - 0.02 / math.pi * math.cos(math.pi * t))  # 600 rpm, 2 % in 2 s

@@ -11,8 +11,7 @@ import pytest
 from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.executor.thread import ExecutorThread
-from core.executor.watchdog import AGAIN, PATIENT, STUCK, Watchdog, running
+from core.executor.watchdog import AGAIN, PATIENT, STUCK, ExecutorThread, Watchdog, running
 from drivers.grblhal import codes
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.grbl import Grblhal

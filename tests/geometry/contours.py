@@ -7,8 +7,7 @@ from math import cos, sin
 
 from hypothesis import strategies as st
 
-from core.geometry.arcs import Point, centre_from_radius
-from core.geometry.contour import Arc, Element, Line
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, centre_from_radius
 
 
 def polyline(*points: Point) -> list[Element]:

@@ -7,9 +7,15 @@ from math import asin, cos, dist, pi, sin
 
 import pytest
 
-from core.geometry.bevel import bevel, leg_of
-from core.geometry.contour import Arc, Element, Line, arc_between, turn
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer
+from core.geometry.chamfer_and_rounding import (
+    CornerError,
+    CornerTooLargeError,
+    NoCornerError,
+    bevel,
+    chamfer,
+    leg_of,
+)
+from core.geometry.lines_and_arcs import Arc, Element, Line, arc_between, turn
 
 LONG = Line((0.0, 90.0), (0.0, 10.0))
 LINE = Line((0.0, 30.0), (0.0, 10.0))

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.clip import Area
-from core.geometry.contour import Arc, Element, Line
-from core.geometry.meet import distance
-from core.geometry.trim import TrimError, trimmed_offset
+from core.geometry.contour_offset import TrimError, trimmed_offset
+from core.geometry.intersections import distance
+from core.geometry.lines_and_arcs import Arc, Element, Line
+from core.geometry.roughing_area import Area
 from tests.geometry.contours import arc, polyline, sampled
 
 STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))

@@ -8,9 +8,15 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from core.geometry.contour import Line, turn
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
-from core.geometry.meet import distance
+from core.geometry.chamfer_and_rounding import (
+    CornerError,
+    CornerTooLargeError,
+    NoCornerError,
+    chamfer,
+    fillet,
+)
+from core.geometry.intersections import distance
+from core.geometry.lines_and_arcs import Line, turn
 from tests.geometry.contours import follow
 
 FACE = Line((0, 0), (5, 0))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from core.geometry.extent import arc_extent, arc_sweep
+from core.geometry.lines_and_arcs import arc_extent, arc_sweep
 
 
 def test_convex_corner_of_a_shaft_is_a_clockwise_quarter() -> None:

@@ -9,10 +9,9 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.arcs import Point
-from core.geometry.contour import Arc, Element, Line
-from core.geometry.meet import clearance, distance
-from core.geometry.offset import JOINED, WINDOW, GougeError, Offset, offset_contour, offset_element
+from core.geometry.contour_offset import JOINED, WINDOW, GougeError, Offset, offset_contour, offset_element
+from core.geometry.intersections import clearance, distance
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
 
 

@@ -9,9 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.geometry.face import Face
-from core.geometry.mill import PlaneMove
-from core.geometry.side import Side
+from core.geometry.virtual_mill import Face, PlaneMove, Side
 
 ENDS = np.array([0.0, 1.0])
 MANY = np.linspace(0.0, 1.0, 2001)

@@ -8,8 +8,8 @@ from math import cos, dist, pi, sin
 
 import pytest
 
-from core.geometry.contour import Arc, Element, Line, arc_between
-from core.geometry.corner import CornerError, NoCornerError, fillet, rounding
+from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, fillet, rounding
+from core.geometry.lines_and_arcs import Arc, Element, Line, arc_between
 
 Point = tuple[float, float]
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.geometry.spindle import surface_rpm
+from core.geometry.surface_speed import surface_rpm
 
 
 def test_the_trades_formula() -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from core.geometry.arcs import Point
-from core.geometry.contour import Arc, Element, Line, arc_between
-from core.geometry.meet import distance
+from core.geometry.intersections import distance
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
 from core.interpreter.elementary_blocks import Block, Kind
 
 

@@ -14,7 +14,7 @@ from core.interpreter.omniturn.language_page import page
 from core.language.diagnostics import Severity
 from core.language.source import Source
 from core.machine.load import load_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 
 ENTRIES = [entry for _, entries in CHAPTERS for entry in entries]
 PAGE = Path(__file__).parents[2] / "docs" / "language.md"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from core.geometry.contour import Element
+from core.geometry.lines_and_arcs import Element
 from core.interpreter.elementary_blocks import Block, Kind
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, in_feed, passed

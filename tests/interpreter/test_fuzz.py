@@ -15,7 +15,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import Source
 from core.machine.load import load_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 from tests.interpreter.programs import lines, passed, setup
 

@@ -7,7 +7,7 @@ from math import sqrt
 
 import pytest
 
-from core.geometry.offset import WINDOW
+from core.geometry.contour_offset import WINDOW
 from core.interpreter.actions import Dwell, ProgramStop
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup

@@ -23,7 +23,7 @@ from core.interpreter.omniturn.plain_moves import LongProgram, columns_of, read_
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.load import load_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.interpreter.mutation import SEEDS, mutated
 from tests.interpreter.programs import body, inches, lines, setup
 

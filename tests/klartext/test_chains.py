@@ -10,10 +10,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.geometry.frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
-from core.geometry.kinematics import Kinematics, Rotary
-from core.geometry.pivot import PivotWay
-from core.geometry.swivel import Side, choose, solutions
+from core.geometry.mill_kinematics import Kinematics, PivotMove, Rotary
+from core.geometry.rotation_frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
+from core.geometry.swivel_angles import SolutionSide, choose, solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
 
 Array = npt.NDArray[np.float64]
@@ -116,8 +115,8 @@ def test_one_rotary_axis_does_not_reach_the_others(chamfer: int) -> None:
 
 def test_one_rotary_axis_has_one_side() -> None:
     frame = from_points(*CHAMFERS[1])
-    assert choose(machine(A), frame, {}, Side.SYM_PLUS) is not None
-    assert choose(machine(A), frame, {}, Side.SYM_MINUS) is None
+    assert choose(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
+    assert choose(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
 
 
 def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
@@ -142,14 +141,14 @@ def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
     limited = dataclasses.replace(C, modulo=False, low=-360.0, high=360.0)
     chain, frame = machine(limited, A), from_points(*CHAMFERS[2])
     for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
-        found = choose(chain, frame, {"A": 45.0, "C": present}, Side.SYM_PLUS)
+        found = choose(chain, frame, {"A": 45.0, "C": present}, SolutionSide.SYM_PLUS)
         assert found is not None
         assert found.angles["C"] == pytest.approx(wanted)
 
 
 def test_a_reversed_axis_counts_the_other_way() -> None:
     backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
-    found = choose(machine(C, backwards), from_points(*CHAMFERS[1]), {}, Side.SYM_MINUS)
+    found = choose(machine(C, backwards), from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS)
     assert found is not None
     assert (found.angles["A"], found.angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
 
@@ -187,7 +186,7 @@ def test_move_keeps_its_pivot_on_any_chain(name: str, depth: float) -> None:
     names = [axis.name for axis in chain.rotaries]
     start, end = dict.fromkeys(names, 5.0), dict(zip(names, (70.0, -40.0), strict=True))
     pivot = (12.0, -7.0, 25.0)
-    way = PivotWay(chain, start, end, pivot, depth, length, 1.0)
+    way = PivotMove(chain, start, end, pivot, depth, length, 1.0)
     for row in way.machine(np.linspace(0.0, 1.0, 9)).tolist():
         at = dict(zip(chain.names, row, strict=True))
         slides = np.array((at["X"], at["Y"], at["Z"]))

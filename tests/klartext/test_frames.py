@@ -8,7 +8,8 @@ import random
 import numpy as np
 import pytest
 
-from core.geometry.frames import (
+from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotation_frames import (
     IDENTITY,
     X_AXIS,
     Z_AXIS,
@@ -20,8 +21,7 @@ from core.geometry.frames import (
     product,
     turned,
 )
-from core.geometry.kinematics import Kinematics
-from core.geometry.swivel import Side, choose, solutions
+from core.geometry.swivel_angles import SolutionSide, choose, solutions
 from tests.klartext.table import AC, CHAMFERS, DATUMS, limited
 
 S = math.sqrt(0.5)
@@ -65,7 +65,7 @@ def stands(
     table_rot: bool = False,
 ) -> tuple[float, float, float] | None:
     """A, C and what is left to turn; None where there is no solution."""
-    asked = Side(side) if side else None
+    asked = SolutionSide(side) if side else None
     found = choose(machine, frame, {"A": a, "C": c}, asked, table_rot=table_rot)
     return None if found is None else (found.angles["A"], found.angles["C"], found.spin)
 
@@ -88,7 +88,7 @@ def test_the_frame_of_a_chamfer_by_all_its_names(chamfer: int) -> None:
 def test_both_ways_to_stand_in_a_chamfer(chamfer: int, row: int, side: str) -> None:
     frame = from_points(*CHAMFERS[chamfer])
     angles, middle, origin = STANDS[chamfer][row]
-    found = choose(AC, frame, {}, Side(side))
+    found = choose(AC, frame, {}, SolutionSide(side))
     assert found is not None
     assert (found.angles["A"], found.angles["C"], found.spin) == about(angles)
     place = AC.place(found.angles, frame, DATUMS[chamfer])

@@ -13,9 +13,9 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source
 from core.machine.load import shipped_machine
 from core.machine.model import Machine
-from core.proving.prove import prove
-from core.proving.timeline import Timeline, timed_blocks
-from core.proving.trace import setpoints
+from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.prove_program import prove
+from core.proving.setpoint_trace import setpoints
 from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import TOOL, whole
 

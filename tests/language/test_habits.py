@@ -10,7 +10,7 @@ from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
 from core.language.source import Source
 from core.machine.load import load_machine, named_machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 
 
 def errors(*lines: str, name: str = "A", machine: str | None = None) -> list[Diagnostic]:

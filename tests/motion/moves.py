@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.motion.limits import MotionLimits
+from core.motion.axis_limits import MotionLimits
 
 Point = tuple[float, float]
 

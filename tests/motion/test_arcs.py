@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from core.motion.errors import MotionError
-from core.motion.path import build_path
-from core.motion.plan import plan
+from core.motion.axis_limits import MotionError
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, V, arc
 
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.motion.path import build_path
-from core.motion.plan import plan
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, rounded_chords
 
 

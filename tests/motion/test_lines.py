@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from core.interpreter.elementary_blocks import Kind
-from core.motion.errors import MotionError
-from core.motion.limits import MotionLimits
-from core.motion.path import build_path
-from core.motion.plan import plan
+from core.motion.axis_limits import MotionError, MotionLimits
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, V, line, polyline
 
 

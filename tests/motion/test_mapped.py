@@ -10,18 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.geometry.face import Face
-from core.geometry.mill import PlaneMove, Spot
-from core.geometry.side import Side
+from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.motion.errors import MotionError
-from core.motion.limits import FloatArray, MotionLimits
-from core.motion.mapped import CHORD_ERROR, chords
-from core.motion.path import Path, build_path
-from core.motion.plan import plan
-from core.motion.profile import Profile
-from core.motion.timeline import sample_positions
+from core.motion.axis_limits import FloatArray, MotionError, MotionLimits
+from core.motion.curved_axes import CHORD_ERROR, chords
+from core.motion.motion_path import Path, build_path
+from core.motion.motion_plan import plan
+from core.motion.motion_profile import Profile
+from core.motion.window_planner import sample_positions
 from tests.motion.moves import line
 
 # The shipped lathe: C at 200 rpm and 600 rpm/s at most.

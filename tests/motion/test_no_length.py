@@ -16,11 +16,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.motion.limits import FloatArray, MotionLimits
-from core.motion.path import Path, PathBuilder, build_path
-from core.motion.plan import plan
-from core.motion.profile import Profile
-from core.motion.timeline import ChunkPlanner
+from core.motion.axis_limits import FloatArray, MotionLimits
+from core.motion.motion_path import Path, PathBuilder, build_path
+from core.motion.motion_plan import plan
+from core.motion.motion_profile import Profile
+from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, arc, line, polyline
 
 STEPPED = dataclasses.replace(LIMITS, grain=0.00127)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.motion.errors import MotionError
-from core.motion.path import PathBuilder, build_path
-from core.motion.plan import plan
+from core.motion.axis_limits import MotionError
+from core.motion.motion_path import PathBuilder, build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, arc, line, polyline
 
 

@@ -10,11 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.motion.limits import FloatArray
-from core.motion.minima import reachable_backward, reachable_forward
-from core.motion.path import Path, build_path
-from core.motion.plan import plan
-from core.motion.profile import Profile
+from core.motion.axis_limits import FloatArray
+from core.motion.motion_path import Path, build_path
+from core.motion.motion_plan import plan, reachable_backward, reachable_forward
+from core.motion.motion_profile import Profile
 from tests.motion.moves import LIMITS, A, T, V, backwards, programs
 
 SLACK = 1.0 + 1e-6  # rounding in the ramps of very short pieces

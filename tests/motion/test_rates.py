@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.geometry.spindle import surface_rpm
+from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.motion.errors import MotionError
-from core.motion.path import build_path
-from core.motion.plan import plan
-from core.motion.rates import surface_rpms
-from core.motion.words import read_words
+from core.motion.axis_limits import MotionError
+from core.motion.block_table import read_blocks
+from core.motion.feed_rates import surface_rpms
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, Point, arc, line
 
 SURFACE = 2000.0  # mm/s
@@ -117,7 +117,7 @@ def test_a_surface_speed_that_is_no_number_is_refused() -> None:
 
 @pytest.mark.parametrize("radius", [0.0, 1e-9, 5.0, -5.0, 20.0, 1e4])
 def test_arrays_and_numbers_agree(radius: float) -> None:
-    words = read_words([turning((1, 0), (2, 0), modal=Modal(css_min=30.0, css_max=2500.0))], 2000.0)
+    words = read_blocks([turning((1, 0), (2, 0), modal=Modal(css_min=30.0, css_max=2500.0))], 2000.0)
     assert surface_rpms(words, np.array([radius]))[0] == surface_rpm(SURFACE, radius, 30.0, 2000.0)
 
 

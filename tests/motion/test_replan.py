@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.motion.errors import MotionError
-from core.motion.path import PathBuilder, build_path
-from core.motion.plan import plan
+from core.motion.axis_limits import MotionError
+from core.motion.motion_path import PathBuilder, build_path
+from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs, rounded_chords
 
 few = settings(max_examples=60, deadline=None)

@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block
-from core.motion.limits import FloatArray
-from core.motion.path import Path, PathBuilder, build_path
-from core.motion.plan import plan, settled_joints
-from core.motion.profile import Profile
-from core.motion.rounding import SUPPORT
-from core.motion.timeline import ChunkPlanner
+from core.motion.axis_limits import FloatArray
+from core.motion.chord_smoothing import SUPPORT
+from core.motion.motion_path import Path, PathBuilder, build_path
+from core.motion.motion_plan import plan, settled_joints
+from core.motion.motion_profile import Profile
+from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
 
 GRAIN = 0.00127  # mm: the step of the shipped lathe, .00005 in

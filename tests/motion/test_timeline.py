@@ -12,11 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.interpreter.elementary_blocks import Block
-from core.motion.errors import MotionError
-from core.motion.limits import MotionLimits
-from core.motion.path import build_path
-from core.motion.plan import plan
-from core.motion.timeline import Chunk, ChunkPlanner, sample_positions
+from core.motion.axis_limits import MotionError, MotionLimits
+from core.motion.motion_path import build_path
+from core.motion.motion_plan import plan
+from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions
 from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
 
 

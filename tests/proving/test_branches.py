@@ -17,10 +17,10 @@ from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
-from core.proving import branches
-from core.proving.prove import prove
-from core.proving.report import Report
-from core.proving.travel import travel_findings
+from core.proving import program_branches
+from core.proving.machine_checks import travel_findings
+from core.proving.proof_report import Report
+from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES
 
 MACHINE = load_machine(None)
@@ -165,7 +165,7 @@ def test_block_delete_counts_in_the_range() -> None:
 
 def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
     reading = ReadProgram(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
-    assert branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
+    assert program_branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
     report = proved("Z-1", "M30")
     assert (report.ways.gone, report.ways.left) == (1, 0)
     assert report.ways.cycle == (report.times.cycle,) * 2
@@ -180,7 +180,7 @@ def many(count: int) -> tuple[str, ...]:
 
 def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [d.code for d in proved(*many(5)).diagnostics] == []
-    monkeypatch.setattr(branches, "MOST_WAYS", 3)
+    monkeypatch.setattr(program_branches, "MOST_WAYS", 3)
     report = proved(*many(5))
     (found,) = report.diagnostics
     assert (found.code, found.check, str(found.severity)) == (
@@ -203,7 +203,7 @@ def test_a_loop_of_bar_work_with_many_passes_is_proved() -> None:
     sub = ("LF", "M30", "}1", "X.6Z.2", "X.5Z.1", "M99")
     report = proved("LS900", "Z-.1F50", "M97I1C1P1", "Z.1", *sub)
     assert errors(report) == []
-    assert report.ways.gone == branches.MOST_WAYS
+    assert report.ways.gone == program_branches.MOST_WAYS
 
 
 def test_a_subroutine_that_nothing_calls_is_told() -> None:

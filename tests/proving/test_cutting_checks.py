@@ -14,8 +14,8 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
 from core.machine.model import Machine
-from core.proving.prove import prove
-from core.proving.report import Report
+from core.proving.proof_report import Report
+from core.proving.prove_program import prove
 from tests.worked import FOLDER
 
 HEAD = ("G90G94F300", "M03S1000")

@@ -3,7 +3,7 @@
 import pytest
 
 from core.machine.load import load_machine
-from core.proving.forecast import SpindleForecast
+from core.proving.spindle_forecast import SpindleForecast
 
 
 @pytest.fixture

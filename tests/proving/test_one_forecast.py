@@ -11,9 +11,9 @@ from app.compose.machine import setup_for
 from core.interpreter.job_setup import SecondaryOffset, Setup
 from core.language.source import Source, load_source
 from core.machine.load import load_machine
-from core.proving.prove import prove
-from core.proving.timeline import Timeline, timed_series
-from core.proving.trace import setpoints
+from core.proving.program_timeline import Timeline, timed_series
+from core.proving.prove_program import prove
+from core.proving.setpoint_trace import setpoints
 from tests.interpreter.programs import ALL_TOOLS
 from tests.interpreter.test_golden import PROGRAMS, circumstances
 from tests.screen.desks import SAMPLES

@@ -9,11 +9,10 @@ from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.load import load_machine
-from core.proving.forecast import SpindleForecast
-from core.proving.prove import prove
-from core.proving.stretches import Moved
-from core.proving.timeline import Timeline, timed_blocks
-from core.proving.trace import setpoints
+from core.proving.program_timeline import MotionSpan, Timeline, timed_blocks
+from core.proving.prove_program import prove
+from core.proving.setpoint_trace import setpoints
+from core.proving.spindle_forecast import SpindleForecast
 
 MACHINE = load_machine()
 HEAD = "G90G94F300G73\nM03S600\nT1\nX.3Z.2\nX.25\n"
@@ -57,7 +56,7 @@ def test_the_wait_is_no_longer_than_a_turn() -> None:
     laid = timeline(HEAD + "G33X.24Z-.5I.01K.05PC\nM30\n")
     waits, rests = [], []
     for span in laid.spans():
-        if not isinstance(span, Moved):
+        if not isinstance(span, MotionSpan):
             rests.append(span.t1 - span.t0)
         elif span.blocks[0].kind is Kind.THREAD:
             waits.append(rests[-1])  # behind the settling and the commit

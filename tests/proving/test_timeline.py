@@ -9,8 +9,8 @@ from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Dialect, Source
 from core.machine.load import load_machine
-from core.proving.prove import prove
-from core.proving.timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.prove_program import prove
 
 MACHINE = load_machine()
 HEAD = "G90G94F300G73\nM03S600\nT1\nX.3Z.2\nX.25\n"

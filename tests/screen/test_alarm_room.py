@@ -13,7 +13,7 @@ from app.screen.look import Look, load_fonts
 from app.screen.runline import stop_words
 from app.screen.theme import DARK
 from core.alarms import CATALOGUE, Code, Reaction
-from core.executor.alarms import told
+from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State
 
 UNIT = 600 / 90  # pixels at 1024×600
@@ -35,7 +35,7 @@ def fits(look: Look, text: str, size: float, width: float, *, bold: bool = False
 
 
 def snapshot(code: Code) -> Snapshot:
-    alarm = told(code, "", 1234, 0.0)
+    alarm = make_alarm(code, "", 1234, 0.0)
     if CATALOGUE[code].reaction in {Reaction.OFF, Reaction.STOP}:
         return Snapshot(state=State.FAULT, alarms=(alarm,))
     return Snapshot(state=State.HOLD, stop=alarm)
@@ -53,7 +53,7 @@ def test_head_cause_and_remedy_are_whole(look: Look, code: Code) -> None:
 
 @CODES
 def test_the_list_of_stops_has_room_for_it(look: Look, code: Code) -> None:
-    alarm = told(code, "", 1234, 0.0)
+    alarm = make_alarm(code, "", 1234, 0.0)
     assert fits(look, f"{alarm.number}  ·  {alarm.text}", 2.0, LIST, bold=True)
     assert fits(look, exactly(alarm), 1.8, LIST), exactly(alarm)
     assert fits(look, alarm.remedy, 1.8, LIST), alarm.remedy

@@ -18,8 +18,8 @@ from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.machine.load import load_machine
-from core.proving.prove import prove
-from core.proving.report import Report
+from core.proving.proof_report import Report
+from core.proving.prove_program import prove
 from tests.screen.hands import Key
 from tests.worked import worked
 

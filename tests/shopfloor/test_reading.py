@@ -9,7 +9,7 @@ import pytest
 
 from app.shopfloor.conditions import PLACES
 from app.shopfloor.reading import FloorReader, Value
-from core.executor.alarms import TroubleError, alarm_of, told
+from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.machine.load import load_machine
@@ -92,8 +92,8 @@ def test_a_machine_in_a_cycle() -> None:
         ({"inputs": frozenset({"guard", "end_of_bar"})}, "endbar", "YES"),
     ],
 )
-def test_one_thing_is_different(change: dict[str, object], key: str, told: Value) -> None:
-    assert values_of(replace(AT, **change))[key] == told  # type: ignore[arg-type]
+def test_one_thing_is_different(change: dict[str, object], key: str, make_alarm: Value) -> None:
+    assert values_of(replace(AT, **change))[key] == make_alarm  # type: ignore[arg-type]
 
 
 def test_without_switches_nothing_is_known_of_what_they_would_tell() -> None:
@@ -112,9 +112,9 @@ def test_without_a_c_axis_its_angle_means_nothing() -> None:
 
 
 @pytest.mark.parametrize(("rpm", "told"), [(300.0, "ACTIVE"), (-300.0, "ACTIVE"), (1.0, "INACTIVE")])
-def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, told: str) -> None:
+def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, make_alarm: str) -> None:
     strict = replace(LATHE, interlocks=replace(LATHE.interlocks, unclamp_while_turning=False))
-    assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == told
+    assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == make_alarm
 
 
 # --- a control that says nothing any more ----------------------------------------------------------------
@@ -142,7 +142,7 @@ def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
 
 
 def alarm(code: str, detail: str = "") -> Alarm:
-    return alarm_of(TroubleError(code, detail), 0, 0.0)[0]
+    return alarm_and_reaction(AlarmError(code, detail), 0, 0.0)[0]
 
 
 def test_without_alarms_all_is_normal() -> None:
@@ -200,9 +200,9 @@ def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() ->
 
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
-    held = replace(AT, state=State.HOLD, stop=told("low-queue", "", 4, 0.0))
+    held = replace(AT, state=State.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
     assert active(held) == {"system": (("WARNING", "904", "SETPOINTS RAN LOW"),)}
-    assert active(replace(held, stop=told("feed-hold", "H at the keyboard", 4, 0.0))) == {}
+    assert active(replace(held, stop=make_alarm("feed-hold", "H at the keyboard", 4, 0.0))) == {}
     assert active(replace(held, stop=None)) == {}
     assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}
 

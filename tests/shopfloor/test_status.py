@@ -12,7 +12,7 @@ import pytest
 from app.shopfloor.reading import Reading
 from app.shopfloor.status import Status, StatusFile, StatusKeeper, status_of
 from core.alarms import CATALOGUE
-from core.executor.alarms import told
+from core.executor.raised_alarm import make_alarm
 from tests.interrupted import broken_off
 
 RUNNING = Reading(
@@ -25,7 +25,7 @@ RUNNING = Reading(
         "pcount": "12",
     },
     {"system": (), "Xservo": (("FAULT", "102", "FOLLOWING ERROR: X"),)},
-    alarms=(told("following", "X", 4, 0.0),),
+    alarms=(make_alarm("following", "X", 4, 0.0),),
 )
 
 
@@ -41,8 +41,8 @@ class Hours:
 
 
 def read(path: Path) -> dict[str, object]:
-    told: dict[str, object] = json.loads(path.read_text(encoding="utf-8"))
-    return told
+    make_alarm: dict[str, object] = json.loads(path.read_text(encoding="utf-8"))
+    return make_alarm
 
 
 def test_an_interrupted_job_is_told_with_line_tool_part_and_time() -> None:

@@ -14,7 +14,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.load import shipped_machine
 from core.machine.model import Machine
-from core.proving.timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, timed_blocks
 
 MODULO = shipped_machine("sinumerik-modulo")
 LINEAR = shipped_machine("sinumerik-linear")

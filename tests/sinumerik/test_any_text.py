@@ -9,8 +9,8 @@ import pytest
 
 from core.language.sinumerik.sinumerik_colours import spans
 from core.machine.model import Machine
-from core.motion.limits import MotionLimits
-from core.motion.path import build_path
+from core.motion.axis_limits import MotionLimits
+from core.motion.motion_path import build_path
 from tests.sinumerik.lathe import LINEAR, MODULO, run, setup
 
 WORDS = (

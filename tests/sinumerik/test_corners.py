@@ -7,7 +7,7 @@ from math import asin, cos, dist, pi, sin, sqrt
 
 import pytest
 
-from core.geometry.arcs import arc_length
+from core.geometry.lines_and_arcs import arc_length
 from core.interpreter.elementary_blocks import Block, Kind
 from tests.sinumerik.lathe import good, refused, run, setup
 

@@ -8,7 +8,7 @@ from math import hypot, pi
 import pytest
 
 from core.machine.model import Machine
-from core.proving.timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, timed_blocks
 from tests.sinumerik.lathe import LINEAR, MODULO, refused, run, setup, source, times
 
 BEFORE = "N5 G94\nN10 G0 X10 Z30 C45\n"

@@ -8,12 +8,12 @@ import pytest
 
 import resources
 from app.compose.machine import control_limits
-from core.executor.alarms import TroubleError
-from core.executor.limits import check_block
+from core.executor.raised_alarm import AlarmError
+from core.executor.read_ahead import check_block
 from core.machine.errors import MachineFileError
 from core.machine.load import load_machine, parse_machine
 from core.machine.model import Machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.sinumerik.lathe import LINEAR, MODULO, good, run, setup, source
 
 GT75 = load_machine(None)
@@ -71,7 +71,7 @@ def test_c_is_not_moved_by_a_spindle_that_turns() -> None:
 
 def test_the_executor_looks_once_more() -> None:
     (moved,) = good("S500 M3\nG0 C90", setup(GT75, HOME))
-    with pytest.raises(TroubleError) as told:
+    with pytest.raises(AlarmError) as told:
         check_block(moved, GT75)
     assert told.value.code == "c-is-spindle"
     check_block(moved, MODULO)

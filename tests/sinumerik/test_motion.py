@@ -18,9 +18,8 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ZeroOffset
 from core.language.source import Dialect, Source
 from core.machine.model import Machine
-from core.proving.prove import prove
-from core.proving.stretches import Moved
-from core.proving.timeline import Timeline
+from core.proving.program_timeline import MotionSpan, Timeline
+from core.proving.prove_program import prove
 from drivers.simulated import StepClock
 from tests.sinumerik.lathe import LINEAR, MODULO, setup, source
 
@@ -68,9 +67,9 @@ def program(machine: Machine) -> Source:
     return source(text, NUT)
 
 
-def stretches(machine: Machine) -> tuple[Timeline, list[Moved]]:
+def stretches(machine: Machine) -> tuple[Timeline, list[MotionSpan]]:
     timeline = Timeline.of(program(machine), setup(machine, HOME, ZERO), machine)
-    return timeline, [each for each in timeline.spans() if isinstance(each, Moved)]
+    return timeline, [each for each in timeline.spans() if isinstance(each, MotionSpan)]
 
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
@@ -128,7 +127,7 @@ def test_the_modulo_axis_counts_on_in_the_machine() -> None:
     """Past 360 and past 0 its setpoints go on; only what is shown wraps."""
     text = "G0 C=DC(350)\nC=DC(10)\nC=ACP(5)\nC=ACN(4)\nC=IC(-720)"
     timeline = Timeline.of(source(text), setup(MODULO, HOME), MODULO)
-    reached = [block.mc for each in timeline.spans() if isinstance(each, Moved) for block in each.blocks]
+    reached = [block.mc for each in timeline.spans() if isinstance(each, MotionSpan) for block in each.blocks]
     assert reached == pytest.approx([-10, 10, 365, 364, -356])
 
 

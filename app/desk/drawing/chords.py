@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from core.geometry.mill import PlaneMove, Spot
+    from core.geometry.virtual_mill import PlaneMove, Spot
 
 CHORD_ERROR = 0.004  # mm: half a pixel at 125 pixels to the millimetre
 TURN_STEP = 4.0  # degrees of C from point to point where the slides go along with it

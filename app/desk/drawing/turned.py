@@ -4,7 +4,7 @@ Both views are fixed to the part as it stands at C 0, so that flats milled one a
 they do on the part, whatever C each of them was entered at.
 
 Face: as a tool sees it that looks at the end of the part, the part's X to the right and Y up. The live tool
-stands on the negative X side of the lathe (see ``core.geometry.face``).
+stands on the negative X side of the lathe (see ``core.geometry.virtual_mill``).
 Side: Z+ to the right, as in the view from above. Seen from outside C then counts upwards.
 """
 
@@ -17,12 +17,11 @@ import numpy as np
 
 from app.desk.drawing.chords import mill_way, turn_pieces
 from app.desk.drawing.trail import Floats, Pencil, Stroke, Trail, bounds_of
-from core.geometry.face import Face
-from core.geometry.side import Side
+from core.geometry.virtual_mill import Face, Side
 from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
-    from core.geometry.mill import PlaneMove, Spot
+    from core.geometry.virtual_mill import PlaneMove, Spot
     from core.interpreter.elementary_blocks import Block
 
 STILL = 1e-9  # mm, degrees

@@ -14,8 +14,7 @@ from app.desk.session import Proved
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare, SpindleStop
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot, Starts, State
-from core.executor.states import CYCLE
+from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic, Severity
 
 ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]

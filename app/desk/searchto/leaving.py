@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from app.desk import formats
 from app.desk.drawing.approach import Leg as Drawn
 from app.desk.words import tr
-from core.executor.interrupted import CONTROL_LOST
+from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.interpreter.checkpoint import ApproachStep, Begin, Checkpoint, Leg

@@ -16,8 +16,7 @@ from app.desk.session import Loaded, Phase, Proved, Session
 from app.desk.words import tr
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot, Starts
-from core.executor.states import CYCLE
+from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.restart_lines import NoRestart

@@ -15,8 +15,7 @@ from app.desk.session import Loaded, Proved
 from app.desk.words import tr
 from core.executor.commands import Prepare
 from core.executor.job import Job, make_job
-from core.executor.snapshot import Snapshot, Starts, State
-from core.executor.states import CYCLE
+from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.restart_lines import NoRestart, RestartPoint

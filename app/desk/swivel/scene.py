@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.frames import applied, plus
+from core.geometry.rotation_frames import applied, plus
 from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
-    from core.geometry.frames import Vector
-    from core.geometry.kinematics import Kinematics
+    from core.geometry.mill_kinematics import Kinematics
+    from core.geometry.rotation_frames import Vector
     from core.interpreter.elementary_blocks import Block
     from core.interpreter.working_plane import Corners, Swivel
 

@@ -11,7 +11,7 @@ from app.desk.swivel.camera import Camera, FloatArray
 from app.desk.swivel.scene import Scene
 
 if TYPE_CHECKING:
-    from core.geometry.kinematics import Kinematics, Place
+    from core.geometry.mill_kinematics import Kinematics, Place
 
 _ROUND = 48  # corners of what is round
 

@@ -15,8 +15,7 @@ from app.screen.mdi.history import HistoryPanel
 from app.screen.mdi.inforce import InForcePanel
 from app.screen.mdi.line import LinePanel
 from app.screen.pages import Doings, Host, Page
-from core.executor.snapshot import Snapshot, Starts
-from core.executor.states import CYCLE
+from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.interpreter.checkpoint import Checkpoint
 
 LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.geometry.frames import Vector
-from core.geometry.kinematics import Kinematics
+from core.geometry.mill_kinematics import Kinematics
+from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport
 from core.interpreter.elementary_blocks import Block

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from core.geometry.frames import Vector
+from core.geometry.rotation_frames import Vector
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Corners

@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from core.geometry.frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
-from core.geometry.kinematics import Kinematics, Place
-from core.geometry.travel import CurvedWay, Travel
+from core.geometry.machine_travel import CurvedMove, Travel
+from core.geometry.mill_kinematics import Kinematics, Place
+from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
@@ -156,7 +156,7 @@ class State(MachinePosition):
         kind: Kind,
         end: Mapping[str, float],
         feed: float | None,
-        way: CurvedWay | None = None,
+        way: CurvedMove | None = None,
     ) -> Block:
         """Go to ``end`` (axes that it lacks stay) and tell it. ``feed`` None is rapid.
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from core.geometry.frames import (
+from core.geometry.mill_kinematics import PivotMove
+from core.geometry.rotation_frames import (
     IDENTITY,
     X_AXIS,
     Y_AXIS,
@@ -20,8 +21,7 @@ from core.geometry.frames import (
     scaled,
     turned,
 )
-from core.geometry.pivot import PivotWay
-from core.geometry.swivel import Side, choose, fitting
+from core.geometry.swivel_angles import SolutionSide, choose, fitting
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import (
@@ -48,7 +48,7 @@ def working_plane(state: State, line: int, node: Plane) -> WorkingPlane:
     if node.form == "AXIAL":
         return _axial(state, line, node)
     frame = _FORMS[node.form](state, line, node)
-    side = Side(node.positioning.side) if node.positioning.side else None
+    side = SolutionSide(node.positioning.side) if node.positioning.side else None
     table_rot = node.positioning.rotation == "TABLE ROT"
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
@@ -236,7 +236,7 @@ def _swivel(
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
     if pivot is None or turn <= SAME_POINT:
         return state.move(line, text, Kind.PLANE, goal, rate)
-    way = PivotWay(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
+    way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
     end = {**goal, **dict(zip(SLIDES, way.slides(goal), strict=True))}
     return state.move(line, text, Kind.PLANE, end, rate, way)
 

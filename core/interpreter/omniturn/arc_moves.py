@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import dist
 
-from core.geometry.arcs import Point, arc_length, centre_from_radius
+from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
 from core.interpreter import units
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind

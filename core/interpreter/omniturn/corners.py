@@ -6,8 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from core.geometry.contour import Element, Line
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, chamfer, fillet
+from core.geometry.chamfer_and_rounding import (
+    CornerError,
+    CornerTooLargeError,
+    NoCornerError,
+    chamfer,
+    fillet,
+)
+from core.geometry.lines_and_arcs import Element, Line
 from core.interpreter import units
 from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at

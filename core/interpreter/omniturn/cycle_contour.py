@@ -5,8 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 
-from core.geometry.arcs import Point
-from core.geometry.contour import Element, Line, arc_between
+from core.geometry.lines_and_arcs import Element, Line, Point, arc_between
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.arc_moves import arc_move

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 from typing import NamedTuple
 
-from core.geometry.arcs import Point, arc_length
-from core.geometry.contour import Arc, Line
+from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
 from core.interpreter import units
 from core.interpreter.adjusted_moves import move_words
 from core.interpreter.diagnostic_log import refusal

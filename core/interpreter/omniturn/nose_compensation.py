@@ -8,11 +8,9 @@ from dataclasses import dataclass, field
 from math import dist
 from typing import NamedTuple
 
-from core.geometry.arcs import Point
-from core.geometry.contour import Element, Line
-from core.geometry.extent import SAME_POINT
-from core.geometry.meet import clearance, distance
-from core.geometry.offset import NEARER, WINDOW, GougeError, Offset, Piece
+from core.geometry.contour_offset import NEARER, WINDOW, GougeError, Offset, Piece
+from core.geometry.intersections import clearance, distance
+from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.interpreter import units
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at

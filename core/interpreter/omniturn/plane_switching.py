@@ -8,9 +8,7 @@ from math import atan2, degrees, dist, hypot, pi
 
 import numpy as np
 
-from core.geometry.face import Face
-from core.geometry.mill import CENTRE, PlaneMove, Spot
-from core.geometry.side import Side
+from core.geometry.virtual_mill import CENTRE, Face, PlaneMove, Side, Spot
 from core.interpreter import units
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind

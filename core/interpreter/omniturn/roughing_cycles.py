@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from math import ceil, dist
 from typing import NamedTuple
 
-from core.geometry.arcs import Point
-from core.geometry.clip import Area, Stretch
-from core.geometry.contour import Arc, Element, Line
-from core.geometry.meet import clearance, intersections
-from core.geometry.trim import TrimError
+from core.geometry.contour_offset import TrimError
+from core.geometry.intersections import clearance, intersections
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.geometry.roughing_area import Area, Span
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.cycle_motions import (
     LIFT,
@@ -51,7 +50,7 @@ class Rougher:
         self._area = area
         self._rapid, self._lift = rapid, lift
         self._at = 0.0, 0.0
-        self._done: list[tuple[float, list[Stretch]]] = []
+        self._done: list[tuple[float, list[Span]]] = []
         self._free = area.stretches(0.0)
 
     def cut(self, depth: float) -> None:
@@ -158,7 +157,7 @@ class Rougher:
         return any(intersections(inner, element) for element in self._area.contour)
 
 
-def _covering(stretches: list[Stretch], low: float, high: float) -> bool:
+def _covering(stretches: list[Span], low: float, high: float) -> bool:
     """Whether one of the stretches holds the way from ``low`` to ``high``."""
     at = bisect_left(stretches, low + _SAME, key=lambda stretch: stretch[0]) - 1
     return at >= 0 and stretches[at][1] >= high - _SAME

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.geometry.spindle import surface_rpm
+from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block

@@ -15,8 +15,8 @@ from math import cos, hypot, inf, pi, sin, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.extent import arc_sweep
-from core.geometry.side import Side
+from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.virtual_mill import Side
 from core.interpreter.actions import Collet
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.interpreter.modal_state import Modal

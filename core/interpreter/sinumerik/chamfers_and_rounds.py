@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
-from core.geometry.bevel import bevel, leg_of
-from core.geometry.contour import Element, Line
-from core.geometry.corner import CornerError, CornerTooLargeError, NoCornerError, rounding
+from core.geometry.chamfer_and_rounding import (
+    CornerError,
+    CornerTooLargeError,
+    NoCornerError,
+    bevel,
+    leg_of,
+    rounding,
+)
+from core.geometry.lines_and_arcs import Element, Line
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.adjusted_moves import element_of, standstill_at
 from core.interpreter.diagnostic_log import Log

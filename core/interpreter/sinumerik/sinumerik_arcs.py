@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import atan2, cos, dist, hypot, radians, sin, tan
 
-from core.geometry.arcs import Point, centre_from_radius
+from core.geometry.lines_and_arcs import Point, centre_from_radius
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.sinumerik.linear_moves import NO_WAY, Way, block_of, check_feed, way_of
 from core.interpreter.sinumerik.sinumerik_state import State

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.geometry.spindle import surface_rpm
+from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind

@@ -13,14 +13,12 @@ from app.desk.drawing.chords import CHORD_ERROR
 from app.desk.drawing.trail import Stroke, Trail
 from app.desk.drawing.turned import face_point
 from app.desk.picture import Picture, Sketch, sketched
-from core.geometry.face import Face
-from core.geometry.mill import PlaneMove
-from core.geometry.side import Side
+from core.geometry.virtual_mill import Face, PlaneMove, Side
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.language.source import load_source
-from core.proving.timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, timed_blocks
 from tests.desk.drawing.made import LOCKED, turned
 
 PROGRAMS = Path(__file__).parents[2] / "programs"

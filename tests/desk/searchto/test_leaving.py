@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.desk.searchto.leaving import jog_words, leaving_of
-from core.executor.interrupted import CONTROL_LOST, Interrupted
+from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.job import make_job
 from core.executor.snapshot import Snapshot
 from core.interpreter.modal_state import Modal
@@ -68,7 +68,7 @@ def test_a_cross_hole_is_left_only_while_c_stands_as_it_stood() -> None:
     assert jog_words(found, tool).startswith("C HAS TURNED SINCE T1 WENT IN")
 
 
-def interrupted(block: int, **changes: object) -> tuple[Snapshot, Interrupted]:
+def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob]:
     job = make_job(PART, setup())
     found = broken_off(
         program="PART", text=job.text_digest, line=7, block=block, begun=block, tool=1,

@@ -14,7 +14,7 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.model import Machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from tests.drivers.contract.rig import STILL, TICK, Rig
 
 INCH = 25.4

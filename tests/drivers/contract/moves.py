@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.block_port import BlockSink, LineOp
-from core.ports import AxisSink, Segments
+from core.ports import AxisSink, BlockSink, LineOp, Segments
 
 ACCEL = 3000.0  # mm/s²
 _PIECE = 0.1  # s of one block

@@ -8,9 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from core.block_port import BlockSink
 from core.machine.model import Machine
-from core.ports import MachinePorts
+from core.ports import BlockSink, MachinePorts
 from drivers.simulated import SimMachine, StepClock
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World

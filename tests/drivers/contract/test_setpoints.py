@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.block_port import LineOp
-from core.ports import DriverError, Segments
+from core.ports import DriverError, LineOp, Segments
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.moves import start
 from tests.drivers.contract.rig import Rig

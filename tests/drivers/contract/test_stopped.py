@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.alarms.wires import CUT_OFF
+from core.alarms.bus_alarms import CUT_OFF
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
 from tests.drivers.contract.conftest import Broken

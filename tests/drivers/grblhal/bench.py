@@ -17,7 +17,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.load import parse_machine
 from core.machine.model import Machine
-from core.proving.prove import prove
+from core.proving.prove_program import prove
 from drivers.grblhal.machine import GrblMachine
 from drivers.grblhal.peer.firmware import Firmware, Quirks
 from drivers.grblhal.wire import WireLostError

@@ -8,10 +8,9 @@ import threading
 import pytest
 
 from app.compose.grblhal import grblhal_config
-from core.block_port import LineOp
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
-from core.ports import DriverError
+from core.ports import DriverError, LineOp
 from drivers.grblhal.machine import GrblMachine
 from drivers.grblhal.peer.firmware import Firmware
 from drivers.grblhal.wire import TcpWire

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.block_port import LineOp
-from core.ports import DriverError, Segments, Stop
+from core.ports import DriverError, LineOp, Segments, Stop
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 

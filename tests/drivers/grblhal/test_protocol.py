@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.grblhal import grblhal_config
-from core.block_port import ArcOp, LineOp, RapidOp, ThreadOp
-from core.ports import DriverError
+from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
 from drivers.grblhal.gcode import jog_line, line_of, number
 from drivers.grblhal.identity import read_identity
 from drivers.grblhal.machine import GrblMachine

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.block_port import LineOp, ThreadOp
-from core.ports import Stop
+from core.ports import LineOp, Stop, ThreadOp
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 HOLD, CANCEL, RESET, STOP, PAUSE = 0x82, 0x85, 0x18, 0x19, 0x9E

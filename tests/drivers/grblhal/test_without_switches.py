@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.block_port import LineOp
 from core.executor.commands import Home
 from core.executor.snapshot import State
-from core.ports import DriverError
+from core.ports import DriverError, LineOp
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_faults import UNHOMED
 

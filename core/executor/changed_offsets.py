@@ -1,0 +1,71 @@
+"""The program under way with other offsets: proved while it runs, taken up between two parts."""
+
+from __future__ import annotations
+
+from core.executor import start_conditions
+from core.executor.commands import Renew
+from core.executor.control_status import ControlStatus, modal_with_offsets
+from core.executor.job import Job, outdated
+from core.executor.machine_context import MachineContext
+from core.interpreter.modal_state import Modal
+
+
+class ChangedOffsets:
+    """At most one: a later one takes the place of the one before. The part under way keeps its offsets.
+
+    What was asked for must be proved before anything of the program moves again: with Cycle Repeat the next
+    part waits for it, and a program that does not pass the proof with the new offsets is not repeated.
+    """
+
+    def __init__(self, bench: MachineContext) -> None:
+        self._bench = bench
+        self._asked: Renew | None = None
+
+    @property
+    def wanted(self) -> bool:
+        """Whether the next part begins with other offsets."""
+        return self._asked is not None
+
+    @property
+    def pending(self) -> bool:
+        """Whether the proof is still to come."""
+        return self._asked is not None and self._asked.proof is None and not self._asked.trouble
+
+    def ask(self, asked: Renew, running: Job | None) -> str:
+        """Keep it for the end of the part; the answer is why not, or nothing."""
+        job = asked.job
+        if job is not None and (running is None or job.source.text != running.source.text):
+            return "another program is under way: new offsets are taken by the same program only"
+        self._asked = asked
+        return ""
+
+    def refusal(self, left: Modal) -> str:
+        """Why the program is not repeated with what was asked for; empty without a reason."""
+        asked = self._asked
+        if asked is None:
+            return ""
+        if asked.trouble or asked.job is None:
+            return asked.trouble
+        why = start_conditions.unproved(asked.job, asked.proof) or start_conditions.beyond(
+            self._bench, asked.proof
+        )
+        return why or outdated(asked.job, left)
+
+    def take_up(self, standing: ControlStatus) -> None:
+        """Between two parts, or when the program is over: what was asked for is the program now.
+
+        Without its proof nothing can be started: the old offsets are not those of the tables any more.
+        """
+        asked, self._asked = self._asked, None
+        if asked is None:
+            return
+        standing.proof = asked.proof
+        if asked.job is not None:
+            setup = asked.job.setup
+            standing.job = asked.job
+            standing.modal = modal_with_offsets(standing.modal, setup.tools, setup.secondary)
+            self._bench.say("offsets", "the changed offsets are in force")
+
+    def forget(self) -> None:
+        """Another program is loaded."""
+        self._asked = None

@@ -1,0 +1,92 @@
+"""What the executor knows of job, modal state, alarms and counts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.job import Job, Proof
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import Alarm, Starts, State
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.modal_state import Modal
+from core.interpreter.omniturn.carry_over import after_end
+
+
+@dataclass(slots=True)
+class Counters:
+    """What is counted from the start of the executor; times in seconds, stops not counted."""
+
+    parts: int = 0
+    made: int = 0  # of the loaded program, as whoever keeps the count has told and what was made since
+    ends: int = 0  # programs that came to their end, counted or not
+    lines: int = 0  # of MDI that were begun
+    underruns: int = 0
+    cycle: float = 0.0
+    last_cycle: float = 0.0
+
+
+@dataclass(slots=True)
+class ControlStatus:
+    """State, program and alarms of the machine."""
+
+    state: State = State.DISABLED
+    job: Job | None = None
+    proof: Proof | None = None
+    alarms: tuple[Alarm, ...] = ()
+    power_off: bool = False  # an alarm has switched the drives off
+    start_refused: str = ""
+    starts: Starts = Starts.PROGRAM
+    prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
+    prepared_proof: Proof | None = None
+    tool_open: bool = False  # MDI has called a tool, and its first move is still to come
+    interrupted: InterruptedJob | None = None  # a program that did not come to its end
+    modal: Modal = field(default_factory=Modal)  # in force while no program is under way
+
+
+# --- the modal state between two programs ---------------------------------------------------------------
+
+
+def modal_at_power_up(bench: MachineContext) -> Modal:
+    """The state that the control is switched on with: it counts in what the machine's builder counts in."""
+    machine = bench.machine
+    return modal_as_machine(Modal(metric=not machine.inch, rapid_rate=machine.manual_rapid), bench)
+
+
+def modal_given_up(modal: Modal) -> Modal:
+    """A program that was reset, or ended by an alarm or the E-stop, leaves what M30 would have left."""
+    return after_end(modal, modal.rpm, reset=True)
+
+
+def modal_interrupted(modal: Modal) -> Modal:
+    """A line of MDI that was reset, or ended by an alarm, leaves its modes; nothing holds C any more."""
+    return modal._replace(c_locked=False, c_rpm=None)
+
+
+def modal_as_machine(modal: Modal, bench: MachineContext) -> Modal:
+    """M functions as they are at the machine: an alarm, a reset or a hand may have switched them since.
+
+    A stopped spindle releases C; nose compensation and plane switching never outlive their program.
+    """
+    on = {name for name, lit in bench.ports.io.outputs().items() if lit}
+    assigned = {name for name, _ in bench.machine.m_codes.values()}
+    asked = bench.spindle.asked
+    return modal._replace(
+        spindle=modal.spindle if asked else 0,
+        c_locked=modal.c_locked and not asked,
+        coolant="coolant" in on,
+        collet_closed="collet" in on if "collet" in bench.machine.outputs else modal.collet_closed,
+        outputs=frozenset(on & assigned),
+        nose_comp=40,
+        mill=None,
+    )
+
+
+def modal_with_offsets(
+    modal: Modal, tools: Mapping[int, ToolOffset], secondary: Mapping[int, SecondaryOffset]
+) -> Modal:
+    """The same state with the offsets of the loaded tool and of the D in force read from these tables."""
+    tool = tools.get(modal.tool, ToolOffset()) if modal.tool else ToolOffset()
+    pair = secondary.get(modal.secondary, SecondaryOffset()) if modal.secondary else SecondaryOffset()
+    return modal._replace(tool_x=tool.x, tool_z=tool.z, secondary_x=pair.x, secondary_z=pair.z)

@@ -1,0 +1,291 @@
+"""Holds the state of the machine and everything that changes it: start, hold, reset, end, alarm, E-stop."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from core.alarms import Reaction
+from core.alarms.bus_alarms import CUT_OFF
+from core.executor import start_conditions
+from core.executor.attempt import Attempt
+from core.executor.control_status import modal_at_power_up
+from core.executor.cycle import Cycle
+from core.executor.handwheel import Handwheel
+from core.executor.homing_order import Homing
+from core.executor.interrupted_job import CLOSED, ESTOP, InterruptedJob
+from core.executor.interruption_watch import Note
+from core.executor.job import Job
+from core.executor.jogging import jogger_of
+from core.executor.machine_context import MachineContext
+from core.executor.program_run import ProgramRun
+from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm, log_line
+from core.executor.read_ahead import ProgramPass
+from core.executor.safe_stop import SafeStop
+from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Event, State, demand_allowed
+from core.executor.start_conditions import SPINDLE, Announcement, Starting
+from core.executor.supervision import OutputsWatch, Supervisor
+from core.interpreter.job_setup import Setup
+from core.interpreter.modal_state import Modal
+
+_GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
+_STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
+
+
+class MachineControl:
+    """Everything about one machine that outlives a tick. Used by the executor's thread alone."""
+
+    def __init__(
+        self,
+        bench: MachineContext,
+        passes: Callable[[Job, Setup], ProgramPass],
+        note: Note,
+        left: InterruptedJob | None,
+    ) -> None:
+        self._bench = bench
+        self.rounds = ProgramRun(bench, passes, self.enter, note, left)
+        self.standing = self.rounds.standing
+        self.standing.modal = modal_at_power_up(bench)
+        self.counters = self.rounds.counters
+        self.supervisor = Supervisor(bench)
+        self.safe = SafeStop(bench)
+        self.jogger = jogger_of(bench)
+        self.wheel = Handwheel(bench, self.jogger)
+        self.homing = Homing(bench)
+        self.announcement = Announcement()
+        self.disturbance = OutputsWatch(bench, self.rounds)
+        self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
+        self._giving_up = False
+
+    @property
+    def state(self) -> State:
+        """The present state."""
+        return self.standing.state
+
+    @property
+    def cycle(self) -> Cycle | None:
+        """The cycle under way, if any."""
+        return self.rounds.cycle
+
+    @property
+    def modal(self) -> Modal:
+        """In force now: of the block being executed, or what stands between two programs."""
+        return self.rounds.modal
+
+    def enter(self, state: State) -> None:
+        """Change the state; raises TransitionError for a change that the table does not hold."""
+        if state is self.state:
+            return
+        demand_allowed(self.state, state)
+        self.standing.state = state
+        if state is State.BLOCK_END:
+            self._bench.stopped("single-block")
+        elif state in _GOES_ON:
+            self._bench.stop = None
+        self._bench.say("state", state.value)
+
+    # --- what is asked ------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Cycle Start: begin, or go on. While a cycle runs it means nothing."""
+        state, cycle = self.state, self.cycle
+        if state in ACTIVE or self._giving_up:
+            return
+        if state in STOPPED and cycle is not None:
+            if not self.refuse(
+                start_conditions.busy(self._bench) or cycle.why_not_on() or self._unannounced()
+            ):
+                waits = bool(self._bench.spindle.waits)
+                self.announcement.begin()
+                cycle.go_on(starts_spindle=waits)
+        elif not self.refuse(self.rounds.refusal(state) or self._unannounced()):
+            self.announcement.begin()
+            self.rounds.begin()
+
+    def refuse(self, why: str) -> bool:
+        """Keep and log why a start is refused; False when there is no reason."""
+        self.standing.start_refused = why
+        if why:
+            self._bench.say("refused", why)
+        return bool(why)
+
+    def spindle_switch(self) -> None:
+        """From OFF to AUTO by hand: between programs that starts the spindle, under one the palms do."""
+        spindle = self._bench.spindle
+        if self.state not in BY_HAND or not spindle.waits:
+            return
+        why = start_conditions.unclamped(self._bench) or self.announcement.refusal(self._bench.now, SPINDLE)
+        if why:
+            self._bench.say("refused", why)
+        else:
+            self.announcement.begin(SPINDLE)
+
+    def _unannounced(self) -> str:
+        unclamped = start_conditions.unclamped(self._bench) if self._bench.spindle.waits else ""
+        return unclamped or self.announcement.refusal(self._bench.now)
+
+    def _spindle_starts(self) -> Iterator[Starting]:
+        """One that waits: in a cycle for the palms alone, between programs for its switch too."""
+        spindle = self._bench.spindle
+        rpm, by_hand = spindle.would_turn, self.state in BY_HAND
+        if rpm and (by_hand or (self.state in STOPPED and not spindle.kept_still)):
+            way = "FORWARD" if rpm > 0.0 else "REVERSE"
+            text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
+            yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)
+
+    def feed_hold(self, reason: str, by: str = "") -> None:
+        """Hold the cycle, end a jog, brake a homing, take the handwheel away.
+
+        ``reason`` in the words of the catalogue, empty where somebody pressed it: ``by`` whom.
+        """
+        if self.wheel.axis:
+            self.wheel.end(reason.lower() or "feed hold", self.state)
+        if self.state is State.JOG:
+            self.jogger.stop()
+        elif self.state is State.HOME:
+            self._stop_homing()
+        elif self.cycle is not None and self.state in ACTIVE:
+            self._bench.spindle.break_off()
+            self.cycle.hold(reason, by)
+
+    def reset(self) -> None:
+        """Give the program up, stop the spindle, acknowledge alarms."""
+        self.standing.start_refused = ""
+        self.safe.functions_off()
+        if self.standing.alarms:
+            self._acknowledge()
+        elif self.cycle is not None and self.state in CYCLE:
+            job = self.standing.job
+            self._bench.noted("reset", f"{job.source.name} was given up" if job is not None else "")
+            self._giving_up = True
+            self.cycle.abandon()
+            self._leave()
+        elif self.state is State.JOG:
+            self.feed_hold("reset")
+        elif self.state is State.HOME:
+            self._stop_homing()
+
+    def follow_wheel(self) -> None:
+        """Where the handwheel is turned, its axis goes. Raises DriverError."""
+        if self.wheel.turn(self.state):
+            self.enter(State.JOG)
+
+    def mirror_estop(self, pressed: bool) -> None:
+        """The hardware has stopped everything; the control follows, and nothing starts on release."""
+        if pressed and self.state is not State.ESTOP:
+            self.safe.react(Reaction.OFF)
+            self._bench.stopped("estop")
+            self._give_up(ESTOP)
+            self.enter(State.ESTOP)
+        elif not pressed and self.state is State.ESTOP:
+            self.enter(State.DISABLED)
+
+    # --- every tick ---------------------------------------------------------------------------------------
+
+    def go_on(self) -> None:
+        """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
+        self._finish_stopping()
+        self.rounds.look()
+        if self.cycle is not None and self.state in CYCLE:
+            if self._giving_up:
+                self._leave()
+                return
+            if self.state in ACTIVE:
+                self._mind_the_queue(self.cycle)
+            self.cycle.step()
+        elif (self.state is State.JOG and self.jogger.over()) or (
+            self.state is State.HOME and self.homing.step()
+        ):
+            self.enter(State.IDLE)
+
+    def _mind_the_queue(self, cycle: Cycle) -> None:
+        """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
+        mover = self.rounds.mover
+        left = mover.starving - self._bench.now
+        if mover.active and left < self._bench.machine.timing.low_water:
+            self.counters.underruns += 1
+            self._bench.say("starved", "setpoints ran low; the slides stop on the path")
+            cycle.starve()
+
+    def _leave(self) -> None:
+        if self.rounds.leave():
+            self._giving_up = False
+
+    def _stop_homing(self) -> None:
+        self.homing.stop()
+        self.enter(State.IDLE)
+
+    # --- alarms -------------------------------------------------------------------------------------------
+
+    def alarm(self, trouble: AlarmError) -> None:
+        """Stop the machine and say why. The same alarm twice is one."""
+        bench = self._bench
+        alarm, reaction = alarm_and_reaction(trouble, bench.line, bench.now)
+        if any(old.code == alarm.code for old in self.standing.alarms):
+            return
+        log_alarm(alarm)
+        if reaction is Reaction.HOLD and self._holds(trouble):
+            return
+        self.standing.alarms = (*self.standing.alarms, alarm)
+        self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
+        self.safe.react(reaction)
+        self._give_up(f"ALARM {alarm.number}: {alarm.text}")
+        if self.state not in {State.ESTOP, State.FAULT}:
+            self.enter(State.FAULT)
+        bench.tell(Event(bench.now, "alarm", log_line(alarm), alarm.line, alarm))
+
+    def _holds(self, trouble: AlarmError) -> bool:
+        """What need not cost the part is a hold; False where there is nothing that could be held."""
+        if self.cycle is not None and self.state in ACTIVE:
+            self.cycle.starve(trouble.code, trouble.detail)
+        elif self.state in BY_HAND:
+            self.jogger.stop()
+            stop = self._bench.noted(trouble.code, trouble.detail)
+            self._bench.say("refused", stop.text.lower())
+        else:
+            return False
+        return True
+
+    def failed(self, error: BaseException) -> None:
+        """A mistake of the control itself, whatever the table of states says about it."""
+        if self.state is not State.ESTOP:
+            self.standing.state = State.FAULT
+        self.alarm(AlarmError("internal", f"{type(error).__name__}: {error}"))
+
+    def _give_up(self, why: str) -> None:
+        """What was under way is over, whether or not what it stood on still answers."""
+        self._giving_up = False
+        with Attempt() as trial:
+            self.rounds.forget(why)
+        if trial.error is not None:
+            self.rounds.drop()
+            self._bench.say("alarm", f"while giving the program up: {trial.error}")
+
+    def _finish_stopping(self) -> None:
+        """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
+        if self.state in _STOPPED:
+            self.safe.again()
+            if self.safe.undone and not any(each.code in CUT_OFF for each in self.standing.alarms):
+                self.alarm(AlarmError("not-safe", f"a driver does not obey: {self.safe.undone}"))
+
+    def shut(self) -> None:
+        """Nothing is left moving or switched on."""
+        self.safe.react(Reaction.OFF)
+        self._give_up(CLOSED)
+        if self.state is not State.ESTOP:
+            self.standing.state = State.DISABLED
+
+    def _acknowledge(self) -> None:
+        """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
+        bench, standing = self._bench, self.standing
+        if bench.sample.moving:
+            bench.say("refused", "reset: wait until the slides are at rest")
+            return
+        if standing.power_off:
+            bench.ports.axes.enable(False)
+        bench.ports.axes.clear_fault()
+        standing.power_off, standing.alarms = False, ()
+        self.safe.forget()
+        self.supervisor.acknowledged()
+        bench.sample = bench.ports.axes.sample()
+        if self.state is State.FAULT:
+            self.enter(State.IDLE if bench.sample.enabled else State.DISABLED)

@@ -1,0 +1,114 @@
+"""The operator station as the control believes it: edges of buttons, pots that may not run away."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import NamedTuple
+
+from core.ports import StationState
+
+_SILENT = 0.3  # s without a word: the last value is held, a running cycle too
+_JUMP = 0.2  # of the range within a tenth of a second: a wiper, not a hand
+_STAND = 0.3  # s that a risen pot must stand before it is believed
+_NOISY = 3  # jumps within a second that make a pot unbelievable
+_DEBOUNCE = 0.3  # s in which a second start is the same press
+_AWAY = 0.3  # s between two looks: what was pressed or turned in a longer one is old, and starts nothing
+
+
+class StationSignals(NamedTuple):
+    """What the station asks for in this tick."""
+
+    estop: bool
+    start: bool  # both palms, this moment
+    hold: bool  # while the button is down
+    feed: float
+    spindle: float
+    auto: bool
+    trouble: str  # why the cycle must be held, empty when all is well
+    wheel: int = 0  # what the handwheel has counted
+    turned_on: bool = False  # the spindle switch was turned from OFF to AUTO, this moment
+
+
+class OverridePot:
+    """One pot. A fall is obeyed at once, since it only slows; a sudden rise must stand to be believed."""
+
+    def __init__(self) -> None:
+        self.value = 1.0
+        self._recent: deque[tuple[float, float]] = deque()  # what was read within a tenth of a second
+        self._rising: tuple[float, float] | None = None
+        self._jumps: deque[float] = deque()
+
+    @property
+    def noisy(self) -> bool:
+        """Jumps too often to be a hand."""
+        return len(self._jumps) >= _NOISY
+
+    def read(self, raw: float, now: float) -> float:
+        """The value to use."""
+        self._count_jumps(raw, now)
+        if raw <= self.value or self._slow(raw):
+            self.value, self._rising = raw, None
+        elif self._rising is None or abs(raw - self._rising[0]) > 0.05:
+            self._rising = (raw, now)
+        elif now - self._rising[1] >= _STAND:
+            self.value, self._rising = raw, None
+        return self.value
+
+    def _slow(self, raw: float) -> bool:
+        return self._rising is None and raw - self.value <= _JUMP
+
+    def _count_jumps(self, raw: float, now: float) -> None:
+        while self._recent and self._recent[0][0] < now - 0.1:
+            self._recent.popleft()
+        if any(abs(raw - old) > _JUMP for _, old in self._recent):
+            self._jumps.append(now)
+            self._recent.clear()
+        self._recent.append((now, raw))
+        while self._jumps and self._jumps[0] < now - 1.0:
+            self._jumps.popleft()
+
+
+class StationWatch:
+    """Turns states of the station into what has to be done."""
+
+    def __init__(self) -> None:
+        self._feed = OverridePot()
+        self._spindle = OverridePot()
+        self._started = True  # a start that is on when the control begins to look is no press
+        self._last_start = -1e9
+        self._auto = True  # where the spindle switch stood when the station last spoke
+        self._heard = -1e9  # when it last spoke
+
+    def hear(self, state: StationState, now: float) -> StationSignals:
+        """One look at the station."""
+        silent = not (state.age <= _SILENT and math.isfinite(state.feed_pot + state.spindle_pot))
+        if not silent:
+            self._feed.read(state.feed_pot, now)
+            self._spindle.read(state.spindle_pot, now)
+        live = not silent and now - self._heard <= _AWAY
+        edge = live and state.start and not self._started
+        turned = live and state.spindle_auto and not self._auto
+        self._started = state.start
+        if not silent:
+            self._auto, self._heard = state.spindle_auto, now
+        noisy = self._feed.noisy or self._spindle.noisy
+        trouble = "OPERATOR STATION SILENT" if silent else "OVERRIDE POT JUMPS" if noisy else ""
+        return StationSignals(
+            estop=state.estop,
+            start=edge and self.may_start(now),
+            hold=state.hold,
+            feed=self._feed.value,
+            spindle=self._spindle.value,
+            auto=self._auto,
+            trouble=trouble,
+            wheel=state.handwheel,
+            turned_on=turned,
+        )
+
+    def may_start(self, now: float) -> bool:
+        """Whether this start is a new one and no bounce of the last; remembers it."""
+        fresh = now - self._last_start >= _DEBOUNCE
+        if fresh:
+            self._last_start = now
+        return fresh

@@ -1,0 +1,74 @@
+"""The piece in the collet, and whether the end of its program makes a part."""
+
+from __future__ import annotations
+
+from core.executor.control_status import Counters
+from core.executor.job import Job
+from core.executor.machine_context import MachineContext
+
+
+class Workpiece:
+    """A program from its first line is a new piece; a restart goes on with the one that was given up.
+
+    Elementary blocks are numbered through a whole run and a restart keeps their numbers, so they tell what a
+    restart leaves out. A piece of which something was left out makes no part, nor one in whose cycle spindle
+    or outputs were off that the program had on: who finds it good adds it to the count on F10.
+    """
+
+    def __init__(self) -> None:
+        self._begun = 0  # blocks of it without a gap
+        self._whole = True  # nothing is left out by what runs now
+        self.restarted = False
+        self.disturbed = ""  # what was switched off behind the program's back
+
+    def begin(self, job: Job, begun: int) -> None:
+        """What is going to run; ``begun`` blocks of the piece were begun before it was interrupted."""
+        begin = job.setup.begin
+        self.restarted = begin is not None
+        self._begun = 0 if begin is None else begun
+        self.disturbed = "" if begin is None else self.disturbed
+        self._whole = begin is None or begin.checkpoint.blocks <= self._begun
+
+    def begun_to(self, block: int) -> int:
+        """How many blocks are begun without a gap when what runs has come to this one."""
+        return max(self._begun, block) if self._whole else self._begun
+
+    def end(self) -> None:
+        """The program has come to its end: what follows is another piece."""
+        self._begun, self._whole, self.restarted, self.disturbed = 0, True, False, ""
+
+    @property
+    def why_none(self) -> str:
+        """Why its end makes no part; empty when it makes one."""
+        if self.disturbed:
+            return f"its cycle was disturbed ({self.disturbed}): measure it, and add it on F10 if it is good"
+        return "" if self._whole else "a restart left something of it out"
+
+
+class PartCount:
+    """Counts parts and keeps cycle times; ``counters`` is what everybody reads."""
+
+    def __init__(self, bench: MachineContext) -> None:
+        self._bench = bench
+        self.counters = Counters()
+        self.piece = Workpiece()
+
+    @property
+    def why_none(self) -> str:
+        """Why the program under way will make no part; empty when it will make one."""
+        return "NO COUNT is on" if self._bench.switches.no_count else self.piece.why_none
+
+    def ended(self) -> None:
+        """The program has come to its end. The time of a restart is not that of a cycle."""
+        counters, seconds, why = self.counters, self.counters.cycle, self.why_none
+        counters.cycle = 0.0
+        counters.ends += 1
+        if not self.piece.restarted:
+            counters.last_cycle = seconds
+        if why:
+            self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
+        else:
+            counters.parts += 1
+            counters.made += 1
+            self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
+        self.piece.end()

@@ -1,0 +1,205 @@
+"""Blocks of one stretch of motion and their path; what overrides and stops make of its speeds."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable
+from enum import Enum
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from core.executor.read_ahead import ReadAhead
+from core.interpreter.elementary_blocks import Block
+from core.motion.axis_limits import MotionLimits
+from core.motion.motion_path import Path, PathBuilder
+
+
+class Overrides(NamedTuple):
+    """Fractions of the programmed speeds. ``turn`` is spindle speed over programmed spindle speed."""
+
+    feed: float = 1.0
+    rapid: float = 1.0
+    turn: float = 1.0
+
+
+class PathSection:
+    """Blocks that are played without a standstill between them."""
+
+    def __init__(self, limits: MotionLimits, rpm_max: float) -> None:
+        self._builder = PathBuilder(limits, rpm_max=rpm_max)
+        self._blocks: dict[int, Block] = {}
+        self.first_block: Block | None = None
+
+    def add(self, blocks: Iterable[Block], reached: float = -np.inf) -> None:
+        """Append; ``reached`` as for ``PathBuilder.add``."""
+        new = list(blocks)
+        self._builder.add(new, reached)
+        for block in new:
+            self.first_block = self.first_block or block
+            self._blocks[block.n] = block
+
+    def block(self, n: int) -> Block | None:
+        """The block with this number."""
+        return self._blocks.get(n)
+
+    def behind(self, n: int) -> list[Block]:
+        """The blocks after this one, in order."""
+        return [block for number, block in sorted(self._blocks.items()) if number > n]
+
+    @property
+    def length(self) -> float:
+        """Length of what is held, mm (degrees where only C turns)."""
+        return self._builder.path().length
+
+    @property
+    def end_s(self) -> float:
+        """Distance of the end."""
+        return float(self._builder.path().s[-1])
+
+    @property
+    def last_block(self) -> Block | None:
+        """The block with the highest number."""
+        return self._blocks[max(self._blocks)] if self._blocks else None
+
+    def end_of(self, n: int) -> float:
+        """Distance at which this block ends; behind everything when it is not held."""
+        path = self._builder.path()
+        return path.block_span(n)[1] if n in self._blocks else np.inf
+
+    def drop_before(self, n: int | None) -> None:
+        """Forget what lies behind block ``n``."""
+        if n is None or n not in self._blocks:
+            return
+        self._builder.drop_before(n)
+        kept = set(self._builder.path().blocks.tolist())
+        for old in [number for number in self._blocks if number not in kept and number < n]:
+            del self._blocks[old]
+
+    def path(self, scales: Overrides, last: int | None) -> Path:
+        """The path with its speeds scaled; behind block ``last`` they are 0, so that a plan stops there.
+
+        Limits do not depend on the scales, so a plan made from a moving state meets the limits of the plan
+        that it replaces.
+        """
+        path = self._builder.path()
+        if last is None and scales == (1.0, 1.0, 1.0):
+            return path
+        factors = [self._factor(n, scales, last) for n in path.blocks.tolist()]
+        rate = path.pieces.rate * np.repeat(factors, np.diff(path.first))
+        return dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=rate))
+
+    def stoppable(self, last: int | None, s: float) -> int | None:
+        """The first block from ``last`` on that ends at or behind distance ``s`` and may be stopped at."""
+        path = self._builder.path()
+        numbers: list[int] = path.blocks.tolist()
+        ends: list[float] = path.s[path.first[1:]].tolist()
+        for n, end in zip(numbers, ends, strict=True):
+            if (last is None or n >= last) and end >= s - 1e-9:
+                return n
+        return None
+
+    def _factor(self, n: int, scales: Overrides, last: int | None) -> float:
+        if last is not None and n > last:
+            return 0.0
+        block = self._blocks[n]
+        if block.rapid:
+            return scales.rapid
+        turns = block.per_rev and not block.modal.c_locked
+        return scales.feed * scales.turn if turns else scales.feed
+
+
+# --- what a cycle asks of motion ------------------------------------------------------------------------
+
+
+class Progress(Enum):
+    """How far the present stretch is."""
+
+    DONE = "there is none, or it has come to its end"
+    MOVING = "it moves"
+    BLOCK_END = "at rest where single block wants it"
+    STILL = "at rest because the override is 0"
+    HELD = "at rest because something outside the control holds it"
+
+
+class PathMotion(Protocol):
+    """Blocks from rest to rest, under overrides, single block and read-ahead."""
+
+    @property
+    def active(self) -> bool:
+        """Whether there is a stretch at all."""
+        ...
+
+    @property
+    def moving(self) -> bool:
+        """Whether anything still moves."""
+        ...
+
+    @property
+    def block(self) -> Block | None:
+        """The block being moved."""
+        ...
+
+    @property
+    def following(self) -> Block | None:
+        """The block behind it, when it belongs to the stretch."""
+        ...
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing of the stretch is left to be begun."""
+        ...
+
+    @property
+    def ended_with(self) -> Block | None:
+        """At the end of the stretch: its last block, which may go nowhere."""
+        ...
+
+    @property
+    def starving(self) -> float:
+        """When the slides stop for want of setpoints; endless where that cannot be."""
+        ...
+
+    def begin(self, blocks: list[Block]) -> None:
+        """A new stretch, from rest. Raises TroubleError, MotionError, DriverError."""
+        ...
+
+    def go_on(self, behind: Block | None) -> None:
+        """From rest within the stretch; with single block to the end of the block after it."""
+        ...
+
+    def progress(self, feed: ReadAhead) -> Progress:
+        """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
+        ...
+
+    def keep_up(self) -> None:
+        """While it is being stopped: what must go on until the slides rest."""
+        ...
+
+    def hold(self) -> None:
+        """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
+        ...
+
+    def brake(self) -> None:
+        """Come to rest at once on the path, to be given up."""
+        ...
+
+    def let_stop(self) -> None:
+        """The queue was not refilled in time: the slides stop where it ends."""
+        ...
+
+    def release(self) -> bool:
+        """Give a thread pass back that still waits for its index; False when it moves."""
+        ...
+
+    def retreat(self, block: Block) -> None:
+        """Begin to leave a thread whose spindle is lost."""
+        ...
+
+    def retreated(self) -> None:
+        """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
+        ...
+
+    def forget(self) -> None:
+        """The stretch is over, or nothing of it holds any more."""
+        ...

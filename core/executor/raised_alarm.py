@@ -1,0 +1,68 @@
+"""An alarm as it is raised and shown: what happened here, with what the catalogue says of it."""
+
+from __future__ import annotations
+
+import logging
+
+from core.alarms import CATALOGUE, Code, Reaction
+from core.executor.snapshot import Alarm
+
+_log = logging.getLogger(__name__)
+CODES_OF_HOLDS: dict[str, Code] = {
+    entry.text.upper(): code for code, entry in CATALOGUE.items() if entry.reaction is Reaction.HOLD
+}
+
+
+class AlarmError(Exception):
+    """Something that must stop the machine: an alarm's code, and what exactly, where.
+
+    ``detail`` is a sentence: for the operator where the catalogue's entry says so, else for the log.
+    """
+
+    def __init__(self, code: Code, detail: str = "", line: int = 0) -> None:
+        super().__init__(detail or CATALOGUE[code].text)
+        self.code: Code = code
+        self.detail = detail
+        self.line = line
+
+
+def alarm_and_reaction(trouble: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
+    """The alarm to show, and what it makes of the machine."""
+    alarm = make_alarm(trouble.code, trouble.detail, trouble.line or line, now)
+    return alarm, CATALOGUE[trouble.code].reaction
+
+
+def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
+    """What the catalogue says of an alarm, a hold or a stop, and what is known of this one."""
+    entry = CATALOGUE[code]
+    exactly = detail if entry.tells else ""
+    return Alarm(
+        number=entry.number,
+        code=code,
+        text=entry.text.upper(),
+        cause=exactly or entry.causes[0],
+        remedy=entry.remedy,
+        line=line,
+        time=now,
+        causes=entry.causes,
+        detail=detail,
+    )
+
+
+def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
+    """What of the catalogue a hold is: ``reason`` in its words, or ``by`` whom it was pressed."""
+    if not reason:
+        return "feed-hold", f"asked for by {by}" if by else ""
+    code = CODES_OF_HOLDS.get(reason)
+    return ("held", reason.lower()) if code is None else (code, "")
+
+
+def log_line(alarm: Alarm) -> str:
+    """One line for the log of events; it begins with the number, by which the catalogue is found again."""
+    return f"{alarm.number} {alarm.text}: {alarm.cause}"
+
+
+def log_alarm(alarm: Alarm) -> None:
+    """The technical side of an alarm, for whoever mends it."""
+    where = f" line {alarm.line}" if alarm.line else ""
+    _log.warning("alarm %d %s%s: %s", alarm.number, alarm.code, where, alarm.detail or alarm.cause)

@@ -1,0 +1,157 @@
+"""The snapshot: the machine of this instant, from what is played and measured, not from what is planned."""
+
+from __future__ import annotations
+
+import math
+from typing import TypedDict
+
+from core.executor.cycle import Cycle
+from core.executor.machine_context import MachineContext
+from core.executor.machine_control import MachineControl
+from core.executor.snapshot import Snapshot, State
+from core.interpreter.actions import ProgramStop
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
+from core.interpreter.working_plane import Swivel
+from core.ports import AxisSample
+
+
+class _Played(TypedDict):
+    """What a snapshot has of the block that is played."""
+
+    line: int
+    block: int
+    block_text: str
+    block_end: tuple[float, ...]
+    offset: tuple[float, float]
+    feed: float
+    rapid: bool
+    turns: bool
+
+
+class Publisher:
+    """Makes snapshots; remembers the last sample, from which the velocity is measured."""
+
+    def __init__(self) -> None:
+        self._before: AxisSample | None = None
+        self._velocity = 0.0
+        self._swivel: Swivel | None = None
+
+    def snapshot(self, bench: MachineContext, conductor: MachineControl) -> Snapshot:
+        """The snapshot of this tick."""
+        cycle, standing, counters = conductor.cycle, conductor.standing, conductor.counters
+        block = cycle.current if cycle else None
+        job, modal = standing.job, conductor.modal
+        self._swivel = self._system(block, under_way=cycle is not None)
+        return Snapshot(
+            **_played(block, modal, bench.sample),
+            next_text=_next_text(cycle),
+            t=bench.now,
+            state=standing.state,
+            waiting_for=cycle.waiting_for if cycle else "",
+            program=job.source.name if job else "",
+            job=job.digest if job else "",
+            axes=tuple(axis.name for axis in bench.machine.axes),
+            demand=bench.sample.demand,
+            actual=bench.sample.actual,
+            following_error=bench.sample.following_error,
+            homed=bench.sample.homed,
+            modal=modal,
+            swivel=self._swivel,
+            velocity=self._measured(bench.sample, sum(not axis.rotary for axis in bench.machine.axes)),
+            rpm_command=bench.spindle.command,
+            rpm_actual=bench.spindle.measured,
+            spindle_asked=bench.spindle.asked_rpm,
+            feed_override=bench.feed_override,
+            spindle_override=bench.spindle.override,
+            spindle_auto=bench.spindle.auto,
+            spindle_limit=bench.spindle.limit or 0.0,
+            single_block=bench.switches.single_block,
+            optional_stop=bench.switches.optional_stop,
+            block_delete=job.setup.block_delete if job else False,
+            cycle_repeat=bench.switches.cycle_repeat,
+            no_count=bench.switches.no_count,
+            counts=conductor.rounds.will_count,
+            outputs=frozenset(name for name, on in bench.ports.io.outputs().items() if on),
+            inputs=frozenset(name for name, on in bench.inputs.items() if on),
+            comment=modal.comment,
+            message=cycle.message if cycle else "",
+            optionally_stopped=standing.state is State.PROGRAM_STOP and _optional(block),
+            alarms=standing.alarms,
+            stop=bench.stop,
+            cycle_elapsed=counters.cycle,
+            last_cycle=counters.last_cycle,
+            parts=counters.parts,
+            made=counters.made,
+            ends=counters.ends,
+            underruns=counters.underruns,
+            max_following_error=conductor.supervisor.max_following_error,
+            proof_wanted=job is not None and (standing.proof is None or standing.proof.digest != job.digest),
+            starts=standing.starts,
+            prepared=standing.prepared.digest if standing.prepared else "",
+            lines=counters.lines,
+            interrupted=standing.interrupted,
+            confirmed=conductor.rounds.interruption.answered,
+            tool_open=standing.tool_open,
+            announced=conductor.announcement.publish(bench.now),
+            start_refused=standing.start_refused,
+            wheel=conductor.wheel.axis,
+            wheel_ended=conductor.wheel.ended,
+        )
+
+    def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
+        """Of a mill: the system of the last block; between programs nothing is tilted or shifted."""
+        if block is not None:
+            return block.swivel
+        last = self._swivel
+        return last if last is None or under_way or last.system.level else last.levelled()
+
+    def _measured(self, sample: AxisSample, slides: int) -> float:
+        """Velocity of all slides together, mm/s, from the encoders."""
+        before, self._before = self._before, sample
+        if before is None:
+            return 0.0
+        dt = sample.t - before.t
+        if dt > 0.0:
+            self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
+        return self._velocity
+
+
+def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
+    """Without a block what is in force, and the slides stand at its end."""
+    return _Played(
+        line=block.line if block else 0,
+        block=block.n if block else 0,
+        block_text=block.text if block else "",
+        block_end=block.machine_end if block else sample.demand,
+        offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
+        feed=_feed(block, modal),
+        rapid=block.rapid if block else modal.rapid,
+        turns=_turns(block, modal),
+    )
+
+
+def _optional(block: Block | None) -> bool:
+    """Whether a stop at this block is one that the operator's switch asks for."""
+    action = block.action if block else None
+    return isinstance(action, ProgramStop) and action.optional
+
+
+def _next_text(cycle: Cycle | None) -> str:
+    """Of the block that comes after the one that is played."""
+    following = cycle.next_block if cycle else None
+    return following.text if following else ""
+
+
+def _turns(block: Block | None, modal: Modal) -> bool:
+    """Whether the programmed feed is degrees instead of mm."""
+    if block is None:
+        return False
+    return (block.swivels and not block.rapid) or (block.kind is Kind.ROTATE and not modal.c_locked)
+
+
+def _feed(block: Block | None, modal: Modal) -> float:
+    """Programmed: of the block where it moves, otherwise what is in force."""
+    if block is not None and block.moves and block.kind is not Kind.ROTATE:
+        return block.feed
+    return modal.feed or 0.0

@@ -1,0 +1,219 @@
+"""Why a cycle may not start: every reason, in the order in which an operator has to remove them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+from core.executor.control_status import ControlStatus, modal_as_machine
+from core.executor.job import Job, Proof, outdated
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import Starts, State
+from core.interpreter.checkpoint import Begin
+from core.interpreter.machine_requirements import THREAD
+from core.interpreter.modal_state import Modal
+
+_BUSY = {
+    State.ESTOP: "E-stop is pressed: release it",
+    State.FAULT: "an alarm stands: clear its cause and press Reset",
+    State.DISABLED: "the drives are off: switch them on",
+    State.JOG: "the machine is being jogged",
+    State.HOME: "the machine is homing",
+}
+
+
+def guard_open(bench: MachineContext) -> bool:
+    """Whether the guard is open at a machine whose file says that it stops the cycle; off is open."""
+    return bench.machine.interlocks.guard_stops and not bench.inputs.get("guard", False)
+
+
+def busy(bench: MachineContext) -> str:
+    """What at the station keeps a cycle from going on."""
+    if bench.heard.hold:
+        return "feed hold is pressed"
+    if guard_open(bench):
+        return "the guard is open: close it"
+    return bench.heard.trouble.lower()
+
+
+def unclamped(bench: MachineContext) -> str:
+    """Why the spindle may not be started as the collet is; empty when it may."""
+    if bench.machine.interlocks.spindle_with_collet_open or bench.inputs.get("collet_closed", True):
+        return ""
+    return "the spindle is not started with the collet open: close it first"
+
+
+def hindrance(bench: MachineContext, state: State) -> str:
+    """What keeps any cycle from being started at this machine now."""
+    if state in _BUSY:
+        return _BUSY[state]
+    if busy(bench):
+        return busy(bench)
+    if bench.ports.blocks is not None and bench.ports.blocks.state().hindrance:
+        return bench.ports.blocks.state().hindrance
+    away = [a.name for a, homed in zip(bench.machine.axes, bench.sample.homed, strict=True) if not homed]
+    if away:
+        return f"{', '.join(away)} must be homed first"
+    return ""
+
+
+def job_refusal(bench: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
+    """Why this job may not be started now; empty when it may."""
+    return hindrance(bench, state) or unproved(job, proof) or beyond(bench, proof)
+
+
+def beyond(bench: MachineContext, proof: Proof | None) -> str:
+    """What the program asks for and this machine cannot do; empty when nothing."""
+    blocks = bench.ports.blocks
+    for need in proof.needs if proof is not None else ():
+        if blocks is not None and need.what not in blocks.caps:
+            return f"line {need.line}: this controller cannot do {need.words}"
+        if blocks is None and need.what == THREAD and bench.ports.spindle.angle() is None:
+            return f"line {need.line}: a thread needs an encoder on the spindle, and there is none"
+    return ""
+
+
+def unproved(job: Job | None, proof: Proof | None) -> str:
+    """What proving leaves to be done before this job may be started; empty when nothing."""
+    if job is None:
+        return "no program is loaded"
+    if proof is None:
+        return "the program is not proved yet"
+    if proof.digest != job.digest:
+        return "the proof belongs to another program or to other offsets: load it again"
+    if proof.errors:
+        return f"the program has errors: {proof.errors[0]}"
+    missing = sorted(set(proof.tools) - job.tools_set)
+    if missing:
+        return f"tool offset {', '.join(f'T{number}' for number in missing)} has never been set"
+    return ""
+
+
+# --- what Cycle Start begins ----------------------------------------------------------------------------
+
+
+_NOTHING = {
+    Starts.LINE: "no line is ready: type one and press Enter",
+    Starts.RESTART: "no restart is ready: search a line and confirm it",
+}
+_SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
+
+
+def job_of(standing: ControlStatus) -> Job | None:
+    """The job that Cycle Start would begin."""
+    return standing.job if standing.starts is Starts.PROGRAM else standing.prepared
+
+
+def start_refusal(bench: MachineContext, state: State, standing: ControlStatus) -> str:
+    """Why Cycle Start does nothing now; empty when it may start."""
+    job, proof = job_of(standing), standing.proof
+    if standing.starts is not Starts.PROGRAM:
+        proof = standing.prepared_proof
+    if job is None and standing.starts in _NOTHING:
+        return hindrance(bench, state) or _NOTHING[standing.starts]
+    return job_refusal(bench, state, job, proof) or (_moved(bench, job) or _changed(bench, standing, job))
+
+
+def _moved(bench: MachineContext, job: Job | None) -> str:
+    if job is None or job.setup.begin is None:
+        return ""
+    at, _ = bench.ports.axes.demand_at(bench.now)
+    away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
+    if away <= _SAME:
+        return ""
+    return f"the slides have moved since this was proved: {_again(job.setup.begin)}"
+
+
+def _changed(bench: MachineContext, standing: ControlStatus, job: Job | None) -> str:
+    """Whether what the program, the line or the restart was proved for is still so."""
+    if job is None:
+        return ""
+    begin = job.setup.begin
+    if begin is None:
+        old = outdated(job, standing.modal)
+        return f"{old}, and the program says nothing of it: load it again" if old else ""
+    now = modal_as_machine(standing.modal, bench)
+    if not begin.single:
+        return _changed_for_restart(standing, job, begin, now)
+    same = now == begin.checkpoint.modal
+    return "" if same else f"the state has changed since the line was proved: {_again(begin)}"
+
+
+def _again(begin: Begin) -> str:
+    """How the operator has it proved anew."""
+    if begin.single:
+        return "ask for the way out again" if begin.way else "press Enter again"
+    return "search for the line again"
+
+
+def _changed_for_restart(standing: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
+    """The program must still be the one that is loaded, and the collet as the line has it."""
+    if standing.job is None or standing.job.digest != job.part_of:
+        return "the program was loaded anew: search for the line again"
+    wanted = begin.checkpoint.modal.collet_closed
+    if now.collet_closed != wanted:
+        is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
+        return f"the collet is {is_now} and must be {must} at line {begin.line}: use MDI"
+    return unproved(standing.job, standing.proof)
+
+
+# --- what a start will start ----------------------------------------------------------------------------
+
+
+SPINDLE = "spindle"
+TIME_TO_READ = 0.3  # s that it must have stood in the snapshot before a start may do it
+_FIGURE_CHANGED = 0.1  # of a figure: more, and it counts from anew
+
+
+class Starting(NamedTuple):
+    """One thing that stands and will be on. ``what`` names it, ``text`` is what the operator reads.
+
+    ``figure`` is how much of it, rpm for a spindle: one that has changed much is another announcement.
+    ``begin`` lets it start; it is called with the start that was announced.
+    """
+
+    what: str
+    text: str
+    begin: Callable[[], None]
+    figure: float = 0.0
+
+
+class Announcement:
+    """``sources`` are asked every tick what a start would start now. On the executor's thread alone."""
+
+    def __init__(self) -> None:
+        self.sources: list[Callable[[], Iterable[Starting]]] = []
+        self._since: dict[str, tuple[float, float]] = {}  # what: when it was first published, its figure
+
+    def publish(self, now: float) -> tuple[str, ...]:
+        """What goes into the snapshot of this tick."""
+        items, before = self._items(), self._since
+        self._since = {item.what: self._counted(item, before, now) for item in items}
+        return tuple(item.text for item in items)
+
+    def refusal(self, now: float, what: str = "") -> str:
+        """Why a start, of ``what`` or of all, is refused: nobody has had the time to read what it starts."""
+        for item in self._items(what):
+            since, figure = self._since.get(item.what, (math.inf, 0.0))
+            if now - since < TIME_TO_READ - 1e-9 or _differ(item.figure, figure):
+                return f"look first: {item.text}; then start again"
+        return ""
+
+    def begin(self, what: str = "") -> None:
+        """A start, of ``what`` or of all, that was not refused."""
+        for item in self._items(what):
+            item.begin()
+
+    def _items(self, what: str = "") -> list[Starting]:
+        return [item for source in self.sources for item in source() if what in {"", item.what}]
+
+    def _counted(
+        self, item: Starting, before: dict[str, tuple[float, float]], now: float
+    ) -> tuple[float, float]:
+        known = before.get(item.what)
+        return (now, item.figure) if known is None or _differ(item.figure, known[1]) else known
+
+
+def _differ(new: float, old: float) -> bool:
+    return abs(new - old) > _FIGURE_CHANGED * abs(old)

@@ -1,0 +1,318 @@
+"""A contour moved to one side by a fixed distance: outside corners become arcs, inside corners meet."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from math import dist, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from core.geometry.intersections import clearance, distance, intersections
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Box, Element, Line, Point, left_of, turn
+
+# Elements whose offsets end nearer than this go on in one point half way. Programs round their numbers to
+# 1.27 µm, so what was meant as tangent is tangent no better, and no machine can take the step. mm.
+JOINED = 0.001
+
+# The offset may be this much nearer to the contour than its distance: half a join and rounding, and less
+# than the 2 µm that a workpiece can show. mm.
+NEARER = 0.0015
+
+# Turns nearer than this to half a circle run straight back on themselves: no side is the free one. rad.
+STRAIGHT_BACK = 1e-6
+
+# So many elements back and forth are looked at for a second wall that the offset runs into. The offset
+# is held back by as many, so that it is not used before it has been looked at.
+WINDOW = 128
+
+
+class GougeError(Exception):
+    """The offset of a contour cuts into it. ``index`` is the element that cannot be followed, from 0.
+
+    ``why`` is a clause about it, in which the distance is "that".
+    """
+
+    def __init__(self, index: int, why: str) -> None:
+        super().__init__(why)
+        self.index = index
+        self.why = why
+
+
+class Piece(NamedTuple):
+    """A piece of an offset. ``corner``: an arc about the corner at the end of the element ``source``."""
+
+    source: int  # index of the element, from 0
+    element: Element
+    corner: bool
+
+
+def offset_element(element: Element, distance_left: float) -> Element:
+    """The element moved to its left by ``distance_left`` mm, negative to the right; arcs stay concentric.
+
+    Raises GougeError (index 0) for an arc that has no radius left.
+    """
+    ax, az = left_of(element.start_direction)
+    bx, bz = left_of(element.end_direction)
+    start = element.start[0] + ax * distance_left, element.start[1] + az * distance_left
+    end = element.end[0] + bx * distance_left, element.end[1] + bz * distance_left
+    if isinstance(element, Line):
+        return Line(start, end)
+    grown = element.radius + (distance_left if element.clockwise else -distance_left)
+    if grown < SAME_POINT:
+        raise GougeError(0, "its inside radius is not larger than that")
+    return Arc(start, end, element.centre, element.clockwise)
+
+
+def offset_contour(elements: Iterable[Element], distance_left: float) -> list[Element]:
+    """The path ``distance_left`` mm to the left of a contour (negative: right); starts and ends square to it.
+
+    Each element must start where the one before it ends, and have a length. Raises GougeError where an
+    inside arc is too small, an element vanishes or would be run backwards, or a path comes nearer to any
+    element than the distance (a second wall farther than WINDOW elements away is not seen).
+    """
+    offset = Offset(distance_left)
+    path = [piece.element for element in elements for piece in offset.add(element)]
+    return path + [piece.element for piece in offset.close()]
+
+
+class Offset:
+    """Makes the offset of a contour that comes in element by element."""
+
+    def __init__(self, distance_left: float) -> None:
+        self._distance = distance_left
+        self._count = 0
+        self._last: tuple[Element, Element] | None = None  # contour and offset, its start where it will be
+        self._ready: deque[Piece] = deque()
+        self._guard = _Guard(abs(distance_left))
+
+    def add(self, element: Element) -> Iterator[Piece]:
+        """Takes the next element; yields the pieces that are sure by now. Raises GougeError."""
+        index = self._count
+        self._count += 1
+        try:
+            moved = offset_element(element, self._distance)
+        except GougeError as problem:
+            raise GougeError(index, problem.why) from None
+        if self._last is not None:
+            moved = self._join(*self._last, element, moved, index)
+        self._guard.contour(index, element)
+        self._last = element, moved
+        while len(self._ready) > WINDOW:
+            yield self._ready.popleft()
+
+    def close(self) -> Iterator[Piece]:
+        """The rest of the pieces: no element comes any more. Raises GougeError."""
+        if self._last is not None:
+            self._keep(self._count - 1, self._last[1], corner=False)
+            self._last = None
+        while self._ready:
+            yield self._ready.popleft()
+
+    def _join(self, before: Element, ended: Element, after: Element, begun: Element, index: int) -> Element:
+        """Ends the offset of one element at that of the next, which is returned with its new start."""
+        corner = after.start
+        angle = turn(before.end_direction, after.start_direction)
+        if abs(angle) > pi - STRAIGHT_BACK and self._distance:
+            raise GougeError(index, "it runs straight back")
+        if dist(ended.end, begun.start) <= JOINED:
+            joint = _middle(ended.end, begun.start)
+            joint = ended.end if dist(joint, ended.end) < SAME_POINT else joint
+            self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
+            return begun.part(joint, begun.end)
+        if (angle > 0) != (self._distance > 0):
+            self._keep(index - 1, ended, corner=False)
+            around = Arc(ended.end, begun.start, corner, clockwise=angle < 0)
+            self._keep(index - 1, around, corner=True)
+            return begun
+        joint = _inside(ended, begun, corner, index)
+        self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
+        return _cut(begun, joint, begun.end, index)
+
+    def _keep(self, index: int, element: Element, *, corner: bool) -> None:
+        piece = Piece(index, element, corner)
+        self._guard.path(piece)
+        self._ready.append(piece)
+
+
+def _middle(a: Point, b: Point) -> Point:
+    return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
+
+
+def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
+    """Where two offsets meet at an inside corner: of two points the one nearer to the corner."""
+    found = intersections(ended, begun)
+    if not found:
+        shorter = index - 1 if ended.length < begun.length else index
+        raise GougeError(shorter, "nothing of it is left between its neighbours")
+    return min(found, key=lambda point: dist(point, corner))
+
+
+def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
+    """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
+    whole = start == element.start and end == element.end
+    if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:  # else an arc could close
+        raise GougeError(index, "nothing of it is left between its neighbours")
+    return element.part(start, end)
+
+
+class _Guard:
+    """Watches that no piece of the offset comes nearer to any element of the contour than it should."""
+
+    def __init__(self, apart: float) -> None:
+        self._least = apart - NEARER
+        self._contour: deque[tuple[Element, Box]] = deque(maxlen=WINDOW)
+        self._path: deque[tuple[Element, Box]] = deque(maxlen=WINDOW)
+
+    def contour(self, index: int, element: Element) -> None:
+        box = element.box
+        if self._too_near(element, box, self._path):
+            raise GougeError(index, "the path beside another one would cut into it")
+        self._contour.append((element, box))
+
+    def path(self, piece: Piece) -> None:
+        box = piece.element.box
+        if self._too_near(piece.element, box, self._contour):
+            raise GougeError(piece.source, "the path beside it would cut into another one")
+        self._path.append((piece.element, box))
+
+    def _too_near(self, element: Element, box: Box, others: deque[tuple[Element, Box]]) -> bool:
+        least = self._least
+        x0, x1, z0, z1 = box[0] - least, box[1] + least, box[2] - least, box[3] + least
+        for other, (low_x, high_x, low_z, high_z) in others:
+            if low_x > x1 or high_x < x0 or low_z > z1 or high_z < z0:
+                continue  # nearly all; the rest takes a hundred times as long to tell
+            if clearance(element, other) < least:
+                return True
+        return False
+
+
+# --- the offset with what is not reached left out -------------------------------------------------------
+
+
+# Offsets of tangent elements are joined over a rounding of the program; a path may be nearer by so much. mm.
+_NEARER = 0.0005
+
+# Pieces of the path follow each other where the end of one is this near to the start of the next. mm.
+_FOLLOWS = 2 * JOINED
+
+# What may be left over behind the end of the path: parts that are too near by less than _NEARER. mm.
+_LOST = 0.02
+
+
+class TrimError(Exception):
+    """There is no unbroken way along the contour at this distance."""
+
+
+def around(element: Element, apart: float) -> list[Element]:
+    """Curves that hold the edge of all that lies within ``apart`` of an element; they lie in it or on it."""
+    return [*_moved(element, apart), *_moved(element, -apart), *(_ring(p, apart) for p in _ends(element))]
+
+
+def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
+    """The path ``apart`` mm to the left of a contour, nowhere nearer to it than that by over 0.5 µm.
+
+    Each element must start where the one before it ends. Raises TrimError where the path falls apart.
+    """
+    if apart <= 0:
+        return list(elements)
+    contour = _Boxed(elements)
+    edges = _Boxed([edge for element in elements for edge in around(element, apart)])
+    kept = [
+        part
+        for piece in _pieces(elements, apart)
+        for part in _split(piece, edges)
+        if _far(part, contour, apart - _NEARER)
+    ]
+    return _chained(kept)
+
+
+class _Boxed:
+    """Elements that are found by where they are."""
+
+    def __init__(self, elements: Sequence[Element]) -> None:
+        self._elements = elements
+        self._boxes = np.array([element.box for element in elements])
+
+    def near(self, box: Box, within: float) -> list[Element]:
+        """The elements whose boxes are no farther than ``within`` from another along either axis."""
+        x0, x1, z0, z1 = self._boxes.T
+        hit = (x0 <= box[1] + within) & (x1 >= box[0] - within)
+        hit &= (z0 <= box[3] + within) & (z1 >= box[2] - within)
+        return [self._elements[at] for at in np.flatnonzero(hit).tolist()]
+
+
+def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
+    """The left offset of each element, and an arc about each corner that lies inwards of the path."""
+    pieces = _moved(elements[0], apart)
+    for before, after in pairwise(elements):
+        angle = turn(before.end_direction, after.start_direction)
+        if angle < 0:
+            pieces += _corner(before, after, apart)
+        pieces += _moved(after, apart)
+    return pieces
+
+
+def _corner(before: Element, after: Element, apart: float) -> list[Element]:
+    first, last = _moved(before, apart), _moved(after, apart)
+    if not first or not last or dist(first[0].end, last[0].start) < SAME_POINT:
+        return []
+    return [Arc(first[0].end, last[0].start, after.start, clockwise=True)]
+
+
+def _moved(element: Element, apart: float) -> list[Element]:
+    try:
+        return [offset_element(element, apart)]
+    except GougeError:
+        return []
+
+
+def _ends(element: Element) -> tuple[Point, Point]:
+    return element.start, element.end
+
+
+def _ring(centre: Point, radius: float) -> Arc:
+    start = centre[0] + radius, centre[1]
+    return Arc(start, start, centre, clockwise=True)
+
+
+def _split(piece: Element, edges: _Boxed) -> list[Element]:
+    """The parts of a piece between the points where it meets any edge."""
+    length = piece.length
+    at = {0.0: piece.start, length: piece.end}
+    for edge in edges.near(piece.box, SAME_POINT):
+        for point in intersections(piece, edge):
+            along = piece.along(point)
+            if SAME_POINT < along < length - SAME_POINT:
+                at[along] = point
+    places = sorted(at)
+    return [piece.part(at[a], at[b]) for a, b in pairwise(places) if b - a > SAME_POINT or len(places) == 2]
+
+
+def _far(part: Element, contour: _Boxed, least: float) -> bool:
+    """Whether the middle of a part, and with it all of it, is far enough from every element."""
+    x, z = middle = part.point(part.length / 2)
+    return all(distance(element, middle) >= least for element in contour.near((x, x, z, z), least))
+
+
+def _chained(parts: list[Element]) -> list[Element]:
+    """The parts that follow one another from the first one; what no way leads to is left out.
+
+    Of several that begin in one point the last goes on: between them the offset went round where it may not.
+    """
+    if not parts:
+        raise TrimError
+    starts = np.array([part.start for part in parts])
+    path, at = [parts[0]], 0
+    while True:
+        x, z = path[-1].end
+        follows = np.flatnonzero(np.hypot(starts[at + 1 :, 0] - x, starts[at + 1 :, 1] - z) <= _FOLLOWS)
+        if not follows.size:
+            break
+        at += 1 + int(follows[-1])
+        path.append(parts[at])
+    if sum(part.length for part in parts[at + 1 :]) > _LOST:
+        raise TrimError
+    return path

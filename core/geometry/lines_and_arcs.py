@@ -1,0 +1,232 @@
+"""Lines and arcs that make a contour in the plane of X and Z: mm, X a radius, angles from Z+ towards X+.
+
+Seen from above (Z+ right, X+ down) that sense is clockwise, so a clockwise arc has a positive sweep. The
+left of a way X+ is Z+, the left of a way Z- is X+.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import atan2, cos, dist, hypot, pi, sin, sqrt
+
+# --- sweep and extent -----------------------------------------------------------------------------------
+
+
+FULL_TURN = 2 * math.pi
+
+# Two ends closer than this on a circle are one point: a full turn. Well under the control's step of 1.27 µm.
+SAME_POINT = 1e-6
+
+
+def arc_sweep(
+    x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
+) -> tuple[float, float]:
+    """(start angle, signed sweep) of an arc in radians, measured from Z+ towards X+.
+
+    Seen from above (X+ down, Z+ right) that is the clockwise sense, so a G02 has a positive sweep.
+    Start and end in one point make a full circle.
+    """
+    start = math.atan2(x0 - cx, z0 - cz)
+    if math.hypot(x - x0, z - z0) < SAME_POINT:
+        return start, FULL_TURN if clockwise else -FULL_TURN
+    turned = (math.atan2(x - cx, z - cz) - start) % FULL_TURN
+    return start, turned if clockwise else turned - FULL_TURN
+
+
+def arc_extent(
+    x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
+) -> tuple[float, float, float, float]:
+    """(least x, greatest x, least z, greatest z) of an arc, mm."""
+    start, sweep = arc_sweep(x0, z0, x, z, cx, cz, clockwise)
+    radius = math.hypot(x0 - cx, z0 - cz)
+    low, high = sorted((start, start + sweep))
+    xs, zs = [x0, x], [z0, z]
+    quarter = math.pi / 2
+    for k in range(math.ceil(low / quarter), math.floor(high / quarter) + 1):
+        xs.append(cx + radius * math.sin(k * quarter))
+        zs.append(cz + radius * math.cos(k * quarter))
+    return min(xs), max(xs), min(zs), max(zs)
+
+
+# --- centre and length ----------------------------------------------------------------------------------
+
+
+Point = tuple[float, float]
+"""X as a radius, Z; mm."""
+
+
+def centre_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
+    """Centre of the arc of at most 180 degrees from start to end.
+
+    A chord longer than the diameter gives its middle. Raises ValueError for a chord of no length.
+    """
+    dx, dz = end[0] - start[0], end[1] - start[1]
+    chord = hypot(dx, dz)
+    if chord == 0.0:
+        raise ValueError("an arc given by its radius needs two different ends")
+    rise = sqrt(max(radius * radius - chord * chord / 4, 0.0)) / chord
+    side = rise if clockwise else -rise  # the centre of a clockwise arc is to the right of the way
+    return (start[0] + end[0]) / 2 + side * dz, (start[1] + end[1]) / 2 - side * dx
+
+
+def arc_length(start: Point, end: Point, centre: Point, *, clockwise: bool) -> float:
+    """Length of an arc; where the radii at its ends differ a little, of the spiral between them."""
+    first = hypot(start[0] - centre[0], start[1] - centre[1])
+    last = hypot(end[0] - centre[0], end[1] - centre[1])
+    _, sweep = arc_sweep(*start, *end, *centre, clockwise)
+    return (first + last) / 2 * abs(sweep)
+
+
+Box = tuple[float, float, float, float]
+"""Least x, greatest x, least z, greatest z; mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight element of some length."""
+
+    start: Point
+    end: Point
+
+    @property
+    def length(self) -> float:
+        """mm."""
+        return dist(self.start, self.end)
+
+    @property
+    def start_direction(self) -> Point:
+        """Unit vector of the way at the start."""
+        dx, dz = self.end[0] - self.start[0], self.end[1] - self.start[1]
+        size = hypot(dx, dz)
+        return dx / size, dz / size
+
+    @property
+    def end_direction(self) -> Point:
+        """Unit vector of the way at the end."""
+        return self.start_direction
+
+    @property
+    def box(self) -> Box:
+        """How far the element reaches."""
+        (x0, z0), (x1, z1) = self.start, self.end
+        return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
+
+    def point(self, at: float) -> Point:
+        """The point ``at`` mm from the start, on the endless line."""
+        dx, dz = self.start_direction
+        return self.start[0] + dx * at, self.start[1] + dz * at
+
+    def along(self, point: Point) -> float:
+        """How far from the start, mm, the foot of ``point`` lies on the endless line; may be negative."""
+        dx, dz = self.start_direction
+        return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
+
+    def part(self, start: Point, end: Point) -> Line:
+        """The element between two of its points."""
+        return Line(start, end)
+
+    def reversed(self) -> Line:
+        """The same element, run the other way."""
+        return Line(self.end, self.start)
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """An arc of a circle; start and end in one point make a full circle. See ``arc_between``."""
+
+    start: Point
+    end: Point
+    centre: Point
+    clockwise: bool
+
+    @property
+    def radius(self) -> float:
+        """mm."""
+        return dist(self.start, self.centre)
+
+    @property
+    def sweep(self) -> float:
+        """Signed angle, rad: positive where clockwise."""
+        return arc_sweep(*self.start, *self.end, *self.centre, self.clockwise)[1]
+
+    @property
+    def length(self) -> float:
+        """mm."""
+        return self.radius * abs(self.sweep)
+
+    @property
+    def start_direction(self) -> Point:
+        """Unit vector of the way at the start."""
+        return self._direction(self.start)
+
+    @property
+    def end_direction(self) -> Point:
+        """Unit vector of the way at the end."""
+        return self._direction(self.end)
+
+    @property
+    def box(self) -> Box:
+        """How far the element reaches."""
+        return arc_extent(*self.start, *self.end, *self.centre, self.clockwise)
+
+    def point(self, at: float) -> Point:
+        """The point ``at`` mm from the start, on the whole circle."""
+        radius = self.radius
+        angle = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
+        angle += at / radius if self.clockwise else -at / radius
+        return self.centre[0] + radius * sin(angle), self.centre[1] + radius * cos(angle)
+
+    def along(self, point: Point) -> float:
+        """How far from the start, mm, ``point`` lies along the circle; what lies off the arc counts from
+        its nearer end: negative before the start, over the length after the end."""
+        angle = atan2(point[0] - self.centre[0], point[1] - self.centre[1])
+        first = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
+        turned = (angle - first if self.clockwise else first - angle) % FULL_TURN
+        off = FULL_TURN - abs(self.sweep)
+        if turned > FULL_TURN - off / 2:
+            turned -= FULL_TURN
+        return turned * self.radius
+
+    def part(self, start: Point, end: Point) -> Arc:
+        """The element between two of its points."""
+        return Arc(start, end, self.centre, self.clockwise)
+
+    def reversed(self) -> Arc:
+        """The same element, run the other way."""
+        return Arc(self.end, self.start, self.centre, not self.clockwise)
+
+    def _direction(self, at: Point) -> Point:
+        rx, rz = at[0] - self.centre[0], at[1] - self.centre[1]
+        size = hypot(rx, rz)
+        return (rz / size, -rx / size) if self.clockwise else (-rz / size, rx / size)
+
+
+Element = Line | Arc
+
+
+def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> Arc:
+    """An arc whose centre is moved onto the perpendicular bisector of the chord: both ends get one radius.
+
+    Programs round centres to the control's step; the planner settles them in the same way.
+    """
+    dx, dz = end[0] - start[0], end[1] - start[1]
+    chord = hypot(dx, dz)
+    if chord < SAME_POINT:
+        return Arc(start, end, centre, clockwise)
+    ux, uz = dx / chord, dz / chord
+    off = (centre[0] - (start[0] + end[0]) / 2) * ux + (centre[1] - (start[1] + end[1]) / 2) * uz
+    return Arc(start, end, (centre[0] - off * ux, centre[1] - off * uz), clockwise)
+
+
+def left_of(direction: Point) -> Point:
+    """The unit vector to the left of a way, seen from above."""
+    return -direction[1], direction[0]
+
+
+def turn(before: Point, after: Point) -> float:
+    """Angle from one direction to the next, rad: positive to the left, -pi < turn <= pi."""
+    cross = before[0] * after[1] - before[1] * after[0]
+    dot = before[0] * after[0] + before[1] * after[1]
+    angle = atan2(cross, dot)
+    return pi if angle == -pi else angle

@@ -1,0 +1,231 @@
+"""Rotary axes of a mill in their chain from the workpiece to the tool, and where programmed points then lie.
+
+One rule holds for heads and tables: a frame seen from the workpiece is the product of Rot(axis, +angle) over
+the chain from the workpiece to the tool. A head at +t turns the tool by +t; a table at +t turns the workpiece
+by -t in the machine, so that the tool, seen from the workpiece, turns by +t as well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.rotation_frames import (
+    IDENTITY,
+    Z_AXIS,
+    Matrix,
+    Vector,
+    applied,
+    minus,
+    plus,
+    product,
+    scaled,
+    transposed,
+    turned,
+)
+
+TURN = 360.0
+RANGE_END = 1e-9  # degrees by which rounding may leave a range whose ends count as inside
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """A linear axis: travel in mm from home, greatest speed in mm/s."""
+
+    name: str
+    low: float = -math.inf
+    high: float = math.inf
+    vmax: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Rotary:
+    """A rotary axis. ``direction`` (unit vector) and ``point`` (mm) of its line hold with all axes at 0.
+
+    A table's point counts in the machine, a head's from the nose of the spindle, where the tool begins.
+    ``modulo``: turns without end and shows 0 to 360; ``low high`` otherwise bound it, ends inside.
+    """
+
+    name: str
+    table: bool
+    direction: Vector
+    point: Vector
+    low: float = -math.inf
+    high: float = math.inf
+    modulo: bool = False
+    vmax: float = math.inf  # degrees/s
+
+    def inside(self, angle: float) -> bool:
+        """Whether the axis can stand there."""
+        return self.modulo or self.low - RANGE_END <= angle <= self.high + RANGE_END
+
+    def shown(self, angle: float) -> float:
+        """The angle as displayed: 0 to 360 on a modulo axis."""
+        if not self.modulo:
+            return angle + 0.0
+        rest = angle % TURN
+        return 0.0 if TURN - rest < RANGE_END else rest
+
+    def way(self, start: float, target: float) -> float:
+        """Degrees to travel; a modulo axis goes the short way, exactly half a turn goes positive."""
+        way = target - start
+        if not self.modulo:
+            return way
+        short = way % TURN
+        return short - TURN if short > TURN / 2.0 + RANGE_END else short
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """machine = turn · q + shift: machine positions of the points of a system, mm; the rotary axes stand."""
+
+    turn: Matrix
+    shift: Vector
+
+    def machine(self, q: Vector) -> Vector:
+        """Machine position of the slides for the point ``q``."""
+        return plus(applied(self.turn, q), self.shift)
+
+    def point(self, machine: Vector) -> Vector:
+        """The point whose machine position this is."""
+        return applied(transposed(self.turn), minus(machine, self.shift))
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """A mill: slides X Y Z and rotary axes from the workpiece to the tool, tables before heads.
+
+    ``origin`` is the machine position of the workpiece's zero with all rotary axes at 0; ``basic_rotation``
+    the angle by which the workpiece system is turned about Z against the machine. ``order`` names all axes in
+    the machine's own order.
+    """
+
+    slides: tuple[Slide, Slide, Slide]
+    rotaries: tuple[Rotary, ...]
+    origin: Vector
+    basic_rotation: float = 0.0
+    order: tuple[str, ...] = field(default=())
+
+    @cached_property
+    def basic(self) -> Matrix:
+        """The workpiece system as it stands in the machine with all rotary axes at 0."""
+        return turned(Z_AXIS, self.basic_rotation)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All axes in the machine's order."""
+        return self.order or (*(s.name for s in self.slides), *(r.name for r in self.rotaries))
+
+    def rotary(self, name: str) -> Rotary | None:
+        """The rotary axis of this name, None where the machine lacks it."""
+        return next((axis for axis in self.rotaries if axis.name == name), None)
+
+    def frame(self, angles: Mapping[str, float]) -> Matrix:
+        """The tool's frame as the workpiece sees it, at these angles by name; absent ones are 0."""
+        return product(*(turned(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotaries))
+
+    def place(
+        self,
+        angles: Mapping[str, float],
+        frame: Matrix = IDENTITY,
+        datum: Vector = (0.0, 0.0, 0.0),
+        tool_length: float = 0.0,
+    ) -> Place:
+        """Where points of the system ``frame`` at ``datum`` (mm, both in the untilted machine-parallel system
+        at the workpiece's zero) bring the slides at these angles with a tool of this length.
+        """
+        turn, shift = self._tables(angles)
+        spot = applied(turn, plus(self.origin, datum))
+        nose = self._nose(angles, tool_length)
+        return Place(product(turn, frame), minus(plus(spot, shift), nose))
+
+    def tool_axis(self, angles: Mapping[str, float]) -> Vector:
+        """The direction from the tip to the spindle, in the machine."""
+        return applied(product(*(turned(a.direction, angles.get(a.name, 0.0)) for a in self._heads)), Z_AXIS)
+
+    def tip(self, angles: Mapping[str, float], slides: Vector, tool_length: float = 0.0) -> Vector:
+        """Where the tip is in the machine, mm, with the slides there and a tool of this length."""
+        return plus(slides, self._nose(angles, tool_length))
+
+    @property
+    def _heads(self) -> Sequence[Rotary]:
+        return [axis for axis in self.rotaries if not axis.table]
+
+    def _tables(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
+        """Rotation and shift that take a point of the machine-parallel system at 0 along with the tables."""
+        turn, shift = IDENTITY, (0.0, 0.0, 0.0)
+        for axis in self.rotaries:
+            if axis.table:
+                back = turned(axis.direction, -angles.get(axis.name, 0.0))
+                turn = product(back, turn)
+                shift = plus(applied(back, minus(shift, axis.point)), axis.point)
+        return turn, shift
+
+    def _nose(self, angles: Mapping[str, float], tool_length: float) -> Vector:
+        """From the spindle nose at 0, which machine positions count, to the tip; mm in the machine."""
+        tip = scaled(Z_AXIS, -tool_length)
+        for axis in reversed(self._heads):
+            turn = turned(axis.direction, angles.get(axis.name, 0.0))
+            tip = plus(applied(turn, minus(tip, axis.point)), axis.point)
+        return tip
+
+
+# --- rotary axes that turn about a point ----------------------------------------------------------------
+
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PivotMove:
+    """From the angles ``start`` to ``end`` in proportion; ``pivot`` stays (mm, machine-parallel system at the
+    workpiece's zero), ``distance`` mm below the tip along the tool. ``length`` in degrees.
+    """
+
+    kinematics: Kinematics
+    start: Mapping[str, float]
+    end: Mapping[str, float]
+    pivot: Vector
+    distance: float
+    tool_length: float
+    length: float
+
+    @property
+    def straight(self) -> bool:
+        """The slides never run in proportion to the angles."""
+        return False
+
+    def slides(self, angles: Mapping[str, float]) -> Vector:
+        """Machine position of X Y Z at these angles, mm."""
+        up = scaled(self.kinematics.tool_axis(angles), self.distance)
+        return plus(self._place(angles).machine(self.pivot), up)
+
+    def machine(self, share: FloatArray) -> FloatArray:
+        """Machine positions (k, axes), in the machine's order, at fractions (k,) of the way."""
+        rows = []
+        for fraction in share.tolist():
+            angles = {name: at + fraction * (self.end[name] - at) for name, at in self.start.items()}
+            places = angles | dict(zip("XYZ", self.slides(angles), strict=True))
+            rows.append([places[name] for name in self.kinematics.names])
+        return np.array(rows)
+
+    def part(self, points: FloatArray) -> FloatArray:
+        """Where the tip is on the workpiece (k, 3), mm, at machine positions (k, axes)."""
+        names = self.kinematics.names
+        rows = []
+        for row in points.tolist():
+            at = dict(zip(names, row, strict=True))
+            rows.append(self._place(at).point((at["X"], at["Y"], at["Z"])))
+        return np.array(rows)
+
+    def nearest(self) -> float:
+        """The middle: no fraction is harder than another."""
+        return 0.5
+
+    def _place(self, angles: Mapping[str, float]) -> Place:
+        return self.kinematics.place(angles, tool_length=self.tool_length)

@@ -1,0 +1,188 @@
+"""From the frame of a working plane to the angles of the rotary axes, and which of two solutions is taken.
+
+Right-angled machines: every rotary axis is parallel to X, Y or Z at 0, and the one next to the tool that
+tilts it is square to the tool. Angles in degrees. The two solutions follow from Rot(a1, t1) Rot(a2, t2) z = n
+(the second of the subproblems of Paden and Kahan); atan2 throughout, since acos loses half of the digits
+where the tool stands nearly along a1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.geometry.mill_kinematics import TURN, Kinematics, Rotary
+from core.geometry.rotation_frames import (
+    Z_AXIS,
+    Matrix,
+    Vector,
+    about_z,
+    applied,
+    cross,
+    dot,
+    minus,
+    product,
+    scaled,
+    transposed,
+    turned,
+)
+
+FREE = math.radians(1e-9)  # sine of the angle below which the first axis is parallel to the tool
+UNREACHED = 1e-9  # sine of the angle to a tool direction below which it counts as reached
+TIE = 1e-6  # degrees by which two ways must differ to count as different
+
+
+class SolutionSide(StrEnum):
+    """The solution asked for: a side of the primary axis' symmetry point (SYM) or basic position (SEQ)."""
+
+    SYM_PLUS = "SYM+"
+    SYM_MINUS = "SYM-"
+    SEQ_PLUS = "SEQ+"
+    SEQ_MINUS = "SEQ-"
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Angles by axis name. ``spin`` is what is left to turn mathematically about the tool axis.
+
+    ``symmetry`` is the primary axis' angle from its symmetry point, ``primary`` from its basic position 0.
+    """
+
+    angles: Mapping[str, float]
+    spin: float
+    symmetry: float = 0.0
+    primary: float = 0.0
+
+    def on(self, side: SolutionSide | None) -> bool:
+        """Whether it lies on that side; the point itself lies on both."""
+        if side is None:
+            return True
+        angle = self.symmetry if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS} else self.primary
+        return angle >= -TIE if side in {SolutionSide.SYM_PLUS, SolutionSide.SEQ_PLUS} else angle <= TIE
+
+
+def solutions(machine: Kinematics, frame: Matrix, *, table_rot: bool = False) -> list[Solution]:
+    """Every way to stand square to ``frame`` (in the machine-parallel system), ranges not looked at.
+
+    A rotary axis that is free, the first of the chain and parallel to the tool, goes to 0, with ``table_rot``
+    to where no turn about the tool is left.
+    """
+    normal = applied(frame, Z_AXIS)
+    found: list[Solution] = []
+    for angles, symmetry, primary in _tilts(machine.rotaries, normal):
+        spin = _wrapped(about_z(product(transposed(machine.frame(angles)), frame)))
+        first = machine.rotaries[0] if machine.rotaries else None
+        if table_rot and first is not None and math.hypot(*cross(first.direction, normal)) < FREE:
+            angles[first.name] = math.copysign(1.0, dot(first.direction, normal)) * spin
+            spin = 0.0
+        made = Solution(angles, spin, symmetry, primary)
+        if not any(_same(machine, made, other) for other in found):
+            found.append(made)
+    return found
+
+
+def choose(
+    machine: Kinematics,
+    frame: Matrix,
+    present: Mapping[str, float],
+    side: SolutionSide | None = None,
+    *,
+    table_rot: bool = False,
+) -> Solution | None:
+    """The solution inside the axis ranges on ``side``, or the one with the shorter way from ``present``.
+
+    The sum of the ways counts; ways that differ by less than TIE are equal, and the positive side is taken.
+    None where no solution is possible.
+    """
+    best: Solution | None = None
+    for made in fitting(machine, frame, present, side, table_rot=table_rot):
+        if best is None or _way(machine, made, present) < _way(machine, best, present) - TIE:
+            best = made
+    return best
+
+
+def fitting(
+    machine: Kinematics,
+    frame: Matrix,
+    present: Mapping[str, float],
+    side: SolutionSide | None = None,
+    *,
+    table_rot: bool = False,
+) -> list[Solution]:
+    """The solutions inside the axis ranges on ``side``, the positive side first."""
+    near = [_nearest(machine, made, present) for made in solutions(machine, frame, table_rot=table_rot)]
+    fits = [made for made in near if made is not None and made.on(side)]
+    return sorted(fits, key=lambda each: -each.symmetry)
+
+
+def _tilts(chain: tuple[Rotary, ...], normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
+    """Angles that bring the tool to ``normal``, with the primary axis' angle from symmetry and from 0."""
+    angles = dict.fromkeys((axis.name for axis in chain), 0.0)
+    tilting = list(chain)
+    while tilting and math.hypot(*cross(tilting[-1].direction, Z_AXIS)) < UNREACHED:
+        tilting.pop()  # it spins about the tool and tilts nothing
+    if not tilting:
+        if math.hypot(*cross(Z_AXIS, normal)) < UNREACHED and normal[2] > 0.0:
+            yield angles, 0.0, 0.0
+    elif len(tilting) == 1:
+        axis = tilting[0]
+        if abs(dot(axis.direction, normal)) < UNREACHED:
+            angle = _angle(axis.direction, Z_AXIS, normal)
+            yield angles | {axis.name: angle}, angle, angle
+    else:
+        first, second = tilting[-2:]
+        for tilt, symmetry in _second(first.direction, second.direction, normal):
+            tool = applied(turned(second.direction, tilt), Z_AXIS)
+            free = math.hypot(*cross(first.direction, normal)) < FREE
+            turn = 0.0 if free else _angle(first.direction, tool, normal)
+            yield angles | {first.name: turn, second.name: tilt}, symmetry, tilt
+
+
+def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
+    """Both angles of the axis next to the tool, each with its distance from their mean."""
+    middle = math.degrees(math.atan2(dot(a1, cross(a2, Z_AXIS)), dot(a1, Z_AXIS)))
+    away = math.degrees(math.atan2(math.hypot(*cross(a1, normal)), dot(a1, normal)))
+    for symmetry in (away, -away):
+        yield _wrapped(middle + symmetry), symmetry
+
+
+def _angle(axis: Vector, start: Vector, end: Vector) -> float:
+    """Degrees about ``axis`` from one direction to another, as seen along the axis."""
+    p, q = (minus(each, scaled(axis, dot(axis, each))) for each in (start, end))
+    return math.degrees(math.atan2(dot(axis, cross(p, q)), dot(p, q)))
+
+
+def _wrapped(angle: float) -> float:
+    """Within -180 (left out) to 180."""
+    return angle - TURN * math.ceil((angle - TURN / 2.0) / TURN)
+
+
+def _same(machine: Kinematics, one: Solution, other: Solution) -> bool:
+    return all(
+        abs(_wrapped(one.angles[axis.name] - other.angles[axis.name])) < TIE for axis in machine.rotaries
+    )
+
+
+def _nearest(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> Solution | None:
+    """The solution with each limited axis at the turn nearest to where it stands; None out of range."""
+    angles = {}
+    for axis in machine.rotaries:
+        angle, now = made.angles[axis.name], present.get(axis.name, 0.0)
+        if axis.modulo:
+            angles[axis.name] = axis.shown(angle)
+            continue
+        nearest = angle + TURN * round((now - angle) / TURN)
+        turns = [angle, nearest, nearest - TURN, nearest + TURN]
+        inside = [each for each in turns if axis.inside(each)]
+        if not inside:
+            return None
+        angles[axis.name] = min(inside, key=lambda each: abs(each - now))
+    return Solution(angles, made.spin, made.symmetry, made.primary)
+
+
+def _way(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> float:
+    return sum(
+        abs(axis.way(present.get(axis.name, 0.0), made.angles[axis.name])) for axis in machine.rotaries
+    )

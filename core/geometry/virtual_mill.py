@@ -1,0 +1,213 @@
+"""Lines and arcs of a virtual mill (plane switching), and where lathe X, Z and C stand along them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.lines_and_arcs import arc_sweep
+
+FloatArray = npt.NDArray[np.float64]
+
+# --- XC: the face ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """``c0`` (degrees) is C at the entry, ``h`` (mm) the height of the tool's centre line."""
+
+    c0: float
+    h: float = 0.0
+
+    def machine(self, points: FloatArray, theta: FloatArray) -> FloatArray:
+        """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3); mm and degrees.
+
+        ``theta`` (n,) is the polar angle of the points in radians, counted on without wrapping. A point
+        nearer to the axis than |h| cannot be reached; it is taken to be at |h|.
+        """
+        rho = np.hypot(points[:, 0], points[:, 1])
+        x = -np.sqrt(np.maximum((rho - self.h) * (rho + self.h), 0.0))
+        lead = np.arctan2(np.full(len(x), self.h), -x) if self.h else np.zeros(len(x))
+        return np.column_stack([x, points[:, 2], self.c0 + np.degrees(lead - theta)])
+
+    def mill(self, machine: FloatArray) -> FloatArray:
+        """Mill points X, Y, Z (n, 3) that stand under the tool at lathe X, Z, C (n, 3)."""
+        x = -machine[:, 0]
+        rho = np.hypot(x, self.h)
+        theta = np.arctan2(self.h, x) - np.radians(machine[:, 2] - self.c0)
+        return np.column_stack([rho * np.cos(theta), rho * np.sin(theta), machine[:, 1]])
+
+
+# --- ZC: the side ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """``c0`` (degrees) and ``z0`` (mm) are C and lathe Z of X0 Y0; Y is measured at ``diameter`` (mm)."""
+
+    c0: float
+    z0: float
+    diameter: float
+
+    def machine(self, points: FloatArray) -> FloatArray:
+        """Lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), Z as a radius; mm and degrees."""
+        x, y, z = points.T
+        c = self.c0 - y * (360.0 / (math.pi * self.diameter))
+        return np.column_stack([-z, self.z0 - x, c])
+
+    def mill(self, machine: FloatArray) -> FloatArray:
+        """Mill points X, Y, Z (n, 3), Z as a radius, of lathe X, Z, C (n, 3)."""
+        x, z, c = machine.T
+        return np.column_stack([self.z0 - z, (self.c0 - c) * (math.pi * self.diameter / 360.0), -x])
+
+
+Spot = tuple[float, float, float]
+
+CENTRE = 1e-4  # mm; what comes this near to the spindle's axis goes through it
+_SAMPLES = 721  # points of an arc at which its reach is read: half a degree of a full circle
+
+
+@dataclass(frozen=True, slots=True)
+class PlaneMove:
+    """A straight line, or with ``centre`` an arc, in the mill's frame; X, Y, Z in mm.
+
+    On the side of the part Z is a radius. ``theta`` (radians) is the polar angle of the start as counted so
+    far, so that C never jumps by a turn; it matters on the face only, and where the start is the centre it
+    is the direction of departure. The end of an arc lies within the control's tolerance of its circle.
+    """
+
+    frame: Face | Side
+    start: Spot
+    end: Spot
+    theta: float = 0.0
+    centre: tuple[float, float] | None = None
+    clockwise: bool = False
+
+    @property
+    def length(self) -> float:
+        """Length of the mill's path, mm."""
+        if self.centre is None:
+            return math.dist(self.start, self.end)
+        _, sweep = self._circle()
+        return self.radius * abs(sweep)
+
+    @property
+    def radius(self) -> float:
+        """Radius of the arc, 0 for a line."""
+        return 0.0 if self.centre is None else math.dist(self.start[:2], self._settled())
+
+    @property
+    def on_side(self) -> bool:
+        """Whether the mill stands on the side of the part."""
+        return isinstance(self.frame, Side)
+
+    @property
+    def straight(self) -> bool:
+        """Whether lathe axes too move in proportion to each other."""
+        return self.centre is None and isinstance(self.frame, Side)
+
+    def points(self, share: FloatArray) -> FloatArray:
+        """Mill points (n, 3) at fractions of the path (n,)."""
+        start, end = np.array(self.start), np.array(self.end)
+        points = np.asarray(start + share[:, None] * (end - start), dtype=np.float64)
+        if self.centre is not None:
+            first, sweep = self._circle()
+            angle = first + sweep * share
+            cx, cy = self._settled()
+            points[:, 0], points[:, 1] = cx + self.radius * np.cos(angle), cy + self.radius * np.sin(angle)
+        return points
+
+    def machine(self, share: FloatArray) -> FloatArray:
+        """Lathe X (radius), Z, C (n, 3) at fractions of the path (n,); C goes on without a jump."""
+        points = self.points(share)
+        if isinstance(self.frame, Side):
+            return self.frame.machine(points)
+        return self.frame.machine(points, self.thetas(points, share))
+
+    def part(self, points: FloatArray) -> FloatArray:
+        """Mill points (n, 3) of lathe X, Z, C (n, 3)."""
+        return self.frame.mill(points)
+
+    def thetas(self, points: FloatArray, share: FloatArray) -> FloatArray:
+        """Polar angles (n,) of ``points`` of this path, counted on from ``theta``; radians."""
+        if self.centre is None:
+            x0, y0, _ = self.start if math.hypot(*self.start[:2]) > CENTRE else self.end
+            at_centre = np.hypot(points[:, 0], points[:, 1]) <= CENTRE
+            turned = np.arctan2(x0 * points[:, 1] - y0 * points[:, 0], x0 * points[:, 0] + y0 * points[:, 1])
+            along: FloatArray = self.theta + np.where(at_centre, 0.0, turned)
+            return along
+        both = np.array([0.0, 1.0])
+        begin = self._winding(self.points(both), both)[0]
+        wound: FloatArray = self.theta - begin + self._winding(points, share)
+        return wound
+
+    def nearest(self) -> float:
+        """Fraction of the path at which it is nearest to the axis."""
+        if self.centre is None:
+            dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
+            square = dx * dx + dy * dy
+            foot = -(self.start[0] * dx + self.start[1] * dy) / square if square else 0.0
+            return min(max(foot, 0.0), 1.0)
+        return self._at_angle(math.atan2(-self._settled()[1], -self._settled()[0]))
+
+    def rho(self, share: float) -> float:
+        """Distance from the axis at a fraction of the path, mm."""
+        x, y, _ = self.points(np.array([share]))[0].tolist()
+        return math.hypot(x, y)
+
+    def reach(self) -> tuple[FloatArray, FloatArray]:
+        """Least and greatest lathe X, Z, C (3,) along the path."""
+        count = 2 if self.straight else _SAMPLES
+        table = self.machine(np.append(np.linspace(0.0, 1.0, count), self.nearest()))
+        return table.min(axis=0), table.max(axis=0)
+
+    def _at_angle(self, angle: float) -> float:
+        """Fraction of the arc at this angle round its centre; the nearer end where the arc lacks it."""
+        first, sweep = self._circle()
+        turn = 2.0 * math.pi
+        way = (angle - first) % turn if sweep > 0.0 else (first - angle) % turn
+        share = way / abs(sweep)
+        if share <= 1.0:
+            return share
+        return 0.0 if self.rho(0.0) <= self.rho(1.0) else 1.0
+
+    def _settled(self) -> tuple[float, float]:
+        """The centre on the bisector of the chord, so that the arc meets its end exactly."""
+        assert self.centre is not None
+        (x0, y0, _), (x1, y1, _), (cx, cy) = self.start, self.end, self.centre
+        dx, dy = x1 - x0, y1 - y0
+        square = dx * dx + dy * dy
+        if square < 1e-12:
+            return cx, cy
+        off = ((cx - 0.5 * (x0 + x1)) * dx + (cy - 0.5 * (y0 + y1)) * dy) / square
+        return cx - off * dx, cy - off * dy
+
+    def _circle(self) -> tuple[float, float]:
+        """Start angle, from X towards Y, and signed sweep in radians; clockwise is negative."""
+        cx, cy = self._settled()
+        (x0, y0, _), (x1, y1, _) = self.start, self.end
+        # Seen with Y up the angle from X towards Y is counter-clockwise.
+        return arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
+
+    def _winding(self, points: FloatArray, share: FloatArray) -> FloatArray:
+        """Polar angles (n,) of points of the arc, continuous along it but for a constant.
+
+        With the axis inside the circle it is the angle round the arc's centre plus less than a quarter turn,
+        outside the direction of the centre plus less than a quarter turn.
+        """
+        cx, cy = self._settled()
+        first, sweep = self._circle()
+        x, y = points[:, 0], points[:, 1]
+        if math.hypot(cx, cy) < self.radius - CENTRE:
+            round_centre = first + sweep * share
+            ux, uy = np.cos(round_centre), np.sin(round_centre)
+            inside: FloatArray = round_centre + np.arctan2(ux * y - uy * x, ux * x + uy * y)
+            return inside
+        towards = math.atan2(cy, cx)
+        angle = towards + np.arctan2(cx * y - cy * x, cx * x + cy * y)
+        side = -0.5 * math.pi if self.clockwise else 0.5 * math.pi
+        limit = towards + np.where(share < 0.5, -side, side)
+        return np.where(np.hypot(x, y) <= CENTRE, limit, angle)

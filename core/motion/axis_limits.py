@@ -1,0 +1,101 @@
+"""What the axes can do: the numbers from which the time law follows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+# --- errors ---------------------------------------------------------------------------------------------
+
+
+class MotionError(Exception):
+    """A movement cannot be planned; one sentence says which block, what is wrong and what to do."""
+
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+OVERRIDE_MAX = (
+    1.5  # largest feed_scale and rapid_scale; the speed for which an arc keeps acceleration in hand
+)
+CENTRIPETAL_SHARE = 0.8  # of the acceleration; the rest, in the vector sum, is left for braking on the arc
+
+
+class AxisLike(Protocol):
+    """An axis as a machine file describes it, as far as the time law needs it."""
+
+    @property
+    def vmax(self) -> float: ...
+    @property
+    def amax(self) -> float: ...
+    @property
+    def count(self) -> float: ...
+
+
+@dataclass(frozen=True, slots=True)
+class MotionLimits:
+    """Limits of the axes, slides first, on a lathe X, Z, C: mm/s and mm/s², degrees/s and degrees/s².
+
+    ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
+    ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
+    of a limit that the law does not have yet; docs/decisions/0003-time-law.md says where it will act.
+    ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved;
+    0 leaves every joint where it is written.
+
+    Raises MotionError where a figure is not positive and finite.
+    """
+
+    vmax: tuple[float, ...] = (127.0, 127.0, 1200.0)
+    amax: tuple[float, ...] = (3048.0, 3048.0, 12000.0)
+    interval: float = 0.001
+    jerk: None = None
+    grain: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in (f.name for f in fields(self) if f.name in {"vmax", "amax"}):
+            for number, value in enumerate(getattr(self, name), start=1):
+                _demand_positive(f"{name} of axis {number}", value)
+        _demand_positive("interval", self.interval)
+        if not 0.0 <= self.grain < math.inf:
+            raise MotionError(f"The step of the slides is {self.grain} mm; give a positive number, or 0.")
+
+    @classmethod
+    def of(cls, axes: Sequence[AxisLike], interval: float) -> MotionLimits:
+        """The limits of a machine's axes."""
+        return cls(
+            vmax=tuple(axis.vmax for axis in axes),
+            amax=tuple(axis.amax for axis in axes),
+            interval=interval,
+            grain=max(axis.count for axis in axes[:2]),
+        )
+
+    @property
+    def speeds(self) -> FloatArray:
+        """``vmax`` as an array (axes,)."""
+        return np.array(self.vmax)
+
+    @property
+    def accelerations(self) -> FloatArray:
+        """``amax`` as an array (axes,)."""
+        return np.array(self.amax)
+
+    @property
+    def plane_speed(self) -> float:
+        """The smaller vmax of a lathe's slides, mm/s: what an arc, turning through all directions, has."""
+        return min(self.vmax[:2])
+
+    @property
+    def plane_acceleration(self) -> float:
+        """The smaller amax of a lathe's slides, mm/s²; see ``plane_speed``."""
+        return min(self.amax[:2])
+
+
+def _demand_positive(what: str, value: float) -> None:
+    if not (math.isfinite(value) and value > 0.0):
+        raise MotionError(f"Motion limit {what} is {value}; give a positive number in the machine file.")

@@ -1,0 +1,295 @@
+"""What the time law reads from elementary blocks: one row of numbers a block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, fields
+from itertools import chain
+from operator import attrgetter
+from typing import Any, Protocol, TypeGuard
+
+import numpy as np
+
+from core.geometry.machine_travel import CurvedMove, Travel
+from core.geometry.virtual_mill import PlaneMove
+from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
+
+
+class ModalLike(Protocol):
+    """The clamp of the spindle speed under constant surface speed, rpm; how far C is shifted, degrees;
+    whether the spindle itself is C."""
+
+    @property
+    def css_min(self) -> float: ...
+    @property
+    def css_max(self) -> float | None: ...
+    @property
+    def offset_c(self) -> float: ...
+    @property
+    def c_locked(self) -> bool: ...
+
+
+class MotionBlock(Protocol):
+    """An elementary block as the interpreter makes it; mm, X a radius, degrees, mm/s or mm/rev."""
+
+    @property
+    def n(self) -> int: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def x0(self) -> float: ...
+    @property
+    def z0(self) -> float: ...
+    @property
+    def c0(self) -> float: ...
+    @property
+    def x(self) -> float: ...
+    @property
+    def z(self) -> float: ...
+    @property
+    def c(self) -> float: ...
+    @property
+    def offset_x(self) -> float: ...
+    @property
+    def offset_z(self) -> float: ...
+    @property
+    def feed(self) -> float: ...
+    @property
+    def rapid(self) -> bool: ...
+    @property
+    def per_rev(self) -> bool: ...
+    @property
+    def rpm(self) -> float: ...
+    @property
+    def css(self) -> float | None: ...
+    @property
+    def cx(self) -> float: ...
+    @property
+    def cz(self) -> float: ...
+    @property
+    def clockwise(self) -> bool: ...
+    @property
+    def modal(self) -> ModalLike: ...
+    @property
+    def plane(self) -> PlaneMove | None: ...
+    @property
+    def travel(self) -> Travel | None: ...
+
+
+KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
+KINDS["plane"] = 7  # Klartext: rotary axes swivel
+_COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
+_read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
+
+
+@dataclass(frozen=True, slots=True)
+class BlockTable:
+    """The words of m blocks: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
+
+    ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
+    the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
+    ``surface lo hi`` (m,) hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
+    ``way`` has m ways on which the axes do not run in proportion, such as those of the virtual mill, None
+    elsewhere. ``length`` (m,) is given by blocks that tell of all axes, NaN by those of the lathe, whose X,
+    Z and C say enough.
+    """
+
+    n: FloatArray
+    start: FloatArray
+    end: FloatArray
+    centre: FloatArray
+    axis: FloatArray
+    feed: FloatArray
+    rpm: FloatArray
+    per_rev: BoolArray
+    clockwise: BoolArray
+    rapid: BoolArray
+    arc: BoolArray
+    thread: BoolArray
+    locked: BoolArray
+    surface: FloatArray
+    lo: FloatArray
+    hi: FloatArray
+    way: tuple[CurvedMove | None, ...]
+    length: FloatArray
+
+
+def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
+    """The words of blocks that move; ``rpm_max`` is what the spindle can do at all.
+
+    Raises MotionError, naming the block, for a kind that has no time law or a number that is none.
+    """
+    width = len(_COLUMNS) + 4
+    table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
+    _demand_finite(table)
+    kinds = _kinds(blocks)
+    shift = table[:, 7:9]
+    start, end = table[:, 1:4].copy(), table[:, 4:7].copy()
+    start[:, :2] += shift
+    end[:, :2] += shift
+    start[:, 2] += table[:, 15]
+    end[:, 2] += table[:, 15]
+    length = np.full(len(blocks), np.nan)
+    if blocks[0].travel is not None:
+        start, end, length = _travels(blocks)
+    surface, lo, hi = _surface(blocks, rpm_max)
+    return BlockTable(
+        n=table[:, 0],
+        start=start,
+        end=end,
+        centre=table[:, 11:13] + shift,
+        axis=table[:, 7],
+        feed=table[:, 9],
+        rpm=np.minimum(np.abs(table[:, 10]), rpm_max),
+        per_rev=((table[:, 13] != 0.0) & (kinds != KINDS["rapid"])) | (kinds == KINDS["thread"]),
+        clockwise=table[:, 14] != 0.0,
+        rapid=_rapid(blocks, kinds),
+        arc=kinds == KINDS["arc"],
+        thread=kinds == KINDS["thread"],
+        locked=table[:, 16] != 0.0,
+        surface=surface,
+        lo=lo,
+        hi=hi,
+        way=tuple(_way(block) for block in blocks),
+        length=length,
+    )
+
+
+def _rapid(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
+    """Blocks (m,) for which the rapid override counts."""
+    rapid: BoolArray = kinds == KINDS["rapid"]
+    for i in np.flatnonzero(kinds == KINDS["plane"]).tolist():
+        rapid[i] = blocks[i].rapid
+    return rapid
+
+
+def _way(block: MotionBlock) -> CurvedMove | None:
+    return block.plane if block.travel is None else block.travel.way
+
+
+def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Start and end (m, axes) and length (m,) of blocks that tell of all axes."""
+    travels = [block.travel for block in blocks if block.travel is not None]
+    if len(travels) != len(blocks):
+        raise MotionError(f"Block {blocks[0].n} tells of all axes, another behind it does not.")
+    start, end = (np.array([getattr(t, name) for t in travels]) for name in ("start", "end"))
+    return start, end, np.array([t.length for t in travels])
+
+
+def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
+    try:
+        return np.array([KINDS[b.kind] for b in blocks], dtype=np.float64)
+    except KeyError:
+        block = next(b for b in blocks if b.kind not in KINDS)
+        raise MotionError(f"Block {block.n}: a {block.kind} block has no time law of its own.") from None
+
+
+def _demand_finite(table: FloatArray) -> None:
+    bad = ~np.isfinite(table).all(axis=1)
+    if bad.any():
+        row = table[bad.argmax()]
+        names = (*_COLUMNS, "per_rev", "clockwise", "offset_c", "c_locked")
+        name = names[int(np.argmax(~np.isfinite(row)))]
+        raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.")
+
+
+def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    surface = np.full(len(blocks), np.nan)
+    lo, hi = np.zeros(len(blocks)), np.full(len(blocks), rpm_max)
+    for i, block in enumerate(blocks):
+        if block.css is not None:
+            if not 0.0 <= block.css < math.inf:
+                raise MotionError(
+                    f"Block {block.n}: css is {block.css} mm/s; program a surface speed with S."
+                )
+            surface[i], lo[i] = block.css, block.modal.css_min
+            hi[i] = rpm_max if block.modal.css_max is None else min(block.modal.css_max, rpm_max)
+    return surface, np.minimum(lo, hi), hi
+
+
+# --- batches --------------------------------------------------------------------------------------------
+
+
+_FIELDS = tuple(f.name for f in fields(BlockTable))
+
+
+class Row(Protocol):
+    """m straight moves of X and Z as columns (m,); in all else each of them is as ``pattern`` is."""
+
+    @property
+    def pattern(self) -> MotionBlock: ...
+    @property
+    def n(self) -> IntArray: ...
+    @property
+    def x0(self) -> FloatArray: ...
+    @property
+    def z0(self) -> FloatArray: ...
+    @property
+    def x(self) -> FloatArray: ...
+    @property
+    def z(self) -> FloatArray: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, at: slice, /) -> Row: ...
+
+
+Part = list[Any] | Row
+"""Blocks one by one, or a row."""
+
+
+def batches(blocks: Iterable[MotionBlock | Row], first: int, window: int) -> Iterator[tuple[list[Part], int]]:
+    """Batches of ``window`` blocks and how many each has: the first of ``first``, the last of what is left.
+
+    Takes no block before the batch that was full is asked on from; rows are cut where a batch ends.
+    """
+    batch: list[Part] = []
+    singles: list[Any] = []
+    room = size = first
+    for each in blocks:
+        if _is_row(each):
+            rest = each
+            while len(rest) >= room:
+                yield [*batch, rest[:room]], size
+                rest, batch, room, size = rest[room:], [], window, window
+            if len(rest):
+                batch.append(rest)
+                room -= len(rest)
+            continue
+        if not batch or batch[-1] is not singles:
+            singles = []
+            batch.append(singles)
+        singles.append(each)
+        room -= 1
+        if not room:
+            yield batch, size
+            batch, room, size = [], window, window
+    if batch:
+        yield batch, size - room
+
+
+def _is_row(each: MotionBlock | Row) -> TypeGuard[Row]:
+    return isinstance(each, Sequence)  # blocks have no length
+
+
+def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
+    """The words of all blocks of a batch; see ``read_words``."""
+    parts = [read_blocks(p, rpm_max) if isinstance(p, list) else _row_words(p, rpm_max) for p in batch]
+    if len(parts) == 1:
+        return parts[0]
+    return BlockTable(*[_joined([getattr(part, name) for part in parts]) for name in _FIELDS])
+
+
+def _joined(columns: list[Any]) -> Any:
+    """Columns one below the other: arrays, or the ways, which are a tuple."""
+    return sum(columns, ()) if isinstance(columns[0], tuple) else np.concatenate(columns)
+
+
+def _row_words(row: Row, rpm_max: float) -> BlockTable:
+    like, m = row.pattern, len(row)
+    one = read_blocks([like], rpm_max)
+    many: dict[str, Any] = {name: getattr(one, name) for name in _FIELDS}
+    many = {k: c * m if isinstance(c, tuple) else np.repeat(c, m, axis=0) for k, c in many.items()}
+    many["n"] = row.n.astype(np.float64)
+    for name, x, z in (("start", row.x0, row.z0), ("end", row.x, row.z)):
+        many[name][:, 0], many[name][:, 1] = x + like.offset_x, z + like.offset_z
+    return BlockTable(**many)

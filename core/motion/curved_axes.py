@@ -1,0 +1,153 @@
+"""Blocks in which C turns with the slides: moves of a virtual mill, and slides fed by the turns of C.
+
+The path of such a piece is measured as its feed is, along the mill's way or along the slide's; what X, Z and
+C do is its ``direction``. So limits, corners, look-ahead and holds are those of any other line. A curved way
+becomes chords in X, Z and C; the reasons are in docs/decisions/0010-c-axis-and-planes.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.geometry.machine_travel import CurvedMove
+from core.motion.axis_limits import (
+    CENTRIPETAL_SHARE,
+    OVERRIDE_MAX,
+    BoolArray,
+    FloatArray,
+    MotionError,
+    MotionLimits,
+)
+from core.motion.block_table import BlockTable
+from core.motion.path_pieces import SAME_POINT, Pieces, joined
+
+CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from the part
+STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed
+_FIRST = 16  # chords to begin with
+_HALVINGS = 30  # no chord is cut more often
+_SHORTEST = 1e-5  # mm; no shorter chord is cut again: distances of a path are good to 1e-9
+_ROUNDING = 1e-9
+_SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with the true way
+
+
+def with_parts(words: BlockTable) -> BoolArray:
+    """Blocks (m,) that this module cuts into pieces."""
+    curved = np.array([way is not None for way in words.way], dtype=bool)
+    return curved | _fed_by_c(words)
+
+
+def parts_of(whole: Pieces, words: BlockTable, limits: MotionLimits, index: int) -> Pieces:
+    """Piece ``index`` as chords, or as the slide's way and what C turns on behind it.
+
+    Raises MotionError where C turns too little for the slide's way.
+    """
+    piece, move = whole[index : index + 1], words.way[index]
+    if move is None:
+        return _slide_by_c(piece, words, index)
+    if move.length <= SAME_POINT:
+        return piece[:0]
+    share = np.array([0.0, 1.0]) if move.straight else chords(move, float(piece.rate[0]), limits)
+    points = move.machine(share)
+    points += words.start[index] - points[0]
+    points[-1] = words.end[index]
+    return _chain(piece, points, np.diff(share) * move.length)
+
+
+def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
+    """Fractions of the way (k+1,) between which the axes may run in proportion.
+
+    Chords leave the way by CHORD_ERROR at most, measured on the part, and neighbours differ so little that
+    their joint does not hold the feed ``rate`` (mm/s) up, unless the way itself has a corner there.
+    """
+    share, nearest = np.linspace(0.0, 1.0, _FIRST + 1), move.nearest()
+    if np.abs(share - nearest).min() > _ROUNDING:
+        share = np.sort(np.append(share, nearest))
+    for _ in range(_HALVINGS):
+        wide = _leaves(move, share) | _jerks(move, share, OVERRIDE_MAX * rate, limits)
+        wide &= np.diff(share) * move.length > _SHORTEST
+        if not wide.any():
+            break
+        share = np.sort(np.append(share, 0.5 * (share[:-1] + share[1:])[wide]))
+    return share
+
+
+def _leaves(move: CurvedMove, share: FloatArray) -> BoolArray:
+    """Chords (k,) that leave the way by more than CHORD_ERROR, as the part sees it."""
+    ends = move.machine(share)
+    span, change = np.diff(share), np.diff(ends, axis=0)
+    worst = np.zeros(len(span))
+    for spot in _SPOTS:
+        true = move.machine(share[:-1] + spot * span)
+        off = move.part(ends[:-1] + spot * change) - move.part(true)
+        worst = np.maximum(worst, np.sqrt((off**2).sum(axis=1)))
+    return worst > CHORD_ERROR
+
+
+def _jerks(move: CurvedMove, share: FloatArray, speed: float, limits: MotionLimits) -> BoolArray:
+    """Chords (k,) at whose ends an axis would have to change its velocity too much at once."""
+    length = np.diff(share) * move.length
+    direction = np.diff(move.machine(share), axis=0) / length[:, None]
+    turn = np.abs(np.diff(direction, axis=0))
+    mean = 0.5 * (length[:-1] + length[1:])
+    fastest = np.minimum(speed, _least(limits.speeds, np.abs(direction)))
+    bend = _least(limits.accelerations * CENTRIPETAL_SHARE, turn / mean[:, None])
+    v = np.minimum(np.minimum(fastest[:-1], fastest[1:]), np.sqrt(bend))
+    sharp = (v[:, None] * turn > STEP_SHARE * limits.accelerations * limits.interval).any(axis=1)
+    long = mean > v * limits.interval  # shorter ones are a corner of the way itself
+    wide = np.zeros(len(length), dtype=bool)
+    wide[:-1] |= sharp & long
+    wide[1:] |= sharp & long
+    return wide
+
+
+def _least(limit: FloatArray, share: FloatArray) -> FloatArray:
+    least: FloatArray = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0).min(
+        axis=1
+    )
+    return least
+
+
+def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
+    """Straight pieces through ``points`` (k+1, axes) whose ``length`` (k,) is measured otherwise."""
+    parts = piece[np.zeros(len(length), dtype=np.int64)]
+    zero = np.zeros(len(length))
+    return replace(
+        parts,
+        start=points[:-1],
+        direction=np.diff(points, axis=0) / length[:, None],
+        centre=np.zeros((len(length), 2)),
+        radius=zero,
+        angle=zero,
+        curvature=zero,
+        length=length,
+    )
+
+
+def _fed_by_c(words: BlockTable) -> BoolArray:
+    """Straight moves (m,) at a feed per revolution in which the spindle turns as C: its turns are meant."""
+    delta = words.end - words.start
+    lathe = np.isnan(words.length)
+    slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
+    turned = words.locked & (np.abs(delta[:, 2]) > SAME_POINT)
+    fed: BoolArray = lathe & words.per_rev & ~words.arc & slides & turned
+    return fed
+
+
+def _slide_by_c(piece: Pieces, words: BlockTable, index: int) -> Pieces:
+    """The slide's way with C, and behind it the degrees that C turns beyond what the way needs."""
+    start, end, feed = words.start[index], words.end[index], float(words.feed[index])
+    way = float(np.hypot(*(end - start)[:2]))
+    needed, turn = way / feed * 360.0, float(end[2] - start[2])
+    if abs(turn) < needed * (1.0 - _ROUNDING):
+        raise MotionError(
+            f"Block {words.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}."
+        )
+    there = end.copy()
+    there[2] = start[2] + np.copysign(min(needed, abs(turn)), turn)
+    first = _chain(piece, np.array([start, there]), np.array([way]))
+    rest = (abs(turn) - needed) * feed / 360.0
+    if rest <= SAME_POINT:
+        return _chain(piece, np.array([start, end]), np.array([way]))
+    return joined([first, _chain(piece, np.array([there, end]), np.array([rest]))])

@@ -1,0 +1,124 @@
+"""Programmed speeds: as given, per revolution of the spindle, or by the radius under surface speed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.motion.axis_limits import BoolArray, FloatArray, MotionError
+from core.motion.block_table import BlockTable
+from core.motion.path_pieces import Pieces
+
+RPM_STEP = 1.02  # the spindle speed changes by no more than this factor within a piece
+ARC_SAMPLES = 65  # points at which an arc's radius is read for the split
+
+
+def constant_rates(words: BlockTable) -> FloatArray:
+    """Speed (m,) of each block in mm/s, that of surface-speed blocks at the middle of their radii.
+
+    Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
+    """
+    _refuse(words, ~(words.feed > 0.0), "the feed is not above zero; program an F")
+    surface = by_radius(words)
+    middle = 0.5 * (words.start[:, 0] + words.end[:, 0]) - words.axis
+    rpm = np.where(surface, surface_rpms(words, middle), words.rpm)
+    _refuse(
+        words, words.per_rev & ~(rpm > 0.0), "feed per revolution with the spindle stopped; start it first"
+    )
+    on_axis = (words.start[:, 0] - words.axis) * (words.end[:, 0] - words.axis) <= 0.0
+    endless = surface & on_axis & np.isinf(words.hi)
+    _refuse(words, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
+    return np.where(words.per_rev, words.feed * rpm / 60.0, words.feed) * _per_lead(words)
+
+
+def _per_lead(words: BlockTable) -> FloatArray:
+    """Way (m,) per way along Z, 1 save in threads: a lead counts along the axis of the thread."""
+    _refuse(words, words.thread & (words.start[:, 1] == words.end[:, 1]), "a thread does not advance along Z")
+    way = np.hypot(words.end[:, 0] - words.start[:, 0], words.end[:, 1] - words.start[:, 1])
+    along = np.where(words.thread, np.abs(words.end[:, 1] - words.start[:, 1]), 1.0)
+    return np.where(words.thread, way / along, 1.0)
+
+
+def by_radius(words: BlockTable) -> BoolArray:
+    """Blocks (m,) whose speed follows the radius."""
+    return words.per_rev & np.isfinite(words.surface)
+
+
+def surface_rpms(words: BlockTable, radius: FloatArray) -> FloatArray:
+    """``core.geometry.surface_speed.surface_rpm`` for arrays; NaN without a surface speed."""
+    with np.errstate(divide="ignore"):
+        rpm = 60.0 * words.surface / (2.0 * np.pi * np.abs(radius))
+    return np.clip(rpm, words.lo, words.hi)
+
+
+def _refuse(words: BlockTable, wrong: BoolArray, why: str) -> None:
+    if wrong.any():
+        raise MotionError(f"Block {words.n[wrong.argmax()]:.0f}: {why}.")
+
+
+def split_by_radius(pieces: Pieces, words: BlockTable, index: int) -> Pieces:
+    """Piece ``index`` in parts within which the rpm changes by 2 % at most, each with the rate at its middle.
+
+    On a line across the axis the time of a part is then exact, since 1/v grows linearly with the radius.
+    Where the rpm is clamped nothing is split; the parts are bounded by ln(max/min rpm)/ln 1.02 per pass.
+    """
+    piece, owner = pieces[index : index + 1], _row(words, index)
+    length = float(piece.length[0])
+    at = _cuts(piece, owner, length)
+    middle = _radii(piece, owner, 0.5 * (at[1:] + at[:-1]))
+    rate = owner.feed * surface_rpms(owner, middle) / 60.0
+    return cut(piece, at, rate)
+
+
+def cut(piece: Pieces, at: FloatArray, rate: FloatArray) -> Pieces:
+    """One piece cut at the distances ``at`` (k+1,), its ends included, with rates ``rate`` (k,)."""
+    parts = piece[np.zeros(len(at) - 1, dtype=np.int64)]
+    return replace(
+        parts,
+        start=parts.point(at[:-1]),
+        angle=parts.angle + parts.curvature * at[:-1],
+        length=np.diff(at),
+        rate=rate,
+    )
+
+
+def _row(words: BlockTable, index: int) -> BlockTable:
+    """The words of one block alone."""
+    row = slice(index, index + 1)
+    return BlockTable(*(getattr(words, name)[row] for name in words.__dataclass_fields__))
+
+
+def _radii(piece: Pieces, owner: BlockTable, at: FloatArray) -> FloatArray:
+    many = piece[np.zeros(len(at), dtype=np.int64)]
+    radii: FloatArray = np.abs(many.point(at)[:, 0] - owner.axis[0])
+    return radii
+
+
+def _cuts(piece: Pieces, owner: BlockTable, length: float) -> FloatArray:
+    """Distances at which the radius passes a level of the geometric ladder between both clamps."""
+    if piece.curvature[0] == 0.0:
+        x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]
+        crossing = [length * x0 / (x0 - x1)] if x0 * x1 < 0.0 else []
+        grid = np.array([0.0, *crossing, length])
+    else:
+        grid = np.linspace(0.0, length, ARC_SAMPLES)
+    radii = _radii(piece, owner, grid)
+    pairs = zip(grid[:-1], grid[1:], radii[:-1], radii[1:], strict=True)
+    cuts = np.unique(np.concatenate([_passed(owner, *pair) for pair in pairs]))
+    inside = cuts[(cuts > 1e-9 * length) & (cuts < length * (1.0 - 1e-9))]
+    return np.concatenate([[0.0], inside, [length]])
+
+
+def _passed(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
+    """Distances between s0 and s1, the radius running straight from r0 to r1, at which levels are passed."""
+    unclamped = 60.0 * owner.surface[0] / (2.0 * np.pi)  # rpm times radius
+    low, high = min(r0, r1), max(r0, r1)
+    bottom = max(low, unclamped / owner.hi[0])
+    top = min(high, unclamped / owner.lo[0]) if owner.lo[0] > 0.0 else high
+    if not bottom < top or bottom == 0.0:
+        return np.empty(0)
+    steps = int(np.ceil(np.log(top / bottom) / np.log(RPM_STEP)))
+    levels = bottom * (top / bottom) ** (np.arange(steps + 1) / steps)
+    fraction = (levels - r0) / (r1 - r0)
+    return np.asarray(s0 + fraction * (s1 - s0), dtype=np.float64)

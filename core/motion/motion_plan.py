@@ -1,0 +1,330 @@
+"""The time law itself: squared speeds at the joints, then phases of constant acceleration.
+
+Where a jerk limit will go: ``_phases`` gives every piece a speed-up, a cruise and a slow-down of constant
+acceleration; a jerk limit replaces these three by seven, and ``2·a·length`` by what such a ramp reaches.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError
+from core.motion.motion_path import Path
+from core.motion.motion_profile import Phases, Profile
+
+# --- look-ahead -----------------------------------------------------------------------------------------
+
+
+_FEW = 24  # limits, up to which a plain loop costs less than arrays
+_SUMS_ROW = 256  # sums restart every row, so that rounding stays below 1e-9 of a row's sum
+
+
+def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+    """Largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
+
+    With squared speeds as ``limit`` and 2·a·length as ``gain`` (n,) ≥ 0 it is what acceleration can reach:
+    r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), W the running sum of gain.
+    """
+    count = len(limit)
+    if count <= _FEW:
+        return _one_by_one(limit.tolist(), gain.tolist())
+    rows = -(-count // _SUMS_ROW)
+    top = float(limit[np.isfinite(limit)].max(initial=0.0))
+    # A gain as large as the largest limit decouples its neighbours; more would only cost digits.
+    steps = np.zeros(rows * _SUMS_ROW)
+    np.minimum(gain, top, out=steps[1:count])
+    limits = np.full(rows * _SUMS_ROW, np.inf)
+    limits[:count] = limit
+    table, sums = limits.reshape(rows, _SUMS_ROW), np.cumsum(steps.reshape(rows, _SUMS_ROW), axis=1)
+    local = np.minimum.accumulate(table - sums, axis=1)
+    carried = np.minimum(local, _carry(local[:, -1].tolist(), sums[:, -1].tolist())[:, None]) + sums
+    return _sharpened(carried.reshape(-1)[:count], limit, steps[1:count])
+
+
+def reachable_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+    """Largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i]: what braking allows."""
+    return reachable_forward(limit[::-1], gain[::-1])[::-1]
+
+
+def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
+    reached = limits[:1]
+    for limit, gain in zip(limits[1:], gains, strict=True):
+        reached.append(max(min(limit, reached[-1] + gain), 0.0))
+    return np.array(reached)
+
+
+def _carry(lows: list[float], totals: list[float]) -> FloatArray:
+    """For each row, what the rows before it allow at its start."""
+    carry, carries = np.inf, []
+    for low, total in zip(lows, totals, strict=True):
+        carries.append(carry)
+        carry = min(carry, low) + total
+    return np.array(carries)
+
+
+def _sharpened(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
+    """The same minima with the rounding of the sums taken out of every place where a limit holds."""
+    sharp = rough.copy()
+    np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
+    sharp[0] = limit[0]
+    np.minimum(limit[1:], sharp[:-1] + steps, out=sharp[1:])
+    return np.maximum(sharp, 0.0)
+
+
+# --- phases ---------------------------------------------------------------------------------------------
+
+
+_TINY = 1e-12  # relative: a ramp or a cruise that is smaller is rounding
+
+
+def at_rest(path: Path, at: float) -> Profile:
+    """No motion at all."""
+    none = np.empty(0)
+    phases = Phases(none, none, none, none, none, np.empty(0, dtype=np.int64))
+    return Profile(path=path, start_s=at, end_s=at, duration=0.0, phases=phases)
+
+
+def profile_of(
+    path: Path,
+    first: int,
+    at: float,
+    *,
+    length: FloatArray,
+    a: FloatArray,
+    cap: FloatArray,
+    speeds: FloatArray,
+) -> Profile:
+    """Phases of n consecutive pieces from ``first`` on, which begin at the distance ``at``.
+
+    ``cap`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces and what the joints
+    have. A piece speeds up to its cap or as far as its length allows, cruises, slows down; entered above
+    its cap it slows down first.
+    """
+    peak = np.minimum(np.maximum(cap, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + a * length)
+    v0, vp, v1 = np.sqrt(speeds[:-1]), np.sqrt(peak), np.sqrt(speeds[1:])
+    ends = np.stack([v0, vp, vp, v1], axis=1)
+    dist = _distances(length, a, ends)
+    total = ends[:, :-1] + ends[:, 1:]
+    dt = np.divide(2.0 * dist, total, out=np.zeros_like(dist), where=total > 0.0)
+    accel = np.divide(np.diff(ends, axis=1), dt, out=np.zeros_like(dist), where=dt > 0.0)
+    s = path.s[first : first + len(length)].copy()
+    s[0] = at
+    starts = np.stack([s, s + dist[:, 0], s + dist[:, 0] + dist[:, 1]], axis=1)
+    kept = (dt > 0.0).reshape(-1)
+    dt = dt.reshape(-1)[kept]
+    t = np.concatenate([[0.0], np.cumsum(dt)])
+    return Profile(
+        path=path,
+        start_s=at,
+        end_s=min(float(s[-1] + length[-1]), float(path.s[first + len(length)])),
+        duration=float(t[-1]),
+        phases=Phases(
+            t=t[:-1],
+            dt=dt,
+            s=starts.reshape(-1)[kept],
+            v=ends[:, :3].reshape(-1)[kept],
+            a=accel.reshape(-1)[kept],
+            piece=np.repeat(np.arange(first, first + len(length)), 3)[kept],
+        ),
+    )
+
+
+def _distances(length: FloatArray, a: FloatArray, ends: FloatArray) -> FloatArray:
+    """How far (n, 3) each piece speeds up, cruises and slows down between the speeds ``ends`` (n, 4)."""
+    v0, peak, _, v1 = ends.T
+    up = np.where(np.abs(peak - v0) > _TINY * peak, np.abs(peak - v0) * (peak + v0) / (2.0 * a), 0.0)
+    down = np.where(np.abs(peak - v1) > _TINY * peak, (peak - v1) * (peak + v1) / (2.0 * a), 0.0)
+    ramps = up + down
+    cruise = length - ramps
+    full = (cruise <= _TINY * length) & (ramps > 0.0)
+    fit = np.divide(length, ramps, out=np.ones_like(length), where=full)
+    return np.stack([up * fit, np.where(full, 0.0, cruise), down * fit], axis=1)
+
+
+_SETTLED = 1e-12  # relative difference of squared speeds that is rounding
+NEAR = 1e-9  # mm of path and relative squared speed that are rounding, not motion
+
+
+def plan(
+    path: Path,
+    *,
+    start_s: float | None = None,
+    start_v: float = 0.0,
+    feed_scale: float = 1.0,
+    rapid_scale: float = 1.0,
+    stop: bool = False,
+) -> Profile:
+    """The fastest motion from ``start_s`` (default: the path's start) at ``start_v`` that ends at rest.
+
+    It ends at the path's end, with ``stop`` as soon as braking allows; a scale of 0 stops before the first
+    feed (or rapid) piece, or at once when braking before it is no longer possible. A present speed above a
+    new, lower feed is braked down with full acceleration; limits of axes, arcs and corners hold always.
+
+    Raises MotionError when a figure makes no sense, or the speed is too high for the next corner or for
+    coming to rest on this path: the state then does not come from a plan on this path.
+    """
+    _demand_sane(start_v, feed_scale, rapid_scale)
+    at = _start(path, start_s)
+    first = int(path.piece_at(np.array([at]))[0])
+    if path.s[-1] - at <= NEAR or not len(path):
+        return _rest(path, start_v)
+    if stop:
+        return _brake(path, at, start_v, first)
+    scale = np.where(path.pieces.rapid[first:], rapid_scale, feed_scale)
+    soft = np.minimum(path.cap[first:], scale * path.pieces.rate[first:])
+    blocked = np.flatnonzero(soft == 0.0)
+    last = int(blocked[0]) if len(blocked) else len(soft)
+    run = _Run.of(path, at, first, first + last)
+    if len(blocked) and (last == 0 or not run.can_rest(start_v)):
+        return _brake(path, at, start_v, first)
+    speeds = _squared_speeds(run, soft[:last] ** 2, start_v)
+    cap = soft[:last] ** 2
+    return profile_of(path, first, at, length=run.length, a=run.a, cap=cap, speeds=speeds)
+
+
+def settled_joints(path: Path, start_s: float | None = None) -> int:
+    """The last joint of the path whose planned speed no further piece can change, -1 when there is none.
+
+    The last piece may get a sharp corner at its end or none, so the speed at its start may turn out to be
+    anything up to its limit. Joints that come out the same for 0 and for that limit are settled.
+    """
+    first = int(path.piece_at(np.array([_start(path, start_s)]))[0])
+    if len(path) - first < 2:
+        return -1
+    run = _Run.of(path, float(path.s[first]), first, len(path))
+    limit = run.hard[:-1].copy()
+    soft = np.minimum(path.cap, path.pieces.rate)[first:] ** 2
+    np.minimum(limit, soft, out=limit)
+    np.minimum(limit[1:], soft[:-1], out=limit[1:])
+    # Joints of short chords near the end may yet be allowed more.
+    known = int(np.searchsorted(path.s[first : first + len(limit)], path.s[-1] - path.reach, side="right"))
+    known = min(known, len(limit) - path.loose)
+    limit, gain = limit[:known], run.gain[: max(known - 1, 0)]
+    if known < 2:
+        return -1
+    most = reachable_backward(limit, gain)
+    limit[-1] = 0.0
+    least = reachable_backward(limit, gain)
+    same = np.flatnonzero(most - least <= _SETTLED * most)
+    return first + int(same[-1]) if len(same) else -1
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The pieces that a plan covers: n pieces, the first perhaps in part."""
+
+    length: FloatArray
+    a: FloatArray
+    hard: FloatArray  # (n+1,) squared speeds that nothing may exceed, 0 at the end
+
+    @classmethod
+    def of(cls, path: Path, at: float, first: int, last: int) -> _Run:
+        length, cap = path.pieces.length[first:last].copy(), path.cap[first:last] ** 2
+        hard = np.zeros(len(length) + 1)
+        if len(length):
+            length[0] = path.s[first + 1] - at
+            hard[:-1] = cap
+            hard[1:-1] = np.minimum(np.minimum(cap[:-1], cap[1:]), path.corner[first + 1 : last])
+            if at <= path.s[first]:
+                hard[0] = min(cap[0], path.corner[first])
+        return cls(length, path.a[first:last], hard)
+
+    @property
+    def gain(self) -> FloatArray:
+        return 2.0 * self.a * self.length
+
+    def can_rest(self, v: float) -> bool:
+        return v * v <= float(self.gain.sum()) + self.slack(v)
+
+    def slack(self, v: float) -> float:
+        """What a squared speed may be off by rounding of the distances."""
+        return float(NEAR * v * v + 2.0 * NEAR * self.a.max(initial=0.0))
+
+
+def _squared_speeds(run: _Run, soft: FloatArray, v: float) -> FloatArray:
+    """Squared speeds (n+1,) at the joints, beginning with v²."""
+    limit = run.hard.copy()
+    np.minimum(limit[:-1], soft, out=limit[:-1])
+    np.minimum(limit[1:], soft, out=limit[1:])
+    allowed = reachable_backward(limit, run.gain)
+    slack = run.slack(v)
+    if v * v <= allowed[0] + slack:
+        allowed[0] = v * v
+        return reachable_forward(allowed, run.gain)
+    return _braked_into(run, allowed, v * v, slack)
+
+
+def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) -> FloatArray:
+    """Full braking from a speed that the new feeds do not allow, until they allow it; then on as usual."""
+    braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
+    fits = np.flatnonzero(braked <= allowed + slack)
+    fits = fits[fits > 0]
+    if not len(fits):
+        raise MotionError(
+            f"A speed of {math.sqrt(square):.3f} mm/s cannot come to rest within the "
+            f"{run.length.sum():.4f} mm that are left; plan from a state of this path."
+        )
+    k = int(fits[0])
+    _demand_passable(braked[:k], run.hard[:k], slack)
+    allowed[k] = min(allowed[k], braked[k - 1] + run.gain[k - 1])
+    tail = reachable_forward(allowed[k:], run.gain[k:])
+    return np.concatenate([braked[:k], tail])
+
+
+def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None:
+    over = braked > hard + slack
+    if over.any():
+        i = int(over.argmax())
+        raise MotionError(
+            f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for what follows, which allows "
+            f"{math.sqrt(hard[i]):.3f} mm/s; plan from a state of this path."
+        )
+
+
+def _brake(path: Path, at: float, v: float, first: int) -> Profile:
+    """To rest with full acceleration along the path; looks only as far ahead as it must."""
+    last = first
+    while True:
+        last = min(len(path), last + max(64, last - first))
+        run = _Run.of(path, at, first, last)
+        if run.can_rest(v) or last == len(path):
+            break
+    if not run.can_rest(v):
+        _braked_into(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
+    braked = v * v - np.concatenate([[0.0], np.cumsum(run.gain)])
+    k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
+    if v == 0.0:
+        return at_rest(path, at)
+    # However slow: near the axis of a plane C turns through degrees in a thousandth of a millimetre.
+    k = max(k, 1)
+    _demand_passable(braked[:k], run.hard[:k], run.slack(v))
+    length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)
+    length[-1] = min(length[-1], speeds[-2] / (2.0 * run.a[k - 1]))
+    speeds[-1] = 0.0
+    return profile_of(path, first, at, length=length, a=run.a[:k], cap=np.zeros(k), speeds=speeds)
+
+
+def _rest(path: Path, v: float) -> Profile:
+    if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
+        raise MotionError(
+            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan before it."
+        )
+    return at_rest(path, float(path.s[-1]))
+
+
+def _start(path: Path, start_s: float | None) -> float:
+    at = float(path.s[0]) if start_s is None else start_s
+    if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
+        raise MotionError(f"Distance {at} is not on the path from {path.s[0]:.6f} to {path.s[-1]:.6f} mm.")
+    return min(max(at, float(path.s[0])), float(path.s[-1]))
+
+
+def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:
+    if not (math.isfinite(start_v) and start_v >= 0.0):
+        raise MotionError(f"The present speed is {start_v}; it must be zero or above.")
+    for name, scale in (("feed", feed_scale), ("rapid", rapid_scale)):
+        if not 0.0 <= scale <= OVERRIDE_MAX:
+            raise MotionError(f"The {name} override is {scale}; it must lie between 0 and {OVERRIDE_MAX}.")

@@ -1,0 +1,235 @@
+"""A planned motion: path distance over time, in phases of constant acceleration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from core.motion.axis_limits import BoolArray, FloatArray, IntArray
+from core.motion.motion_path import Path
+
+# --- setpoints ------------------------------------------------------------------------------------------
+
+
+SegmentArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+
+PART = 0.002  # s, longest part of an arc
+ARC_ERROR = 2.5e-4  # mm by which a part may leave the arc between its ends
+BRIEF = 1e-6  # s; in shorter parts differences of positions would be rounding, and the arc is its tangent
+PART_ANGLE = 0.25  # rad, longest part of an arc
+
+
+class Phases(NamedTuple):
+    """k phases of constant acceleration along a path, each within one piece; arrays (k,)."""
+
+    t: FloatArray  # start, s
+    dt: FloatArray  # length, s
+    s: FloatArray  # distance along the path at the start, mm
+    v: FloatArray  # speed at the start, mm/s
+    a: FloatArray  # mm/s²
+    piece: IntArray
+
+    def pick(self, part: IntArray | BoolArray | slice) -> Phases:
+        """Some of the phases."""
+        return Phases(
+            t=self.t[part],
+            dt=self.dt[part],
+            s=self.s[part],
+            v=self.v[part],
+            a=self.a[part],
+            piece=self.piece[part],
+        )
+
+
+def axis_segments(path: Path, phases: Phases, t_origin: float) -> SegmentArrays:
+    """Setpoint pieces (t, dt, p, v, a) of k phases; times are those of the phases plus ``t_origin``.
+
+    Lines give one piece each, exact. An arc is cut into equal times of at most 2 ms. Their ends lie on the
+    arc, and a = 2·(P1 - P0 - V0·h)/h² joins them, so positions are continuous. With j = v/R·hypot(v²/R, 3a)
+    as the jerk of the true motion the position between the ends is off by at most j·h³·2/81 and the velocity
+    jumps by at most j·h²/6 at a joint; h keeps the first below 0.25 µm, and the second then stays far below
+    amax · interval. The part that ends at rest ends with velocity 0 and takes its jump at its start.
+    """
+    parts = _part_counts(path, phases)
+    owner = np.repeat(np.arange(len(parts)), parts)
+    nth = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+    h = (phases.dt / np.maximum(parts, 1))[owner]
+    p, v, a = _states(path, phases.pick(owner), nth * h)
+    arc = np.flatnonzero(path.pieces.curvature[phases.piece[owner]] != 0.0) if len(path) else owner
+    if len(arc):
+        v[arc], a[arc] = _joined_on_arc(path, phases.pick(owner[arc]), nth[arc], h[arc], (p[arc], v[arc]))
+    return t_origin + phases.t[owner] + nth * h, h, p, v, a
+
+
+def _joined_on_arc(
+    path: Path, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Velocity and acceleration that lead each part from its start on the arc to its end on the arc."""
+    end = (nth + 1) * h
+    p1, _, _ = _states(path, phases, end)
+    resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
+    p0, v0 = begin
+    short = (h < BRIEF)[:, None]
+    chord, span = p1 - p0, np.maximum(h, BRIEF)[:, None]
+    v = np.where(resting & ~short, 2.0 * chord / span, v0)
+    joining = np.where(resting, -v / span, 2.0 * (chord - v * span) / span**2)
+    return v, np.where(short, _curved(path, phases, v0), joining)
+
+
+def _curved(path: Path, phases: Phases, v: FloatArray) -> FloatArray:
+    """The true acceleration (k, 3) at the start of arc phases, where the velocity is ``v`` (k, 3)."""
+    pieces = path.pieces[phases.piece]
+    tangent = pieces.tangent(np.clip(phases.s - path.s[phases.piece], 0.0, pieces.length))
+    curved: FloatArray = tangent * phases.a[:, None]
+    turning = pieces.curvature * np.hypot(v[:, 0], v[:, 1])
+    curved[:, 0] += turning * v[:, 1]
+    curved[:, 1] -= turning * v[:, 0]
+    return curved
+
+
+def _part_counts(path: Path, phases: Phases) -> IntArray:
+    counts = np.ones(len(phases.t), dtype=np.int64)
+    if not len(path):
+        return counts
+    bend = np.abs(path.pieces.curvature[phases.piece])
+    arc = np.flatnonzero(bend)
+    bend, (_, dt, _, v, a, _) = bend[arc], phases.pick(arc)
+    fastest = np.maximum(v, v + a * dt)
+    jerk = fastest * bend * np.hypot(fastest**2 * bend, 3.0 * a)
+    longest = np.minimum(PART, PART_ANGLE / (fastest * bend))
+    longest = np.minimum(longest, np.cbrt(ARC_ERROR * 40.5 / jerk))
+    counts[arc] = np.maximum(np.ceil(dt / longest * (1.0 - 1e-12)), 1.0).astype(np.int64)
+    return counts
+
+
+def _states(path: Path, phases: Phases, tau: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Axis position, velocity, tangential acceleration (k, axes), ``tau`` (k,) after the start of phases."""
+    pieces = path.pieces[phases.piece]
+    speed = np.maximum(phases.v + phases.a * tau, 0.0)
+    local = phases.s - path.s[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
+    local = np.clip(local, 0.0, pieces.length)
+    tangent = pieces.tangent(local)
+    return pieces.point(local), tangent * speed[:, None], tangent * phases.a[:, None]
+
+
+NEAR = 1e-9  # mm that are rounding, not distance
+BRIEF_TIME = 1e-12  # s that are rounding, not time
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Motion along ``path`` from ``start_s`` at t = 0 to ``end_s`` at ``duration``.
+
+    A plan ends at rest; only a part cut off for a longer plan (``until``) ends in motion. Without phases it
+    stands at ``end_s``. Times in s from the start of the profile.
+    """
+
+    path: Path
+    start_s: float
+    end_s: float
+    duration: float
+    phases: Phases
+
+    def __len__(self) -> int:
+        return len(self.phases.t)
+
+    def at(self, t: FloatArray | float) -> tuple[FloatArray, FloatArray]:
+        """Distance and speed at the times ``t`` (m,); before the start as at 0, after the end at rest."""
+        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        if not len(self):
+            return np.full(times.shape, self.end_s), np.zeros(times.shape)
+        k = self._phase(times)
+        _, dt, s0, v0, a, _ = self.phases.pick(k)
+        tau = np.clip(times - self.phases.t[k], 0.0, dt)
+        ends = np.append(self.phases.s[1:], self.end_s)[k]
+        s = np.clip(s0 + (v0 + 0.5 * a * tau) * tau, s0, ends)
+        done = times >= self.duration
+        return np.where(done, self.end_s, s), np.where(done, 0.0, np.maximum(v0 + a * tau, 0.0))
+
+    @property
+    def end_v(self) -> float:
+        """Speed at the end, mm/s: 0 for a plan, the speed to go on with for a part of one."""
+        if not len(self):
+            return 0.0
+        last = self.phases.pick(slice(-1, None))
+        return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
+
+    def position(self, t: FloatArray | float) -> FloatArray:
+        """Machine position (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
+        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        s, _ = self.at(times)
+        if not len(self):
+            return self.path.point(s)
+        return self.path.point(s, self.phases.piece[self._phase(times)])
+
+    def block_at(self, t: FloatArray | float) -> IntArray:
+        """Number of the block that is executed at the times ``t`` (m,); 0 where nothing moves at all."""
+        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        if not len(self):
+            return np.zeros(times.shape, dtype=np.int64)
+        owner: IntArray = self.path.pieces.block[self.phases.piece[self._phase(times)]]
+        return owner
+
+    def block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Numbers of all blocks of the path and when each starts and ends, s; endless where it never does.
+
+        Blocks behind the start have 0 for both; a block without length ends where it starts.
+        """
+        joints, first = self._joint_times(), self.path.first
+        return self.path.blocks, joints[first[:-1]], joints[first[1:]]
+
+    def time_at(self, s: FloatArray) -> FloatArray:
+        """When the distances ``s`` (m,) are reached; 0 behind the start, endless beyond the end."""
+        beyond = s > self.end_s + NEAR
+        if not len(self):
+            return np.where(beyond, np.inf, 0.0)
+        k = np.clip(np.searchsorted(self.phases.s, s, side="right") - 1, 0, len(self) - 1)
+        t0, dt, s0, v0, a, _ = self.phases.pick(k)
+        ahead = np.maximum(s - s0, 0.0)
+        total = v0 + np.sqrt(np.maximum(v0**2 + 2.0 * a * ahead, 0.0))
+        tau = np.divide(2.0 * ahead, total, out=np.zeros_like(ahead), where=total > 0.0)
+        times = np.where(s >= self.end_s, self.duration, t0 + np.minimum(tau, dt))
+        return np.where(beyond, np.inf, times)
+
+    def segments(self, t_from: float, t_to: float, t_origin: float = 0.0) -> SegmentArrays:
+        """Arrays (t, dt, p, v, a) of setpoint pieces for a window: the fields of ``core.ports.Segments``.
+
+        One piece of constant acceleration per phase on lines; on arcs parts of 2 ms at most whose ends lie
+        on the arc, see ``axis_segments``. ``t`` is the time of the profile plus ``t_origin``. Cut
+        at ``t_to`` it ends in motion; reaching the end of the profile it ends at rest.
+        """
+        return axis_segments(self.path, self._window(t_from, t_to), t_origin)
+
+    def until(self, s: float) -> Profile:
+        """The part up to the distance ``s``, which must be a joint of the path; it may end in motion."""
+        count = int(np.searchsorted(self.phases.s, s, side="left"))
+        phases = self.phases.pick(slice(0, count))
+        duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
+        return Profile(path=self.path, start_s=self.start_s, end_s=s, duration=duration, phases=phases)
+
+    def _joint_times(self) -> FloatArray:
+        """``time_at`` of all joints, by their pieces: near a stop a distance says little about a time."""
+        joints = np.arange(len(self.path) + 1)
+        times = np.append(self.phases.t, self.duration)[np.searchsorted(self.phases.piece, joints)]
+        return np.where(self.path.s > self.end_s + NEAR, np.inf, times)
+
+    def _window(self, t_from: float, t_to: float) -> Phases:
+        lo, hi = max(t_from, 0.0), min(t_to, self.duration)
+        if not len(self) or hi <= lo:
+            return self.phases.pick(slice(0, 0))
+        i = int(np.searchsorted(self.phases.t, lo, side="right")) - 1
+        j = int(np.searchsorted(self.phases.t, hi, side="left"))
+        part = self.phases.pick(np.arange(i, j))  # a copy, as a slice would not be
+        part.dt[-1] = min(part.dt[-1], hi - part.t[-1])
+        skip = lo - part.t[0]
+        part.s[0] += (part.v[0] + 0.5 * part.a[0] * skip) * skip
+        part.v[0] += part.a[0] * skip
+        part.t[0] += skip
+        part.dt[0] -= skip
+        return part.pick(part.dt > BRIEF_TIME)
+
+    def _phase(self, times: FloatArray) -> IntArray:
+        found: IntArray = np.searchsorted(self.phases.t, times, side="right") - 1
+        return np.clip(found, 0, len(self) - 1)

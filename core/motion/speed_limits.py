@@ -1,0 +1,229 @@
+"""Speed and acceleration limits of pieces and of the corners between them.
+
+The formulas and their reasons: docs/decisions/0003-time-law.md. Nothing here depends on an override, so that
+a plan made from a moving state meets the same limits as the plan it replaces.
+"""
+
+from __future__ import annotations
+
+from functools import reduce
+from typing import NamedTuple
+
+import numpy as np
+
+from core.motion.axis_limits import CENTRIPETAL_SHARE, OVERRIDE_MAX, FloatArray, IntArray, MotionLimits
+from core.motion.path_pieces import Pieces
+
+# --- chords over an interval ----------------------------------------------------------------------------
+
+
+_HALVINGS = 6  # slower speeds at which the same joint is looked at too
+
+
+class Asked(NamedTuple):
+    """Of k joints: squared speed limit (k,), mm²/s², and acceleration (k, axes) that it takes, mm/s²."""
+
+    joint: IntArray
+    squared: FloatArray
+    acceleration: FloatArray
+
+
+def asked_over_intervals(
+    pieces: Pieces, alone: Asked, fastest: FloatArray, limits: MotionLimits, *, more: bool
+) -> Asked:
+    """What the path asks round the joints of ``alone``, which may be run at ``fastest`` (k,) mm/s.
+
+    ``alone`` tells their limits if each stood for itself; no joint gets less. Joint i lies between the pieces
+    i and i+1. The path is taken to go straight on at both ends; but where ``more`` pieces will follow, joints
+    within an interval of the end stand for themselves and take all they may, so that what a plan builds on
+    only grows with the path.
+    """
+    if not len(alone.joint):
+        return alone
+    share = CENTRIPETAL_SHARE * limits.accelerations
+    s = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    at = s[alone.joint + 1]
+    mean = 0.5 * (pieces.length[alone.joint] + pieces.length[alone.joint + 1])
+    speeds = fastest / 2.0 ** np.arange(_HALVINGS)[:, None]
+    asked = np.zeros((_HALVINGS, len(at), len(share)))
+    for i, speed in enumerate(speeds):
+        asked[i] = _second_difference(pieces, s, at, speed * limits.interval) / limits.interval**2
+    asked[speeds * limits.interval < mean] = 0.0  # one joint an interval: its own limit sees to it
+    ratio = (asked / share).max(axis=2)
+    over = ratio > 1.0
+    squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
+    if more:
+        squared[at + fastest * limits.interval > s[-1]] = 0.0
+    better = np.maximum(squared, alone.squared)
+    taken = np.where((speeds**2 <= better)[:, :, None], asked, 0.0).max(axis=0, initial=0.0)
+    taken[squared < fastest**2] = share
+    kept = (squared <= alone.squared) & (squared > 0.0)
+    taken[kept] = alone.acceleration[kept]
+    return Asked(alone.joint, better, taken)
+
+
+def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
+    """|P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
+    before, here, after = (_points(pieces, s, where) for where in (at - reach, at, at + reach))
+    difference: FloatArray = np.abs(after - 2.0 * here + before)
+    return difference
+
+
+def _points(pieces: Pieces, s: FloatArray, where: FloatArray) -> FloatArray:
+    index = np.clip(np.searchsorted(s, where, side="right") - 1, 0, len(pieces) - 1)
+    return pieces[index].point(where - s[index])
+
+
+_MUCH = 0.2  # of amax: joints of chords that ask less are left as they are
+
+
+def piece_limits(
+    pieces: Pieces, limits: MotionLimits, *, more: bool
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Speed cap (n,) and acceleration (n,) of pieces, squared speed limit (n+1,) of their joints.
+
+    ``more`` says that pieces will follow. The joints at both ends are endless.
+    """
+    cap = speed_caps(pieces, limits)
+    speeds = expected_speeds(pieces, cap)
+    corner = np.full(len(pieces) + 1, np.inf)
+    if not len(pieces):
+        return cap, cap, corner
+    turns, along = corner_turns(pieces), accelerations(pieces, speeds, limits)
+    steps = step_caps(turns, np.maximum(along[:-1], along[1:]), limits)
+    single = np.minimum(steps, curve_caps(pieces, turns, limits))
+    asked = _asked(pieces, speeds, turns, single, limits, more=more)
+    corner[1:-1] = single
+    # A step of the velocity at one joint stays within amax·interval: the queue of the drives takes no more.
+    corner[1:-1][asked.joint] = np.minimum(asked.squared, steps[asked.joint])
+    spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
+    return cap, np.minimum(along, spare), corner
+
+
+def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
+    """Speed (n,) that axes and centripetal acceleration allow on each piece, mm/s."""
+    caps = _least_ratio(limits.speeds, pieces.direction)
+    arc = pieces.curvature != 0.0
+    centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
+    caps[arc] = np.minimum(caps[arc], np.minimum(limits.plane_speed, centripetal))
+    return caps
+
+
+def expected_speeds(pieces: Pieces, caps: FloatArray) -> FloatArray:
+    """The fastest (n,) that a piece will be run with any override, mm/s; acceleration is laid out for it."""
+    return np.minimum(caps, OVERRIDE_MAX * pieces.rate)
+
+
+def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Acceleration (n,) along each piece, mm/s²; on arcs what the vector sum leaves at ``speeds``."""
+    along = _least_ratio(limits.accelerations, pieces.direction)
+    arc = pieces.curvature != 0.0
+    centripetal = speeds[arc] ** 2 * np.abs(pieces.curvature[arc])
+    along[arc] = np.minimum(along[arc], np.sqrt(limits.plane_acceleration**2 - centripetal**2))
+    return along
+
+
+def _least_ratio(limit: FloatArray, direction: FloatArray) -> FloatArray:
+    """Smallest of limit / |direction| over the axes; endless for an axis that does not move."""
+    share = np.abs(direction)
+    ratios = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0)
+    return _least(ratios)
+
+
+def _least(table: FloatArray) -> FloatArray:
+    """Least (n,) of each row; three long columns are compared faster than a million short rows."""
+    return reduce(np.minimum, table.T)
+
+
+def corner_turns(pieces: Pieces) -> FloatArray:
+    """|change of direction| per axis (n-1, axes) at the joints between pieces; below 1e-9 it is none."""
+    leaving = pieces.tangent(pieces.length)[:-1]
+    entering = pieces.tangent(np.zeros(len(pieces)))[1:]
+    turns: FloatArray = np.abs(entering - leaving)
+    turns[turns < 1e-9] = 0.0
+    return turns
+
+
+def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Square of the speed (n-1,) at which no axis is asked for more than it has over one interval, mm²/s².
+
+    A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake into it and speed up behind:
+    (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints half an interval
+    off the corner show an eighth more at most. Endless where nothing turns.
+    """
+    sharp = np.full(turns.shape, np.inf)
+    np.divide(limits.accelerations * limits.interval, turns, out=sharp, where=turns > 0.0)
+    caps: FloatArray = np.maximum(_least(sharp) - 0.5 * limits.interval * along, 0.0) ** 2
+    return caps
+
+
+def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
+    """Square of the speed (n-1,) of joints near others, each standing for itself, mm²/s².
+
+    Short chords: v²·|Δu|/ℓ ≤ share·amax, ℓ the neighbours' mean length, which for chords of a circle is its
+    centripetal limit whatever the length of the chords. A second corner within the interval: v²·|Δu|/ℓ ≤
+    amax, ℓ the shorter neighbour; two such take (2 - ℓ/vT)·ℓ/vT of amax together, never more than all of it.
+    """
+    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    share = limits.accelerations * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
+    curved = np.full(turns.shape, np.inf)
+    np.divide(share, turns, out=curved, where=turns > 0.0)
+    return _least(curved)
+
+
+def _asked(
+    pieces: Pieces,
+    speeds: FloatArray,
+    turns: FloatArray,
+    single: FloatArray,
+    limits: MotionLimits,
+    *,
+    more: bool,
+) -> Asked:
+    """What short chords ask over an interval, of the joints that would be slow or ask much by themselves."""
+    fastest = np.minimum(speeds[:-1], speeds[1:])
+    mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
+    alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
+    much = (alone > _MUCH * limits.accelerations).any(axis=1) | (single < fastest**2)
+    joints = np.flatnonzero(much & (mean < fastest * limits.interval))
+    given = Asked(joints, single[joints], alone[joints])
+    return asked_over_intervals(pieces, given, fastest[joints], limits, more=more)
+
+
+def spare_for_chords(
+    pieces: Pieces,
+    speeds: FloatArray,
+    turns: FloatArray,
+    single: FloatArray,
+    limits: MotionLimits,
+    asked: Asked,
+    *,
+    more: bool,
+) -> FloatArray:
+    """Acceleration (n,) that chords shorter than one interval may use besides following their curve.
+
+    Chords passed within one setpoint interval are a curve to the machine: v²·|Δu|/ℓ of each axis is spoken
+    for, or what the interval as a whole asks (``Asked``), and (amax - that)/|u| remains. At least
+    a fifth of amax does, by the limit on corners; where ``more`` pieces will follow, the last one gets that,
+    so that no later corner can take what a plan has built on. Endless for longer lines and for arcs.
+    """
+    amax = limits.accelerations
+    spare = np.full(len(pieces), np.inf)
+    short = (pieces.length < speeds * limits.interval) & (pieces.curvature == 0.0)
+    if not short.any():
+        return spare
+    bend = turns / (0.5 * (pieces.length[:-1] + pieces.length[1:]))[:, None]
+    before = bend * np.minimum(speeds[1:] ** 2, single)[:, None]
+    after = bend * np.minimum(speeds[:-1] ** 2, single)[:, None]
+    before[asked.joint] = after[asked.joint] = asked.acceleration
+    taken = np.zeros(pieces.direction.shape)
+    taken[1:] = before
+    np.maximum(taken[:-1], after, out=taken[:-1])
+    if more:
+        taken[-1] = CENTRIPETAL_SHARE * amax
+    left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)
+    share = np.abs(pieces.direction[short])
+    ratio = np.divide(left, share, out=np.full(share.shape, np.inf), where=share > 0.0)
+    spare[short] = _least(ratio)
+    return spare

@@ -1,0 +1,98 @@
+"""Soft limits: a program that would leave the travel of a slide is refused before anything moves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.language.diagnostics import Diagnostic, Severity
+from core.machine.model import Axis, Machine
+
+MM_PER_INCH = 25.4
+
+# The step of the control: a word on the limit itself must not fail by the noise of an inch in binary.
+TOLERANCE = 1e-6
+
+
+def travel_findings(blocks: Sequence[Block], machine: Machine) -> list[Diagnostic]:
+    """An error for each block whose machine positions leave the travel; curved ways all along."""
+    limits = [(axis, *_reachable(axis)) for axis in machine.axes]
+    return [
+        _beyond(machine, block, axis, low, high)
+        for block in _outside(blocks, limits)
+        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True)
+        if low < least or high > most
+    ]
+
+
+def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
+    """Blocks that may leave the travel: straight moves of a lathe, which are most, are seen by their ends."""
+    (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
+    endless = all(least == -math.inf for _, least, _ in limits[2:])
+    if endless and isinstance(blocks, Series):
+        x, z = blocks.x + blocks.pattern.offset_x, blocks.z + blocks.pattern.offset_z
+        inside = (x_least <= x) & (x <= x_most) & (z_least <= z) & (z <= z_most)
+        yield from (blocks[at] for at in (~inside).nonzero()[0].tolist())
+        return
+    for block in blocks:
+        straight = block.kind is Kind.FEED or block.kind is Kind.RAPID
+        if not (straight and endless and block.travel is None):
+            yield block
+            continue
+        mx, mz = block.mx, block.mz
+        if not (x_least <= mx <= x_most and z_least <= mz <= z_most):
+            yield block
+
+
+def _reachable(axis: Axis) -> tuple[float, float]:
+    if axis.travel is None:
+        return float("-inf"), float("inf")
+    return axis.travel[0] - TOLERANCE, axis.travel[1] + TOLERANCE
+
+
+def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
+    least, greatest = _reachable(axis)
+    at = low if low < least else high
+    limit = least if low < least else greatest
+    scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
+    if axis.rotary:
+        scale, unit, places = 1.0, "degrees", 3
+    radius = " (X as a radius)" if machine.kind == "lathe" else ""
+    over = abs(at - limit) * scale
+    return Diagnostic(
+        line=block.line,
+        column=1,
+        severity=Severity.ERROR,
+        code="soft-limit",
+        message=(
+            f"{axis.name} would go to {at * scale:.{places}f} {unit} from home{radius}, "
+            f"{over:.{places}f} {unit} beyond the travel limit of {limit * scale:.{places}f}"
+        ),
+        hint=_hint(machine, block, axis),
+    )
+
+
+def _hint(machine: Machine, block: Block, axis: Axis) -> str:
+    if machine.kind != "lathe" or axis.rotary:
+        return f"check the {axis.name} word and the shifts in force"
+    return f"check the {axis.name} word, the offset of T{block.modal.tool} and any G10 or G92"
+
+
+# --- C as the spindle -----------------------------------------------------------------------------------
+
+
+def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
+    """An error for each block that moves C while the spindle, which is this machine's C, turns."""
+    if not machine.spindle_is_c or isinstance(blocks, Series):  # which moves X and Z alone
+        return
+    for block in blocks:
+        if block.c != block.c0 and block.modal.spindle:
+            yield Diagnostic(
+                line=block.line,
+                column=1,
+                severity=Severity.ERROR,
+                code="c-is-spindle",
+                message="C moves while the spindle turns, and on this machine the spindle itself is C",
+                hint="stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo",
+            )

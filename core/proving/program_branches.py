@@ -1,0 +1,359 @@
+"""Every way through a program: at M95 and M97 both states of the input are proved, before anything moves.
+
+The first way is that of the inputs as they are given. At each conditional call a copy of the pass waits to be
+sent the other way; it ends where it comes to a line in a state in which another way has been there before,
+because all that follows has been gone through then. What is not gone through is told by name.
+"""
+
+from __future__ import annotations
+
+import heapq
+from array import array
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import count
+from typing import NamedTuple
+
+from core.interpreter.actions import AskInput
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
+from core.interpreter.machine_requirements import first_needs
+from core.interpreter.omniturn.conditional_calls import Branching
+from core.interpreter.omniturn.omniturn_program import Program
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.program_size import terminal
+from core.language.diagnostics import Diagnostic, Severity
+from core.machine.model import Machine
+from core.proving.block_delete import in_order
+from core.proving.cutting_checks import CuttingChecks
+from core.proving.program_timeline import MotionSpan, RestSpan, RestState, Timeline
+from core.proving.proof_pass import MAX_FINDINGS, ProofPass
+from core.proving.proof_report import Range, Report, Ways
+from core.proving.spindle_forecast import SETTLING
+
+# --- cycle time of all ways -----------------------------------------------------------------------------
+
+
+class Fork(NamedTuple):
+    """Where another way leaves one: blocks made before, the time there, and the other."""
+
+    blocks: int
+    t: float
+    other: Branch
+
+
+@dataclass(slots=True, eq=False)
+class Branch:
+    """A way in time, s from the start of the program. ``ends``: of its blocks from ``first`` + 1 on."""
+
+    first: int = 0
+    start: float = 0.0
+    duration: float = 0.0  # when it is over, or has come to where another way has been
+    ends: array[float] = field(default_factory=lambda: array("d"))
+    forks: list[Fork] = field(default_factory=list)
+    merged: tuple[Branch, int] | None = None  # the other way, and the blocks made there before
+    gone: bool = False
+    failed: bool = False
+
+    def at(self, blocks: int) -> float:
+        """When so many blocks have been made."""
+        made = blocks - self.first
+        if made <= 0 or not self.ends:
+            return self.start
+        return self.ends[min(made, len(self.ends)) - 1]
+
+
+_Node = tuple[Branch, int]
+"""A way right before one of its forks; behind the last one, up to its end."""
+
+
+def cycle_range(first: Branch) -> Range:
+    """Least and greatest time from the start of the program to its end, of all ways that were gone."""
+    known: dict[tuple[int, int], Range] = {}
+    todo: list[_Node] = [(first, 0)]
+    while todo:
+        way, at = node = todo[-1]
+        missing = [n for n, _ in _next(node) if (id(n[0]), n[1]) not in known]
+        if missing:
+            todo += missing
+            continue
+        todo.pop()
+        ends = [(t + known[id(n[0]), n[1]][0], t + known[id(n[0]), n[1]][1]) for n, t in _next(node)]
+        if at == len(way.forks) and way.merged is None:
+            ends = [(way.duration - _time(node),) * 2]
+        known[id(way), at] = (min(low for low, _ in ends), max(high for _, high in ends))
+    low, high = known[id(first), 0]
+    before = _time((first, 0))
+    return before + low, before + high
+
+
+def _time(node: _Node) -> float:
+    way, at = node
+    if at < len(way.forks):
+        return way.forks[at].t
+    return way.forks[-1].t if way.forks else way.start
+
+
+def _next(node: _Node) -> list[tuple[_Node, float]]:
+    """What comes from there, each with the seconds to it."""
+    way, at = node
+    if at < len(way.forks):
+        here, other = way.forks[at].t, way.forks[at].other
+        follows: list[tuple[_Node, float]] = [((way, at + 1), _time((way, at + 1)) - here)]
+        if other.gone and not other.failed:
+            follows.append(((other, 0), _time((other, 0)) - other.start))
+        return follows
+    if way.merged is None:
+        return []
+    there, blocks = way.merged
+    fork = next((k for k, each in enumerate(there.forks) if each.blocks >= blocks), len(there.forks))
+    node = there, fork
+    return [(node, way.duration - _time((way, at)) + _time(node) - there.at(blocks))]
+
+
+# --- uncalled subroutines -------------------------------------------------------------------------------
+
+
+def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
+    """A note for each subroutine that no line of the main program leads to."""
+    program = reading.program
+    if program is None or not program.structure.subroutines:
+        return
+    reached = _reached(program)
+    for number, at in sorted(program.structure.subroutines.items()):
+        if number not in reached:
+            text = f"Subroutine {number} is called from nowhere, so it was not proved."
+            hint = f"Call it with M98P{number}, or take it out."
+            yield Diagnostic(
+                at + 1, 0, Severity.NOTE, "unreached-branch", text, hint, check="unreached-branch"
+            )
+
+
+def _reached(program: Program) -> set[int]:
+    structure = program.structure
+    calls: dict[int, set[int]] = {}
+    for line, number in program.calls:
+        calls.setdefault(_home(program, line - 1), set()).add(number)
+    reached: set[int] = set()
+    todo = [0]
+    while todo:
+        for number in calls.get(todo.pop(), ()):
+            if number in structure.subroutines and number not in reached:
+                reached.add(number)
+                todo.append(number)
+    return reached
+
+
+def _home(program: Program, at: int) -> int:
+    """The subroutine in which the line with this index stands; 0: the main program."""
+    structure = program.structure
+    if at < structure.main_end:
+        return 0
+    starts = [(start, number) for number, start in structure.subroutines.items() if start <= at]
+    return max(starts)[1] if starts else 0
+
+
+MOST_WAYS = 400
+MOST_WORK = 200_000
+"""Blocks of all ways but the first together; three times those of the first where that is more. A motion from
+rest to rest is as much work as a hundred blocks."""
+
+_STRETCH = 100
+
+_MOST_WAITING = 2000
+_MOST_STATES = 500_000
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One input at one line."""
+
+    line: int
+    terminal: str
+    on: bool
+
+    @property
+    def words(self) -> str:
+        """As an operator reads it."""
+        name = "7" if self.terminal == "TB2-9" else self.terminal
+        return f"input {name} {'on' if self.on else 'off'} at line {self.line}"
+
+
+@dataclass(slots=True)
+class _Going:
+    """A way that is gone, or waits to be."""
+
+    way: Branch
+    source: Branching | None
+    choices: tuple[Choice, ...] = ()
+    standing: RestState | None = None  # None: nothing comes there, because the way before it has errors
+    checks: CuttingChecks | None = None
+    asked: list[_Going | None] = field(default_factory=list)  # in the order of its questions
+    answered: int = 0
+
+
+def _with(choices: Sequence[Choice], message: str) -> str:
+    """A finding and its way: the last two of its inputs, which are what an operator looks at."""
+    if len(choices) == 1:
+        return f"With {choices[0].words}: {message}"
+    return f"With {choices[-2].words} and {choices[-1].words}: {message}"
+
+
+class Branches:
+    """Goes all ways of one program; the first of them in ``gone``, the others in ``proved``."""
+
+    def __init__(self, reading: ReadProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
+        self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
+        self.root = reading.branching(setup, self)
+        self._now = _Going(Branch(), self.root)
+        self._known: dict[Hashable, tuple[Branch, int]] = {}
+        self._waiting: list[tuple[tuple[int, ...], _Going]] = []
+        self._seen: Counter[tuple[int, bool]] = Counter()  # how often the other way of a line was kept
+        self._covered: set[tuple[int, bool]] = set()  # lines, and the states of their inputs that were proved
+        self._turn = count()
+        self._left = 0
+        self._gone = 1
+        self._found: list[Diagnostic] = []
+        self._told: set[tuple[int, str]] = set()
+        self._tools: set[int] = set()
+        self._missing: set[int] = set()
+        self._work = 0
+
+    # what the interpreter asks
+
+    def known(self, way: Branching) -> bool:
+        """Whether another way has been in this state."""
+        key = way.key
+        found = self._known.get(key)
+        if found is not None and found[0] is not self._now.way:
+            self._now.way.merged = found
+            return True
+        if len(self._known) < _MOST_STATES:
+            self._known[key] = self._now.way, way.count
+        return False
+
+    def asked(self, way: Branching, made: Statement, takes: bool) -> None:
+        """Keep a copy for the other way."""
+        on = takes == (made.flow == "M95" or made.value("C") == 1)
+        self._covered.add((made.line, on))
+        if way.stopped:
+            return
+        seen = self._seen[made.line, not on]
+        if len(self._waiting) >= _MOST_WAITING and seen:
+            self._left += 1
+            self._now.asked.append(None)
+            return
+        self._seen[made.line, not on] += 1
+        choice = Choice(made.line, terminal(made), not on)
+        other = way.other(made, takes)
+        going = _Going(Branch(first=way.count), other, (*self._now.choices, choice), asked=[None])
+        self._now.asked.append(going)
+        rank = (int(other.unlikely), seen, len(going.choices), next(self._turn))
+        heapq.heappush(self._waiting, (rank, going))
+
+    # what proving asks
+
+    def gone(self, one: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
+        """The stretches of a way, which is gone while they are taken."""
+        if self.root is None:
+            yield from timeline.spans()
+            return
+        now = self._now
+        for stretch in timeline.spans():
+            yield stretch
+            if isinstance(stretch, MotionSpan):
+                shift = stretch.t0 - stretch.chunk.t
+                self._work += _STRETCH + len(stretch.chunk.t1)
+                now.way.ends.extend((stretch.chunk.t1 + shift).tolist())
+            elif stretch.block is not None:
+                now.way.ends.append(stretch.t1)
+                if isinstance(stretch.block.action, AskInput):
+                    self._stands(now, one, timeline)
+        now.way.duration = timeline.t
+        if now.way.merged is not None and one.last is one.last_move:
+            now.way.duration -= 0.0 if self._ideal else SETTLING  # the motion would have gone on
+        now.way.failed = timeline.errors
+
+    def _stands(self, now: _Going, one: ProofPass, timeline: Timeline) -> None:
+        """The way has come to its next question: from here the copy goes on."""
+        going = now.asked[now.answered] if now.answered < len(now.asked) else None
+        now.answered += 1
+        if going is not None:
+            going.standing, going.checks = timeline.standing, one.checks.twin()
+            going.way.start = timeline.t
+            now.way.forks.append(Fork(going.way.first, timeline.t, going.way))
+
+    def proved(self, report: Report, progress: Callable[[float], None] | None) -> Report:
+        """The report of the first way, with what was found in all the others."""
+        found = [*report.diagnostics, *uncalled(self._reading)]
+        if self.root is None:
+            return replace(report, diagnostics=in_order(found), ways=Ways(cycle=(report.times.cycle,) * 2))
+        self._told = {(each.line, each.code) for each in report.diagnostics}
+        first = self._now.way
+        needs = report.needs
+        most, self._work = max(MOST_WORK, 3 * self._work), 0
+        while self._waiting and self._gone < MOST_WAYS and self._work < most:
+            _, going = heapq.heappop(self._waiting)
+            if going.standing is not None:
+                other = self._go(going, most, progress)
+                needs = first_needs((*needs, *other.needs))
+        found += [*self._found[:MAX_FINDINGS], *self._unreached()]
+        return replace(
+            report,
+            diagnostics=in_order(found),
+            tools=tuple(sorted(self._tools.union(report.tools))),
+            missing_tools=tuple(sorted(self._missing.union(report.missing_tools))),
+            needs=needs,
+            ways=Ways(self._gone, self._left + len(self._waiting), cycle_range(first)),
+        )
+
+    def _go(self, going: _Going, most: int, progress: Callable[[float], None] | None) -> Report:
+        assert going.source is not None
+        assert going.standing is not None
+        assert going.checks is not None
+        self._now, self._gone = going, self._gone + 1
+        self._covered.add((going.choices[-1].line, going.choices[-1].on))
+        timeline = Timeline(going.source, self._setup, self._machine, ideal=self._ideal)
+        timeline.go_on(going.standing)
+        one = ProofPass(self._machine, going.checks)
+        for stretch in self.gone(one, timeline):
+            one.add(stretch)
+            if progress is not None and one.last is not None:
+                progress(one.last.n)
+            if self._work > most:
+                self._left += 1
+                going.way.failed = True  # its time is not known
+                break
+        going.way.gone = True
+        report = one.report(timeline, self._reading.source)
+        self._tools.update(report.tools)
+        self._missing.update(report.missing_tools)
+        self._tell(going, report)
+        going.source = None
+        return report
+
+    def _tell(self, going: _Going, report: Report) -> None:
+        unlikely = going.source is not None and going.source.unlikely
+        for each in report.diagnostics:
+            if each.severity is Severity.NOTE or (each.line, each.code) in self._told:
+                continue
+            self._told.add((each.line, each.code))
+            weight = Severity.WARNING if unlikely else each.severity
+            self._found.append(replace(each, severity=weight, message=_with(going.choices, each.message)))
+
+    def _unreached(self) -> Iterator[Diagnostic]:
+        """What was not gone through, by name."""
+        left = self._left + len(self._waiting)
+        if not left:
+            return
+        last = [going.choices[-1] for _, going in self._waiting]
+        never = {choice.words for choice in last if (choice.line, choice.on) not in self._covered}
+        text = f"{left} ways through the program by its inputs were not proved; {self._gone} were."
+        if never:
+            text = f"{text} Never proved: {', '.join(sorted(never)[:5])}."
+        hint = (
+            "Fewer conditional calls in loops, or subroutines that end where they begin, make all provable."
+        )
+        line = min((choice.line for choice in last), default=0)
+        yield Diagnostic(line, 0, Severity.WARNING, "unreached-branch", text, hint, check="unreached-branch")

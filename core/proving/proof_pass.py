@@ -1,0 +1,279 @@
+"""One pass through a program, proved: what is found in its blocks, and what adds up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.virtual_mill import PlaneMove
+from core.interpreter.actions import Dwell, ProgramStop
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.machine_requirements import Need, first_needs, needs_of
+from core.language.diagnostics import Diagnostic
+from core.language.source import Source
+from core.machine.model import Machine
+from core.proving.cutting_checks import CuttingChecks
+from core.proving.machine_checks import c_findings, travel_findings
+from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
+from core.proving.proof_report import MillFigures, Range, Reach, Report, Times
+
+# --- sums -----------------------------------------------------------------------------------------------
+
+
+class Span:
+    """Least and greatest of what was seen; (0, 0) when nothing was."""
+
+    def __init__(self) -> None:
+        self.low, self.high = math.inf, -math.inf
+
+    def see(self, *values: float) -> None:
+        """Widen to these values."""
+        self.low = min(self.low, *values)
+        self.high = max(self.high, *values)
+
+    @property
+    def range(self) -> Range:
+        """What was seen."""
+        return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
+
+
+class Tally:
+    """Lengths in mm, reach in the program's frame, from the blocks of a program in order."""
+
+    def __init__(self) -> None:
+        self.x, self.z, self.c, self.rpm, self.feed = Span(), Span(), Span(), Span(), Span()
+        self.axes: list[Span] = []  # machine positions of a mill's axes
+        self.cutting_length = 0.0
+        self.rapid_length = 0.0
+
+    @property
+    def reach(self) -> Reach:
+        """What the program reaches."""
+        return Reach(self.x.range, self.z.range, self.c.range, self.rpm.range, self.feed.range)
+
+    def add(self, parts: Sequence[Part]) -> None:
+        """Count the moving blocks of a stretch."""
+        if not parts:
+            return
+        table = np.concatenate([_rows(part) for part in parts])
+        length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
+        first = 0
+        for part in parts:
+            if not isinstance(part, Series):
+                self._curved(part, length[first : first + len(part)])
+            first += len(part)
+        rapid, turned, locked = (table[:, column] > 0.0 for column in (8, 9, 10))
+        self.rapid_length += float(length[rapid].sum())
+        self.cutting_length += float(length[~rapid].sum())
+        for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
+            span.see(float(table[:, column].min()), float(table[:, column].max()))
+        in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
+        if not in_degrees.all():
+            self._feeds(table[~in_degrees])
+        self._turning(table[~(turned | locked)])
+
+    def _curved(self, blocks: Sequence[Block], length: npt.NDArray[np.float64]) -> None:
+        """Put in the lengths of ways that are no straight lines of X and Z."""
+        for index, block in enumerate(blocks):
+            if block.travel is not None:
+                length[index] = 0.0 if block.swivels else block.travel.length
+                self._see_axes(block)
+            elif block.kind is Kind.ARC:
+                length[index] = self._arc(block)
+            elif block.plane is not None:
+                length[index] = self._plane(block, block.plane)
+
+    def _see_axes(self, block: Block) -> None:
+        if not self.axes:
+            self.axes = [Span() for _ in block.machine_end]
+        for span, reach in zip(self.axes, block.machine_reach(), strict=True):
+            span.see(*reach)
+
+    def _reach(self, block: Block) -> None:
+        low_x, high_x, low_z, high_z = block.reach()
+        self.x.see(low_x, high_x)
+        self.z.see(low_z, high_z)
+
+    def _arc(self, block: Block) -> float:
+        self._reach(block)
+        _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
+
+    def _plane(self, block: Block, way: PlaneMove) -> float:
+        self._reach(block)
+        low, high = way.reach()
+        self.c.see(float(low[2]), float(high[2]))
+        return way.length
+
+    def _feeds(self, table: npt.NDArray[np.float64]) -> None:
+        rpm = np.abs(table[:, 5])
+        path_speed = np.where(table[:, 7] > 0, table[:, 6] * rpm / 60, table[:, 6])
+        self.feed.see(float(path_speed.min()), float(path_speed.max()))
+
+    def _turning(self, table: npt.NDArray[np.float64]) -> None:
+        """Speeds of the spindle as such; C has its own."""
+        rpm = np.abs(table[:, 5])
+        turning = rpm[rpm > 0]
+        if turning.size:
+            self.rpm.see(float(turning.min()), float(turning.max()))
+
+
+def _rows(part: Part) -> npt.NDArray[np.float64]:
+    """What is summed up of each block, a row (11,) each."""
+    if not isinstance(part, Series):
+        return np.array([_row(block) for block in part])
+    rows = np.repeat(np.array([_row(part.pattern)]), len(part), axis=0)
+    rows[:, :4] = np.column_stack((part.x0, part.z0, part.x, part.z))
+    return rows
+
+
+def _row(b: Block) -> tuple[float, ...]:
+    turned = b.kind is Kind.ROTATE or b.swivels
+    return b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev, b.rapid, turned, b.modal.c_locked
+
+
+_AT_ONCE = 1000  # blocks that are looked at together
+MAX_FINDINGS = 100  # a broken offset makes every line of a program leave the travel; nobody reads more
+
+
+class ProofPass:
+    """What adds up while a program passes by once."""
+
+    def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
+        self._machine = machine
+        self._checks = checks
+        self._tally = Tally()
+        self._unseen: list[Part] = []
+        self._waiting = 0  # blocks in them
+        self._cutting = self._rapid = self._dwell = self._wait = 0.0
+        self._beyond: dict[tuple[int, str], Diagnostic] = {}
+        self._needs: tuple[Need, ...] = ()
+        self._before: Block | None = None
+        self.last: Block | None = None
+        self.last_move: Block | None = None
+        self.elementary = 0
+        self._stops = self._optional_stops = 0
+
+    @property
+    def checks(self) -> CuttingChecks:
+        """Those of cutting, as far as the program has passed by."""
+        return self._checks
+
+    def add(self, stretch: MotionSpan | RestSpan) -> None:
+        """The next stretch of the timeline."""
+        if isinstance(stretch, MotionSpan):
+            self._moved(stretch)
+        else:
+            self._rested(stretch)
+
+    def _moved(self, stretch: MotionSpan) -> None:
+        spent = stretch.chunk.t1 - stretch.chunk.t0
+        rapid = float(spent[_rapid(stretch.parts)].sum())
+        self._rapid += rapid
+        self._cutting += float(spent.sum()) - rapid
+        self._unseen += stretch.parts
+        for part in stretch.parts:
+            self._checks.look(part)
+        self._waiting += len(spent)
+        self.elementary += len(spent)
+        if stretch.last is not None:
+            self.last = self.last_move = stretch.last
+        if self._waiting >= _AT_ONCE:
+            self._see()
+
+    def _see(self) -> None:
+        """Lengths and reach of the blocks that have come in; many at once, for motions of three blocks."""
+        parts, self._unseen, self._waiting = self._unseen, [], 0
+        self._tally.add(parts)
+        for part in parts:
+            self._need(part)
+            if len(self._beyond) < MAX_FINDINGS:
+                self._look_beyond(part)
+
+    def _look_beyond(self, part: Part) -> None:
+        for finding in (*travel_findings(part, self._machine), *c_findings(part, self._machine)):
+            self._beyond.setdefault((finding.line, finding.message[:1]), finding)
+
+    def _need(self, blocks: Part) -> None:
+        """Only a controller that plans by itself can lack what a program needs."""
+        if blocks and self._machine.backend == "grblhal":
+            unlike = blocks[:1] if isinstance(blocks, Series) else blocks  # what one needs, all need
+            self._needs = first_needs((*self._needs, *needs_of(unlike, self._before)))
+            self._before = blocks[-1]
+
+    def _rested(self, stretch: RestSpan) -> None:
+        spent = stretch.t1 - stretch.t0
+        if stretch.block is None:
+            self._wait += spent
+            return
+        self.elementary += 1
+        self.last = stretch.block
+        self._checks.look([stretch.block])
+        self._need([stretch.block])
+        if isinstance(stretch.block.action, ProgramStop):
+            self._optional_stops += stretch.block.action.optional
+            self._stops += not stretch.block.action.optional
+        if isinstance(stretch.block.action, Dwell):
+            self._dwell += spent
+        else:
+            self._wait += spent
+
+    def report(self, timeline: Timeline, source: Source) -> Report:
+        """All of it, when the program has passed by."""
+        self._see()
+        beyond = list(self._beyond.values())[:MAX_FINDINGS]
+        found = [*timeline.diagnostics, *beyond, *self._checks.findings]
+        interpreter, last, tally = timeline.interpreter, self.last, self._tally
+        end = self.last_move  # in its own frame: M30 takes the work shift away, and moves nothing
+        return Report(
+            name=source.name,
+            dialect=source.dialect,
+            metric=bool(last and last.modal.metric),
+            blocks=interpreter.source_blocks,
+            elementary=self.elementary,
+            diagnostics=tuple(sorted(found, key=lambda d: (d.line, d.column))),
+            times=Times(self._cutting, self._rapid, self._dwell, self._wait),
+            cutting_length=tally.cutting_length,
+            rapid_length=tally.rapid_length,
+            tools=tuple(sorted(interpreter.used_tools)),
+            missing_tools=tuple(sorted(interpreter.missing_tools)),
+            reach=tally.reach,
+            final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
+            machine_final=end.machine_end if end else timeline.start,
+            mill=self._mill(),
+            needs=self._needs,
+            stops=self._stops,
+            optional_stops=self._optional_stops,
+        )
+
+    def _mill(self) -> MillFigures | None:
+        if self._machine.kind != "mill":
+            return None
+        return MillFigures(
+            axes=tuple(axis.name for axis in self._machine.axes),
+            reach=tuple(span.range for span in self._tally.axes),
+            final=self.last.swivel if self.last else None,
+        )
+
+
+def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
+    """For each block whether it is a rapid."""
+    found: list[bool] = []
+    for part in parts:
+        series = isinstance(part, Series)
+        found += [part[0].rapid] * len(part) if series else [block.rapid for block in part]
+    return np.array(found, dtype=bool)
+
+
+def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:
+    """X, Z and C of a start in the machine's order."""
+    return start[0], start[1], start[-1]
+
+
+def _shown_c(block: Block) -> float:
+    """C of the end as the program counts it."""
+    return block.c % 360.0 if block.modal.wraps_c else block.c

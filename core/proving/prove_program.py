@@ -1,0 +1,64 @@
+"""Proving: the same program, given to a checker instead of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.job_setup import Setup
+from core.language.source import Source
+from core.machine.model import Machine
+from core.proving.block_delete import deletes_blocks, with_the_other
+from core.proving.cutting_checks import CuttingChecks
+from core.proving.program_branches import Branches
+from core.proving.program_timeline import Timeline
+from core.proving.proof_pass import MAX_FINDINGS, ProofPass
+from core.proving.proof_report import Report
+
+__all__ = ["MAX_FINDINGS", "prove"]
+
+Progress = Callable[[float], None]
+
+
+def prove(
+    program: Source | ReadProgram,
+    setup: Setup,
+    machine: Machine,
+    progress: Progress | None = None,
+    *,
+    ideal: bool = False,
+) -> Report:
+    """Check a whole program: words, travel, times. ``progress`` hears how many blocks have passed.
+
+    A program that others go through too is given as its one reading.
+
+    The figures are those of the inputs and of block delete as ``setup`` has them; what the program does with
+    other inputs, and with block delete the other way, is proved too, and found in ``diagnostics``.
+
+    ``ideal``: times by feeds and limits of speed alone, without accelerations and waits.
+    """
+    reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
+    report = _proved(reading, setup, machine, progress, ideal=ideal)
+    if not deletes_blocks(reading.source) or (setup.begin is not None and setup.begin.single):
+        return report
+    flipped = replace(setup, block_delete=not setup.block_delete)
+    other = _proved(reading, flipped, machine, progress, ideal=ideal)
+    return with_the_other(report, other, deleted=flipped.block_delete)
+
+
+def _proved(
+    reading: ReadProgram, setup: Setup, machine: Machine, progress: Progress | None, *, ideal: bool
+) -> Report:
+    """With block delete as it stands, and all inputs both ways."""
+    branches = Branches(reading, setup, machine, ideal=ideal)
+    timeline = Timeline(branches.root or reading.begin(setup), setup, machine, ideal=ideal)
+    single = setup.begin is not None and setup.begin.single
+    checks = CuttingChecks(machine, reading.source.dialect, single, placed=setup.begin is not None)
+    one = ProofPass(machine, checks)
+    for stretch in branches.gone(one, timeline):
+        one.add(stretch)
+        if progress is not None and one.last is not None:
+            progress(one.last.n)
+    report = one.report(timeline, reading.source)
+    return branches.proved(report, progress)
