@@ -9,9 +9,9 @@ from app.compose.transfer import PLAIN, SerialLines, proving
 from app.desk.desk import Desk
 from app.desk.home import home
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.session import Workshop
 from app.desk.settings import SettingsBook
-from app.desk.worker import Worker
 from app.programs.folder_chooser import Chooser
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
@@ -31,10 +31,10 @@ from app.special.spindle_limit import SpeedSection
 from app.transfer.serial_transfer import TransferSection
 from core.machine.model import Machine
 
-MakeSection = Callable[[Desk, Machine, Keep, Worker], Section]
+MakeSection = Callable[[Desk, Machine, Keep, Latest], Section]
 
 
-def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Worker) -> Section:
+def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Latest) -> Section:
     section = KeepingSection(desk, keep, worker, home() / "backups")
 
     def restored() -> None:
@@ -73,7 +73,7 @@ def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: P
     desk.settings = SettingsBook(keep)
     desk.counter = PartCounter(keep)
     desk.record = RunRecord(keep)
-    worker = Worker()
+    worker = Latest("editing-special")
     own = own or home() / "programs"
     sections = [make(desk, machine, keep, worker) for make in ITEMS]
     sections.append(_transfer(desk, machine, keep, workshop, own))
@@ -92,6 +92,6 @@ def _files(desk: Desk, keep: Keep, workshop: Workshop, own: Path) -> FilesDesk:
         keep.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
         return errors[0] if errors else ""
 
-    worker = Worker()
+    worker = Latest("editing-programs")
     traffic = Traffic(desk, own, keep, worker, check, Chooser(Path.home()))
     return FilesDesk(desk, own, keep, worker, Preview(workshop), traffic, lambda: desk.session.now)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.worker import Worker
+from app.desk.latest import Latest
 from app.editor import messages
 from app.editor.document import Document
 from app.editor.versions import Archive
@@ -24,7 +24,7 @@ class Drafts:
     archive: Archive
     trouble: str = ""  # why the last could not be kept
     _wanted: dict[str, str | None] = field(default_factory=dict)  # None: it is not needed any more
-    _worker: Worker = field(default_factory=Worker)
+    _worker: Latest = field(default_factory=lambda: Latest("editing-drafts"))
 
     def look(self, document: Document, text: str) -> None:
         """This is in the editor now."""
@@ -38,7 +38,7 @@ class Drafts:
 
     def recover(self, document: Document, say: Callable[[str], None]) -> None:
         """A draft that was left for it goes into the history, before anything is written for it now."""
-        self._worker.ask(lambda: self._recovered(document), say, say)
+        self._worker.queue(lambda: self._recovered(document), say, say)
 
     def _recovered(self, document: Document) -> str:
         place = self._place(document.name)
@@ -66,8 +66,6 @@ class Drafts:
     def settle(self, timeout: float) -> None:
         """Wait until all is written; for scripts and tests, never for the screen."""
         self._worker.settle(timeout)
-        self._go_on()
-        self._worker.settle(timeout)
 
     def close(self) -> None:
         """Write what is left and end the worker."""
@@ -80,7 +78,7 @@ class Drafts:
             return
         name, text = next(iter(self._wanted.items()))
         del self._wanted[name]
-        self._worker.ask(lambda: self._write(name, text), self._written, self._written)
+        self._worker.queue(lambda: self._write(name, text), self._written, self._written)
 
     def _written(self, trouble: str) -> None:
         self.trouble = trouble

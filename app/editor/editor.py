@@ -11,11 +11,11 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
-from app.desk.worker import Worker
+from app.desk.latest import Latest
 from app.editor import messages
 from app.editor.document import CHANGED, Document, NameRefusedError, created, ended, opened, save_document
 from app.editor.drafts import Drafts
-from app.editor.live_proof import Checker
+from app.editor.live_proof import LiveProof
 from app.editor.versions import Bench
 
 
@@ -57,9 +57,9 @@ class Editor:
     wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
     restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
-    checker: Checker = field(init=False)
+    proof: LiveProof = field(init=False)
     drafts: Drafts = field(init=False)
-    worker: Worker = field(default_factory=Worker)
+    worker: Latest = field(default_factory=lambda: Latest("editing-files"))
     _offered: str = ""
     _leaving: bool = False
     _to_desk: bool = False
@@ -68,7 +68,7 @@ class Editor:
     _unnamed: str = ""  # text whose saving waits for a name
 
     def __post_init__(self) -> None:
-        self.checker = Checker(self.bench.workshop)
+        self.proof = LiveProof(self.bench.workshop)
         self.drafts = Drafts(self.bench.programs / ".drafts", self.bench.archive)
 
     def poll(self) -> None:
@@ -80,7 +80,7 @@ class Editor:
 
     def close(self) -> None:
         """End the workers."""
-        self.checker.close()
+        self.proof.close()
         self.worker.close()
         self.drafts.close()
 
@@ -91,7 +91,7 @@ class Editor:
         self.clear()
         self.block_delete = block_delete
         self.stage = Stage.READING
-        self.worker.ask(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
+        self.worker.queue(lambda: opened(path, self.bench.samples), self._opened, self._not_opened)
 
     def offer(self, typed: str) -> None:
         """A name that no program has: ask whether it shall be a new one."""
@@ -145,7 +145,7 @@ class Editor:
 
     def changed(self, text: str) -> None:
         """This is in the field now: have it proved."""
-        self.checker.submit(self.name, ended(text), self.block_delete)
+        self.proof.submit(self.name, ended(text), self.block_delete)
         if self.document is not None:
             self.drafts.look(self.document, text)
 
@@ -235,7 +235,7 @@ class Editor:
 
     def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
         self.stage = Stage.SAVING
-        self.worker.ask(
+        self.worker.queue(
             lambda: save_document(document, text, self.bench.archive, replacing),
             lambda trouble: self._saved(document, text, trouble),
             self._not_saved,

@@ -74,7 +74,7 @@ class EditorParts(Page):
         line, column = self.field.line, self.field.textCursor().positionInBlock() + 1
         place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
         self.head.show_heading(Heading(editor.name, self.draft.mark, place))
-        findings = editor.checker.now
+        findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
         self._show_path(findings.picture, line)

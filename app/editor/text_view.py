@@ -245,13 +245,13 @@ class Draft:
     def __init__(self, field: TextField, editor: Editor) -> None:
         self._field, self._editor = field, editor
         self._taken = 0  # number of the text of the editor that stands in the field
-        self._stale = False  # the text has changed since it was given to the editor
+        self.stale = False  # the text has changed since it was given to the editor
         self._taking = False  # a text is being put into the field from here
         self._text = ""
         field.textChanged.connect(self._changed)
 
     def _changed(self) -> None:
-        self._stale = True
+        self.stale = True
         if not self._taking:
             self._editor.clear()  # whoever goes on typing has read the answer, and no question stays open
 
@@ -269,9 +269,9 @@ class Draft:
             field.put_text(editor.text, afresh=not editor.restored)
             self._taking = False
             field.setFocus()
-            self._stale = True
-        if self._stale:
-            self._stale = False
+            self.stale = True
+        if self.stale:
+            self.stale = False
             self._text = self.now()
             editor.changed(self._text)
         field.setReadOnly(editor.stage is not Stage.OPEN)
@@ -280,9 +280,9 @@ class Draft:
         """By the language that the name of the file tells; new colours are no new text."""
         document = self._editor.document
         if document is not None:
-            before, self._taking = self._stale, True
+            before, self._taking = self.stale, True
             self._field.highlighter.speak(dialect_of(document.name))
-            self._taking, self._stale = False, before
+            self._taking, self.stale = False, before
 
     @property
     def mark(self) -> str:

@@ -8,8 +8,8 @@ from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Protocol
 
+from app.desk.latest import Latest, Watch
 from app.desk.session import Workshop
-from app.desk.worker import Worker
 from core.store.errors import StoreError
 from core.store.rows import VersionRow
 
@@ -117,7 +117,7 @@ class History:
     """``rows`` are the versions, newest first; ``changes`` leads from the marked one to the text on hand."""
 
     archive: Archive
-    worker: Worker
+    worker: Latest
     name: str = ""
     now: str = ""
     rows: tuple[VersionRow, ...] = ()
@@ -125,13 +125,12 @@ class History:
     text: str | None = None  # of the marked version, once it is read
     changes: tuple[Row, ...] = ()
     trouble: str = ""
-    _asked: int = 0
 
     def look(self, name: str, now: str) -> None:
         """Open the history of a program; ``now`` is the text in the editor."""
         self.name, self.now = name, now
         self.rows, self.marked, self.text, self.changes, self.trouble = (), 0, None, (), ""
-        self.worker.ask(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
+        self.worker.queue(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
 
     def mark(self, place: int) -> None:
         """Mark another version and compare it."""
@@ -139,13 +138,11 @@ class History:
             return
         self.marked = max(0, min(len(self.rows) - 1, place))
         self.text, self.changes, self.trouble = None, (), ""
-        self._asked += 1
-        asked, name, now = self._asked, self.name, self.now
-        number = self.rows[self.marked].number
+        name, now, number = self.name, self.now, self.rows[self.marked].number
 
-        def compare() -> tuple[int, str, tuple[Row, ...]]:
+        def compare(_watch: Watch) -> tuple[str, tuple[Row, ...]]:
             text = _lines(self.archive.text_of(name, number))
-            return asked, text, differences(text, now)
+            return text, differences(text, now)
 
         self.worker.ask(compare, self._compared, self._failed)
 
@@ -168,10 +165,8 @@ class History:
         self.rows = rows
         self.mark(0)
 
-    def _compared(self, answer: tuple[int, str, tuple[Row, ...]]) -> None:
-        asked, text, changes = answer
-        if asked == self._asked:
-            self.text, self.changes = text, changes
+    def _compared(self, answer: tuple[str, tuple[Row, ...]]) -> None:
+        self.text, self.changes = answer
 
     def _failed(self, why: str) -> None:
         self.trouble = why

@@ -6,15 +6,13 @@ there the path after lies beside the path before by as much as the tip will.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.desk.latest import AbandonedError, Watch
+from app.desk.latest import Latest, Watch
 from core.executor.job import Job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
@@ -67,61 +65,42 @@ class Effect:
     draw: Draw
     now: Compared | None = None
     trouble: str = ""
-    _ticket: int = 0
-    _future: Future[None] | None = None
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _pool: ThreadPoolExecutor = field(
-        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="effect")
-    )
+    _worker: Latest = field(default_factory=lambda: Latest("effect"))
 
     @property
     def busy(self) -> bool:
         """Whether the worker is still at it; what went wrong there is ``trouble`` afterwards."""
-        future = self._future
-        if future is None or not future.done():
-            return future is not None
-        self._future = None
-        error = future.exception()
-        if error is not None and not isinstance(error, AbandonedError):
-            self.trouble = str(error) or type(error).__name__
-        return False
+        self._worker.poll()
+        return self._worker.busy
 
     def ask(self, job: Job, before: Tables, after: Tables) -> None:
         """Draw this program both ways; what was being drawn before is given up."""
-        with self._lock:
-            self._ticket += 1
-            ticket = self._ticket
-            self.now, self.trouble = None, ""
-        self._future = self._pool.submit(self._work, ticket, job, before, after)
+
+        def pair(watch: Watch) -> Compared:
+            return compared(*(self.draw(_with(job, each), before.tools, watch) for each in (before, after)))
+
+        self.now, self.trouble = None, ""
+        self._worker.ask(pair, self._drawn, self._failed)
+
+    def _drawn(self, pair: Compared) -> None:
+        self.now = pair
+
+    def _failed(self, why: str) -> None:
+        self.trouble = why
 
     def settled(self, timeout: float) -> Compared | None:
         """Wait until it is drawn and look; for scripts and tests, never for the screen."""
-        if self._future is not None:
-            wait([self._future], timeout)
-        return None if self.busy else self.now
+        self._worker.settle(timeout)
+        return self.now
 
     def forget(self) -> None:
         """Nobody looks any more."""
-        with self._lock:
-            self._ticket += 1
-            self.now, self.trouble = None, ""
+        self._worker.give_up()
+        self.now, self.trouble = None, ""
 
     def close(self) -> None:
         """Give up whatever is being drawn and end the worker."""
-        self.forget()
-        self._pool.shutdown(wait=True, cancel_futures=True)
-
-    def _work(self, ticket: int, job: Job, before: Tables, after: Tables) -> None:
-        def watch(_count: float) -> None:
-            if ticket != self._ticket:
-                raise AbandonedError
-
-        pictures = [self.draw(_with(job, tables), before.tools, watch) for tables in (before, after)]
-        pair = compared(*pictures)
-        with self._lock:
-            if ticket != self._ticket:
-                raise AbandonedError
-            self.now = pair
+        self._worker.close()
 
 
 def _with(job: Job, tables: Tables) -> Job:

@@ -9,10 +9,10 @@ from typing import Protocol
 
 from app.desk import prompts
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.session import Loaded
 from app.desk.shelf import Shelf
 from app.desk.words import tr
-from app.desk.worker import Worker
 from app.programs import file_changes
 from app.programs.program_rows import Program
 from app.special.section import Entry
@@ -51,7 +51,7 @@ class Changer:
     desk: FilesHost
     own: Path
     keep: Keep
-    worker: Worker
+    worker: Latest
     loaded: Callable[[], Loaded]
     here: Callable[[], Program | None]
     changed: Callable[[str], None]
@@ -119,7 +119,7 @@ class Changer:
             self.desk.say(tr(words).format(name=name))
             self.changed(name)
 
-        self.worker.ask(work, done, self._failed)
+        self.worker.queue(work, done, self._failed)
 
     def _failed(self, why: str) -> None:
         self.desk.say(f"REFUSED: {why}")

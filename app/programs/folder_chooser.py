@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.shelf import ENDINGS
+from app.programs.file_changes import FileError
 
 # --- USB sticks and other removable media: where the system has mounted them, and how much room they have.
 
@@ -83,11 +84,14 @@ class Chooser:
     trouble: str = field(default="")
 
     def look(self) -> tuple[Spot, ...]:
-        """What is there now; raises OSError when the folder cannot be read. On a worker."""
+        """What is there now; raises FileError when the folder cannot be read. On a worker."""
         if self.at is None:
             places = [Spot(stick.label, stick.path, True, stick.free) for stick in self.plugged()]
             return (*places, Spot("THIS CONTROL", self.home, True))
-        return (Spot(UP, self.at.parent, True), *_inside(self.at))
+        try:
+            return (Spot(UP, self.at.parent, True), *_inside(self.at))
+        except OSError as error:
+            raise FileError(f"{self.at.name} CANNOT BE READ: {error.strerror}") from error
 
     def found(self, spots: tuple[Spot, ...]) -> None:
         """Take what ``look`` has found."""

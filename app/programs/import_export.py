@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.words import tr
-from app.desk.worker import Worker
 from app.programs.file_changes import FileError, good_name, taken
 from app.programs.folder_chooser import Chooser
 from app.programs.program_rows import chooser_sheet
@@ -173,7 +173,7 @@ class Traffic:
     desk: Speaker
     own: Path
     keep: Keep
-    worker: Worker
+    worker: Latest
     check: Check
     chooser: Chooser
     finished: Callable[[], None] = _nobody
@@ -197,12 +197,12 @@ class Traffic:
         self.open, self._asked = False, ()
 
     def _look(self) -> None:
-        self.worker.ask(self.chooser.look, self.chooser.found, self._unread)
+        self.worker.queue(self.chooser.look, self.chooser.found, self._unread)
 
     def _unread(self, why: str) -> None:
         self.desk.say(f"REFUSED: {why}")
         self.chooser.at = self.chooser.top = None
-        self.worker.ask(self.chooser.look, self.chooser.found, self.desk.say)
+        self.worker.queue(self.chooser.look, self.chooser.found, self.desk.say)
 
     def sheet(self) -> Sheet:
         """The folder that is looked into."""
@@ -288,10 +288,10 @@ class Traffic:
         self._at = at
         self.desk.say("COPYING: LEAVE THE STICK WHERE IT IS")
         if self.out:
-            self.worker.ask(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
+            self.worker.queue(lambda: taken_out(paths, at, replace=replace), self._done, self._failed)
         else:
             own, keep, check = self.own, self.keep, self.check
-            self.worker.ask(
+            self.worker.queue(
                 lambda: brought_in(paths, own, keep, check, replace=replace), self._done, self._failed
             )
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.session import Loaded
-from app.desk.worker import Worker
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, Changer, FilesHost
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
@@ -24,7 +24,7 @@ class FilesDesk:
     desk: FilesHost
     own: Path
     keep: Keep
-    worker: Worker
+    worker: Latest
     preview: Preview
     traffic: Traffic
     loaded: Callable[[], Loaded]
@@ -61,7 +61,7 @@ class FilesDesk:
 
     def look_again(self) -> None:
         """Read the folders again; the answer comes with a later frame."""
-        self.worker.ask(lambda: programs(self.desk.shelf, self.own, self.keep), self._found, self._failed)
+        self.worker.queue(lambda: programs(self.desk.shelf, self.own, self.keep), self._found, self._failed)
 
     def look(self) -> None:
         """Once a frame: take what the worker has found."""

@@ -10,10 +10,11 @@ from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.prompts import UNDER_WAY
 from app.desk.view import Tone
 from app.desk.words import tr
-from app.desk.worker import Worker
+from app.programs.file_changes import FileError
 from app.programs.folder_chooser import Stick, sticks
 from app.special.section import Key, Row, Section, Sheet
 from core.executor.snapshot import Snapshot
@@ -43,7 +44,7 @@ class KeepingSection(Section):
         self,
         desk: Desk,
         keep: Keep,
-        worker: Worker,
+        worker: Latest,
         folder: Path,
         plugged: Callable[[], Sequence[Stick]] = sticks,
     ) -> None:
@@ -64,7 +65,7 @@ class KeepingSection(Section):
 
     def look(self) -> None:
         """List places and backups again; the answer comes with a later frame."""
-        self.worker.ask(lambda: _places(self.folder, self.plugged()), self._found, self._failed)
+        self.worker.queue(lambda: _places(self.folder, self.plugged()), self._found, self._failed)
 
     def _found(self, places: tuple[Place, ...]) -> None:
         self.places = places
@@ -128,12 +129,15 @@ class KeepingSection(Section):
         self.desk.clear()
 
         def work() -> str:
-            place.path.mkdir(parents=True, exist_ok=True)
+            try:
+                place.path.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise FileError(f"{place.path} CANNOT BE WRITTEN: {error.strerror}") from error
             self.keep.backup(target)
             os.sync()
             return name
 
-        self.worker.ask(work, self._backed_up, self._failed)
+        self.worker.queue(work, self._backed_up, self._failed)
 
     def _backed_up(self, name: str) -> None:
         self.busy = ""
@@ -153,7 +157,7 @@ class KeepingSection(Section):
             return
         self.busy = "Restoring …"
         self.desk.restoring = True
-        self.worker.ask(lambda: self.keep.restore(place.path), self._done, self._failed)
+        self.worker.queue(lambda: self.keep.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
         self.busy = ""

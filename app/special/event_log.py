@@ -7,8 +7,8 @@ from datetime import datetime
 
 from app.desk.desk import Desk
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.view import Tone
-from app.desk.worker import Worker
 from app.special.section import Entry, Key, Row, Section, Sheet
 from core.executor.snapshot import Snapshot
 from core.store.rows import EventRow
@@ -29,7 +29,7 @@ class EventsSection(Section):
     name = "EVENT LOG"
     use = "what happened when; search"
 
-    def __init__(self, desk: Desk, keep: Keep, worker: Worker) -> None:
+    def __init__(self, desk: Desk, keep: Keep, worker: Latest) -> None:
         super().__init__(desk)
         self.keep, self.worker = keep, worker
         self.entry = Entry(words=True)
@@ -39,7 +39,6 @@ class EventsSection(Section):
         self.trouble = ""
         self._rows: tuple[Row, ...] = ()
         self._next = 0.0
-        self._asking = self._again = False  # a search is under way; another one was asked for meanwhile
 
     @property
     def count(self) -> int:
@@ -54,7 +53,7 @@ class EventsSection(Section):
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """What was found; looked for again every second while it is open."""
         now = self.desk.clock()
-        if now >= self._next:
+        if now >= self._next and not self.worker.busy:
             self._next = now + EVERY
             self.look()
         found = f"{self.count} EVENTS" if self.count < SHOWN else f"THE LAST {SHOWN} EVENTS"
@@ -73,16 +72,11 @@ class EventsSection(Section):
 
     def look(self) -> None:
         """Ask the store; the answer comes with a later frame. Of questions meanwhile only the last counts."""
-        if self._asking:
-            self._again = True
-            return
-        self._asking = True
         search, kinds = self.entry.text.strip(), FILTERS[self.filter]
-        self.worker.ask(lambda: tuple(self.keep.events(search, kinds, SHOWN)), self._found, self._failed)
+        self.worker.ask(lambda _: tuple(self.keep.events(search, kinds, SHOWN)), self._found, self._failed)
 
     def _found(self, events: tuple[EventRow, ...]) -> None:
         self.trouble = ""
-        self._answered()
         if events != self.events:
             self.events = events
             self._rows = tuple(_row(event) for event in events)
@@ -90,12 +84,6 @@ class EventsSection(Section):
 
     def _failed(self, why: str) -> None:
         self.trouble = why
-        self._answered()
-
-    def _answered(self) -> None:
-        self._asking, again, self._again = False, self._again, False
-        if again:
-            self.look()
 
     def keys(self) -> Mapping[str, Key]:
         """Search and filter."""

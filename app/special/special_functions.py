@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.desk.worker import Worker
+from app.desk.latest import Latest
 from app.special.section import Section
 
 
@@ -14,7 +14,7 @@ class SpecialDesk:
     """``at`` is the function that is shown; while ``inside`` the keys are its own, else the list's."""
 
     sections: Sequence[Section]
-    worker: Worker
+    worker: Latest
     at: int = 0
     inside: bool = False
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.keep import Keep
+from app.desk.latest import Latest
 from app.desk.prompts import UNDER_WAY
 from app.desk.view import Tone
 from app.desk.words import tr
-from app.desk.worker import Worker
 from app.programs.file_changes import FileError
 from app.special.section import Entry, Key, Row, Section, Sheet
 from app.transfer.received_program import free_name, stored
@@ -102,7 +102,7 @@ class TransferSection(Section):
     def __init__(self, desk: Desk, keep: Keep, lines: Lines, default: DncModel, own: Path) -> None:
         super().__init__(desk)
         self.keep, self.lines, self.own = keep, lines, own
-        self.worker = Worker()
+        self.worker = Latest("editing-serial")
         self.settings = _kept(keep, default)
         self.ports: Sequence[str] = ()
         self.under_way: Carrying[int] | Carrying[Received] | None = None
@@ -118,7 +118,7 @@ class TransferSection(Section):
 
     def opened(self) -> None:
         """Look for ports."""
-        self.worker.ask(lambda: [device for device, _ in self.lines.ports()], self._found, self._no_ports)
+        self.worker.queue(lambda: [device for device, _ in self.lines.ports()], self._found, self._no_ports)
 
     def _found(self, ports: list[str]) -> None:
         self.ports = ports
@@ -202,7 +202,7 @@ class TransferSection(Section):
             self.sends = path.name
             carrying = self.lines.send(self.settings, path)
             self.under_way = carrying
-            self.worker.ask(carrying.run, self._sent, self._failed)
+            self.worker.queue(carrying.run, self._sent, self._failed)
 
     def receive(self) -> None:
         """Whatever comes."""
@@ -210,7 +210,7 @@ class TransferSection(Section):
             self.sends = ""
             carrying = self.lines.receive(self.settings)
             self.under_way = carrying
-            self.worker.ask(carrying.run, self._came, self._failed)
+            self.worker.queue(carrying.run, self._came, self._failed)
 
     def cancel(self) -> None:
         """Give it up; the worker says when it has ended."""

@@ -76,7 +76,7 @@ def _measured(app: QApplication, window: MainWindow) -> None:
     window.press("F3")
     page = window.frame.page
     assert isinstance(page, EditorPage)
-    _until(app, lambda: page.editor.checker.now.picture is not None and page.field.blockCount() > LINES - 5)
+    _until(app, lambda: page.editor.proof.now.picture is not None and page.field.blockCount() > LINES - 5)
     page.go_to(LINES // 2, 1)
     keys, found, drawn = [], [], []
     for _ in range(ROUNDS):
@@ -91,7 +91,7 @@ def _measured(app: QApplication, window: MainWindow) -> None:
 
 def _key(app: QApplication, page: EditorPage, key: str) -> tuple[float, float, float]:
     """Press a key; seconds it took, until its findings and until its path were on the screen."""
-    checker = page.editor.checker
+    checker = page.editor.proof
     before, old = checker.now.number, page.path.picture
     begun = time.perf_counter()
     if key == "\b":

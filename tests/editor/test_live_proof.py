@@ -10,20 +10,20 @@ import pytest
 
 from app.desk.latest import Watch
 from app.desk.session import Proved
-from app.editor.live_proof import Checker, by_line
+from app.editor.live_proof import LiveProof, by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.editor.shop import GOOD, workshop
 
 
 @pytest.fixture
-def checker() -> Iterator[Checker]:
-    checker = Checker(workshop())
+def checker() -> Iterator[LiveProof]:
+    checker = LiveProof(workshop())
     yield checker
     checker.close()
 
 
-def test_a_good_program_is_proved_and_drawn(checker: Checker) -> None:
+def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
     number = checker.submit("a.nc", GOOD)
     found = checker.settled(10)
     assert (found.number, found.diagnostics, found.trouble) == (number, (), "")
@@ -31,7 +31,7 @@ def test_a_good_program_is_proved_and_drawn(checker: Checker) -> None:
     assert found.cycle_time > 0
 
 
-def test_an_error_stands_at_its_line(checker: Checker) -> None:
+def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
     checker.submit("a.nc", GOOD.replace("Z-.5", "Z-.5.5"))
     found = checker.settled(10)
     assert set(found.by_line) == {5}
@@ -39,7 +39,7 @@ def test_an_error_stands_at_its_line(checker: Checker) -> None:
     assert found.errors >= 1
 
 
-def test_an_empty_text_is_no_trouble(checker: Checker) -> None:
+def test_an_empty_text_is_no_trouble(checker: LiveProof) -> None:
     number = checker.submit("a.nc", "")
     found = checker.settled(10)
     assert (found.number, found.trouble) == (number, "")
@@ -53,7 +53,7 @@ def test_only_the_latest_of_a_burst_is_proved() -> None:
         proved.append(job.source.text)
         return real.prove(job, watch)
 
-    checker = Checker(replace(real, prove=prove))
+    checker = LiveProof(replace(real, prove=prove))
     for n in range(30):
         checker.submit("a.nc", GOOD.replace("S1000", f"S{1000 + n}"))
     assert checker.settled(10).number == 30
@@ -74,10 +74,10 @@ def test_a_long_proof_gives_way_to_a_newer_text() -> None:
             watch(1)
         return Proved(Proof(job.digest, ()))
 
-    checker = Checker(replace(workshop(), prove=prove))
+    checker = LiveProof(replace(workshop(), prove=prove))
     checker.submit("a.nc", "old")
     assert running.wait(10)
-    checker.clock = lambda: t[0] + 1000.0
+    checker.worker.clock = lambda: t[0] + 1000.0
     checker.submit("a.nc", "M30\n")
     assert checker.settled(10).number == 2
     assert tries == ["old", "M30\n"]
@@ -92,7 +92,7 @@ def test_closing_ends_a_proof_under_way() -> None:
         while True:
             watch(1)
 
-    checker = Checker(replace(workshop(), prove=prove))
+    checker = LiveProof(replace(workshop(), prove=prove))
     checker.submit("a.nc", GOOD)
     assert running.wait(10)
     checker.close()
@@ -103,7 +103,7 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
     def make_job(source: object, block_delete: bool) -> Job:
         raise ValueError("the store is damaged")
 
-    checker = Checker(replace(workshop(), make_job=make_job))
+    checker = LiveProof(replace(workshop(), make_job=make_job))
     checker.submit("a.nc", GOOD)
     assert checker.settled(10).trouble == "PROVING FAILED: the store is damaged"
     checker.workshop = workshop()

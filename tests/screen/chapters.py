@@ -54,7 +54,7 @@ def editor(day: Day) -> EditorPage:
     """The editor, which must be in front, with what is typed proved."""
     page = day.frame.page
     assert isinstance(page, EditorPage)
-    day.sees(lambda: not page.editor.checker.behind and page.findings.findings is page.editor.checker.now)
+    day.sees(lambda: not page.editor.proof.behind and page.findings.findings is page.editor.proof.now)
     return page
 
 

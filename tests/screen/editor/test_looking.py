@@ -21,7 +21,7 @@ def drawn(writer: Writer) -> Writer:
     writer.write(PART)
     page = writer.editor
     writer.sees(lambda: writer.proved() and page.path.drawn)
-    assert page.path.picture is page.editor.checker.now.picture
+    assert page.path.picture is page.editor.proof.now.picture
     return writer
 
 

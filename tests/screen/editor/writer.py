@@ -52,5 +52,6 @@ class Writer(Hands):
     def proved(self) -> bool:
         """Whether what is typed is proved."""
         page = self.editor
-        checker = page.editor.checker
-        return not checker.behind and page.findings.findings is checker.now and checker.now.number > 0
+        proof = page.editor.proof
+        fresh = not page.draft.stale and not proof.behind  # what was typed has come to the proof
+        return fresh and page.findings.findings is proof.now and proof.now.number > 0
