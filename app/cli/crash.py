@@ -43,9 +43,9 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
 def _logs() -> Path | None:
     """Where the log lies; it may be the folder itself that has failed."""
     try:
-        from app.desk.home import home
+        from app.desk.data_folder import data_folder
 
-        return home() / "logs"
+        return data_folder() / "logs"
     except (OSError, RuntimeError, ImportError):
         return None
 

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from app.cli.arguments import Parser, add_screen_options, settled
 from app.cli.crash import report_crash, report_thread
 from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
-from app.desk.home import HomeError, check_home
+from app.desk.data_folder import DataFolderError, check_data_folder
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = ("prove", "expand", "trace", "run", "offsets", "store", "machine", "serial", "alarms")
@@ -53,9 +53,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else argv
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
-        check_home()
+        check_data_folder()
         return _dispatch(settled(args))
-    except (CommandError, HomeError) as error:
+    except (CommandError, DataFolderError) as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_USAGE
     except KeyboardInterrupt:
@@ -94,7 +94,7 @@ def _screen(args: argparse.Namespace) -> int:
 
     if why := trouble():
         raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}")
-    from app.screen.main import run_screen
+    from app.screen.run_screen import run_screen
 
     return run_screen(machine=args.machine, program=args.program, offsets=args.offsets)
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from app.cli.errors import CommandError
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from core.store.store import Store, StoreError
 
 
@@ -22,5 +22,5 @@ def told() -> Iterator[None]:
 @contextmanager
 def opened_store(*, read_only: bool = False) -> Iterator[Store]:
     """The store, closed at the end. Raises CommandError for whatever the store refuses."""
-    with told(), Store.open(home(), read_only=read_only) as store:
+    with told(), Store.open(data_folder(), read_only=read_only) as store:
         yield store

@@ -14,7 +14,7 @@ from app.cli.progress import Progress
 
 if TYPE_CHECKING:
     from app.cli.options import SubParsers
-    from app.desk.headless import Outcome
+    from app.desk.headless_run import Outcome
     from core.executor.job import Job
     from core.language.source import Dialect
     from core.proving.proof_report import Report

@@ -163,12 +163,12 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
 
 
 def _store(args: argparse.Namespace, received: Received) -> int:
-    from app.desk.home import home
+    from app.desk.data_folder import data_folder
     from app.programs.file_changes import FileError
     from app.transfer.received_program import free_name, stored
 
     out = Path(args.out) if args.out else None
-    folder = out.parent if out else home() / "programs"
+    folder = out.parent if out else data_folder() / "programs"
     try:
         path = stored(received.text, folder, out.name if out else free_name(folder, received.name))
     except FileError as error:

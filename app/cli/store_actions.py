@@ -12,22 +12,22 @@ from app.cli.errors import EXIT_ERRORS, EXIT_OK
 from app.cli.offset_file import read_rows
 from app.cli.opened_store import opened_store, told
 from app.cli.zero_file import read_zero
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from core.store import backup, checking, database, export
 
 
 def _backup(args: argparse.Namespace) -> int:
     with told():
-        backup.backup(home(), Path(args.path))
-    sys.stdout.write(f"{args.path} holds the store of {home()}\n")
+        backup.backup(data_folder(), Path(args.path))
+    sys.stdout.write(f"{args.path} holds the store of {data_folder()}\n")
     return EXIT_OK
 
 
 def _restore(args: argparse.Namespace) -> int:
     with told():
-        kept = backup.restore(home(), Path(args.path))
+        kept = backup.restore(data_folder(), Path(args.path))
     beside = f"; the replaced store is kept as {kept}" if kept else ""
-    sys.stdout.write(f"{home()} is as {args.path} has it{beside}\n")
+    sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
     return EXIT_OK
 
 
@@ -52,13 +52,15 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _verify(args: argparse.Namespace) -> int:
-    path = home() / database.FILE_NAME
+    path = data_folder() / database.FILE_NAME
     with told():
         problems = checking.problems(path) if path.exists() else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:
-        sys.stdout.write(f"{path} is whole\n" if path.exists() else f"there is no store in {home()} yet\n")
+        sys.stdout.write(
+            f"{path} is whole\n" if path.exists() else f"there is no store in {data_folder()} yet\n"
+        )
     sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))
     return EXIT_ERRORS if problems else EXIT_OK
 

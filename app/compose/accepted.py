@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from app.desk.changes import FileChanges
+from app.desk.machine_file_changes import FileChanges
 from core.executor.commands import Command, EnableDrives
 from core.machine.changes import ABSENT, Change, changes
 from core.machine.model import Machine

@@ -9,7 +9,7 @@ from app.compose.canopen import own_process
 from app.compose.driven import driven, has_station
 from app.compose.inverter import has_inverter, with_inverter
 from app.compose.simulated import simulated
-from app.desk.station import StationPanel
+from app.desk.operator_station import StationPanel
 from core.machine.model import Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.feeder.client import Line

@@ -12,15 +12,15 @@ from core.machine.model import Machine
 
 if TYPE_CHECKING:
     from app.desk.latest import Watch
-    from app.desk.picture import Picture, Timed
     from app.offsets.effect import Draw
+    from app.path.path_picture import Picture, Timed
 
 
 def drawer(machine: Machine) -> Draw:
     """Draws a job on this machine, each tool in the frame of the offset that is given for it."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
-        from app.desk.picture import sketched
+        from app.path.path_picture import sketched
         from core.proving.program_timeline import Timeline, timed_blocks
 
         blocks = timed_blocks(Timeline.of(job.reading, job.setup, machine))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from app.compose.inverter import has_inverter, with_inverter
-from app.desk.station import StationPanel
+from app.desk.operator_station import StationPanel
 from core.machine.model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.grblhal.config import GrblAxis, GrblConfig, GrblInput, GrblOutput

@@ -14,8 +14,8 @@ from app.cli.errors import CommandError
 from app.compose.backends import Connected, connect, played, real_time
 from app.compose.journal import Journal
 from app.compose.shop_floor import open_shop_floor
-from app.desk.headless import HeadlessRun
-from app.desk.home import home
+from app.desk.data_folder import data_folder
+from app.desk.headless_run import HeadlessRun
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
@@ -35,7 +35,7 @@ class EventLog:
     @classmethod
     def new(cls, program: str) -> EventLog:
         """A log in the product's folder, named after the time and the program."""
-        folder = home() / "logs"
+        folder = data_folder() / "logs"
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
         try:

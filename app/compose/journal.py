@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from app.offsets.offset_book import OffsetBook, ZeroBook
 from app.programs.run_record import tell_cut_off
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
@@ -55,7 +55,7 @@ class Journal:
     @classmethod
     def at_home(cls) -> Journal:
         """The journal of the product's folder."""
-        return cls(home())
+        return cls(data_folder())
 
     @property
     def trouble(self) -> str:

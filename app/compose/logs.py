@@ -9,7 +9,7 @@ import queue
 import sys
 import time
 
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 
 _SIZE = 1_000_000  # bytes, three files of it
 _AGAIN = 2.0  # s between two tries to write again
@@ -56,7 +56,7 @@ class Log:
                 handler.close()
 
     def _opened(self) -> _File | None:
-        folder = home() / "logs"
+        folder = data_folder() / "logs"
         try:
             folder.mkdir(parents=True, exist_ok=True)
             file = _File(folder / "turndesk.log", maxBytes=_SIZE, backupCount=2, encoding="utf-8")

@@ -8,11 +8,10 @@ from dataclasses import replace
 from app.compose.machine import setup_for
 from app.compose.offsets import Offsets
 from app.desk.desk import Desk
-from app.desk.keep import Keep
 from app.desk.latest import Watch
-from app.desk.mdi.mdi import MdiDesk, ProveLine
-from app.desk.mdi.typing import Typing
-from app.desk.session import Proved
+from app.desk.persistence import Persistence
+from app.desk.program_loading import Proved
+from app.mdi.mdi_model import MdiModel, ProveLine, Typing
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Snapshot
 from core.interpreter.checkpoint import Begin, Checkpoint
@@ -45,7 +44,7 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
     return prove_line
 
 
-def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Keep) -> None:
+def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
     """Give the desk its MDI."""
     prove_line = line_prover(machine, offsets)
-    desk.mdi = MdiDesk(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))
+    desk.mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from app.offsets.offset_book import OffsetBook, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.rows import SecondaryRow, ToolRow
@@ -26,7 +26,7 @@ def stored_offsets() -> Offsets:
 
     Raises CommandError when the store cannot be trusted.
     """
-    folder = home()
+    folder = data_folder()
     if not folder.is_dir():
         return {}, {}
     from core.store.store import Store, StoreError

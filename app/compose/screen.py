@@ -22,14 +22,13 @@ from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.special import furnish
 from app.compose.workshop import samples, workshop
 from app.compose.zero_offsets import Zero, stored_zero, zero_book
-from app.desk.alarms import KEPT, KINDS
+from app.desk.alarm_log import KEPT, KINDS
+from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
-from app.desk.home import home
-from app.desk.keep import NothingKept
-from app.desk.program_file import ProgramFile
-from app.desk.session import Session, Workshop
-from app.desk.shelf import Shelf
-from app.desk.words import tr
+from app.desk.persistence import NoPersistence
+from app.desk.program_folder import ProgramFile, ProgramFolders
+from app.desk.program_loading import LoadingSteps, ProgramLoader
+from app.desk.translation import tr
 from app.editor.editor import Editor
 from app.editor.versions import Bench, NoArchive
 from app.offsets.effect import Effect
@@ -120,7 +119,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
     assert desk.lathe is not None
     open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
     if not journal.trouble:
-        open_ones.append(keep_status(desk.lathe, snapshot, home()))
+        open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
 
     def close() -> None:
         for each in open_ones:
@@ -141,7 +140,7 @@ def desk_and_executor(
     machine = read_machine(machine_file)
     connected = _connected(machine, clock)
     heard: list[Desk] = []
-    keep = journal or NothingKept()
+    keep = journal or NoPersistence()
 
     def hear(event: Event) -> None:
         for desk in heard:
@@ -167,11 +166,11 @@ def desk_and_executor(
     desk = Desk(
         post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
-        session=Session(
+        session=ProgramLoader(
             workshop(machine, offsets, journal, zero=zero, left=left),
             executor.post,
         ),
-        shelf=Shelf((home() / "programs", samples())),
+        shelf=ProgramFolders((data_folder() / "programs", samples())),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
@@ -223,9 +222,9 @@ def _drives(machine: Machine) -> str:
     return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
 
 
-def _editor(work: Workshop, journal: Journal | None) -> Editor:
+def _editor(work: LoadingSteps, journal: Journal | None) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
-    return Editor(Bench(work, journal or NoArchive(), home() / "programs", samples()))
+    return Editor(Bench(work, journal or NoArchive(), data_folder() / "programs", samples()))
 
 
 def step_clock() -> StepClock:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.desk import Desk
 from app.desk.latest import Watch
-from app.desk.searchto.search import SearchDesk
+from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job
 from core.interpreter.restart.restart_approach import Choices
 from core.machine.model import Machine
@@ -28,4 +28,6 @@ def give_searchto(desk: Desk, machine: Machine) -> None:
     """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
     rapid = machine.manual_rapid
     choices = Choices(rapid=rapid, modest=_MODEST * rapid)
-    desk.searchto = SearchDesk(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices)
+    desk.searchto = SearchtoModel(
+        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices
+    )

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.compose.transfer import PLAIN, SerialLines, proving
+from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
-from app.desk.home import home
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.session import Workshop
-from app.desk.settings import SettingsBook
+from app.desk.persistence import Persistence
+from app.desk.program_loading import LoadingSteps
+from app.desk.screen_settings import SettingsBook
 from app.programs.folder_chooser import Chooser
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
@@ -31,11 +31,11 @@ from app.special.spindle_limit import SpeedSection
 from app.transfer.serial_transfer import TransferSection
 from core.machine.model import Machine
 
-MakeSection = Callable[[Desk, Machine, Keep, Latest], Section]
+MakeSection = Callable[[Desk, Machine, Persistence, Latest], Section]
 
 
-def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Latest) -> Section:
-    section = KeepingSection(desk, keep, worker, home() / "backups")
+def _keeping(desk: Desk, _machine: Machine, keep: Persistence, worker: Latest) -> Section:
+    section = KeepingSection(desk, keep, worker, data_folder() / "backups")
 
     def restored() -> None:
         desk.settings.reload()
@@ -45,7 +45,7 @@ def _keeping(desk: Desk, _machine: Machine, keep: Keep, worker: Latest) -> Secti
     return section
 
 
-def _transfer(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path) -> Section:
+def _transfer(desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path) -> Section:
     """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
     ending = {"mill": ".h"}.get(machine.kind, ".nc")
     lines = SerialLines(proving(workshop), ending)
@@ -65,7 +65,9 @@ ITEMS: tuple[MakeSection, ...] = (
 )
 
 
-def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: Path | None = None) -> None:
+def furnish(
+    desk: Desk, machine: Machine, keep: Persistence, workshop: LoadingSteps, own: Path | None = None
+) -> None:
     """Give the desk what it remembers, and the pages that show it.
 
     ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder.
@@ -74,14 +76,14 @@ def furnish(desk: Desk, machine: Machine, keep: Keep, workshop: Workshop, own: P
     desk.counter = PartCounter(keep)
     desk.record = RunRecord(keep)
     worker = Latest("editing-special")
-    own = own or home() / "programs"
+    own = own or data_folder() / "programs"
     sections = [make(desk, machine, keep, worker) for make in ITEMS]
     sections.append(_transfer(desk, machine, keep, workshop, own))
     desk.special = SpecialDesk(sections, worker)
     desk.files = _files(desk, keep, workshop, own)
 
 
-def _files(desk: Desk, keep: Keep, workshop: Workshop, own: Path) -> FilesDesk:
+def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> FilesDesk:
     """The list of programs; what comes in is proved with the offsets of that moment."""
 
     def check(path: Path) -> str:

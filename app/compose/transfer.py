@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from app.compose.serial_line import open_wire, serial_ports
-from app.desk.session import Workshop
+from app.desk.program_loading import LoadingSteps
 from app.programs.file_changes import FileError
 from app.transfer.serial_line import Received
 from core.language.source import Source, SourceError, load_source
@@ -123,7 +123,7 @@ def settings_of(model: DncModel) -> TransferSettings:
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
 
 
-def proving(workshop: Workshop) -> Check:
+def proving(workshop: LoadingSteps) -> Check:
     """The check of the desk: its machine, its offsets of that moment."""
 
     def check(source: Source) -> tuple[tuple[str, ...], float]:

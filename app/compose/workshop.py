@@ -12,16 +12,16 @@ from app.compose.journal import Journal
 from app.compose.machine import setup_for
 from app.compose.offsets import Offsets
 from app.compose.zero_offsets import Zero, stored_zero
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from app.desk.latest import Watch
-from app.desk.session import Proved, Workshop
+from app.desk.program_loading import LoadingSteps, Proved
 from core.executor.job import Job, make_job
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, Source, SourceError, load_source
 from core.machine.model import Machine
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 
 def samples() -> Path:
@@ -36,7 +36,7 @@ def workshop(
     *,
     zero: Callable[[], Zero] = stored_zero,
     left: Callable[[], Modal] | None = None,
-) -> Workshop:
+) -> LoadingSteps:
     """What loading needs; offsets, and unit and rapid rate that the job before has ``left``, are those of
     the moment of loading."""
 
@@ -58,7 +58,7 @@ def workshop(
         return Proved(proof_of(job, report), report.diagnostics)
 
     def draw(job: Job, watch: Watch) -> Picture:
-        from app.desk.picture import sketched
+        from app.path.path_picture import sketched
         from core.proving.program_timeline import Timeline, timed_series
 
         return sketched(timed_series(Timeline.of(job.reading, job.setup, machine)), watch)
@@ -68,7 +68,7 @@ def workshop(
         setup = replace(job.setup, tools=tools, secondary=secondary, zero=zero())
         return replace(make_job(job.source, setup), reading=job.reading)
 
-    return Workshop(_read, new_job, prove_job, draw, renewed)
+    return LoadingSteps(_read, new_job, prove_job, draw, renewed)
 
 
 def _read(path: Path) -> Source:
@@ -84,4 +84,4 @@ def _whole(source: Source, *folders: Path) -> Source:
         return source
     from core.language.sinumerik.subprogram_files import with_subprograms
 
-    return with_subprograms(source, [*folders, home() / "programs", samples()])
+    return with_subprograms(source, [*folders, data_folder() / "programs", samples()])

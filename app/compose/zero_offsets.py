@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.errors import CommandError
 from app.compose.offsets import OF_A_FILE
-from app.desk.home import home
+from app.desk.data_folder import data_folder
 from app.offsets.offset_book import ZeroBook
 from core.interpreter.job_setup import ZeroOffset
 from core.store.zero import ZeroRow
@@ -25,7 +25,7 @@ def stored_zero() -> Zero:
 
     Raises CommandError when the store cannot be trusted.
     """
-    folder = home()
+    folder = data_folder()
     if not folder.is_dir():
         return {}
     from core.store.store import Store, StoreError

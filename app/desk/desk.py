@@ -7,19 +7,31 @@ Every method that a key or finger calls returns at once. What it cannot do it sa
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from app.desk import interrupted, prompts
-from app.desk.hands import OVERRIDE_MOST, stepped
-from app.desk.parts import DeskParts
-from app.desk.prompts import UNDER_WAY
-from app.desk.session import Loaded
-from app.desk.view import Tone, View, view_of
-from app.desk.words import tr
+from app.desk import interrupted_notice, prompt_line
+from app.desk.alarm_log import StopLog
+from app.desk.machine_file_changes import FileChanges
+from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
+from app.desk.operator_station import OVERRIDE_MOST, StationHands, StationPanel, stepped
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import Loaded, Phase, ProgramLoader
+from app.desk.program_renewal import Rebuilding
+from app.desk.prompt_line import UNDER_WAY, YES, Answers
+from app.desk.readouts import Readout
+from app.desk.screen_settings import SettingsBook
+from app.desk.translation import tr
+from app.offsets.offset_book import NO_ZEROS_KEPT as NO_ZERO
+from app.offsets.offset_book import NONE_KEPT, OffsetBook, ZeroBook
+from app.programs.run_record import RunRecord
+from app.special.part_count import PartCounter
 from core.executor.commands import (
+    Command,
     ConfirmStart,
     CycleStart,
     EnableDrives,
@@ -28,7 +40,173 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import Event, Snapshot, Starts, State
+from core.store.errors import StoreError
+
+if TYPE_CHECKING:
+    from app.editor.editor import Editor
+    from app.mdi.mdi_model import MdiModel
+    from app.offsets.effect import Effect
+    from app.programs.program_list import FilesDesk
+    from app.searchto.searchto_model import SearchtoModel
+    from app.special.special_functions import SpecialDesk
+    from core.machine.model import Machine
+
+# --- What a desk is made of, and what it answers with; nothing of it computes or waits.
+
+
+def _nothing() -> None:
+    """A desk without an executor of its own has nothing to close."""
+
+
+def _time_of_day() -> str:
+    return time.strftime("%H:%M:%S")
+
+
+@dataclass(slots=True)
+class DeskParts:
+    """All parts of a desk; ``Desk`` says what keys do with them.
+
+    ``station`` is there with the simulated machine only; ``two_hand`` as the machine file says.
+    """
+
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    session: ProgramLoader
+    shelf: ProgramFolders
+    station: StationPanel | None = None
+    two_hand: bool = True
+    with_c: bool = True
+    machine: str = ""
+    lathe: Machine | None = None  # what the machine file says, for moves by hand
+    simulated: bool = True
+    shut: Callable[[], None] = _nothing
+    waiting: Callable[[], str] = str  # what of it waits in memory, in words
+    differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
+    unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
+    clock: Callable[[], float] = time.monotonic
+    time_of_day: Callable[[], str] = _time_of_day
+    editor: Editor | None = None
+    special: SpecialDesk | None = None
+    files: FilesDesk | None = None
+    mdi: MdiModel | None = None
+    searchto: SearchtoModel | None = None
+    settings: SettingsBook = field(default_factory=SettingsBook)
+    counter: PartCounter = field(default_factory=PartCounter)
+    record: RunRecord = field(default_factory=RunRecord)
+    restoring: bool = False  # a backup takes the place of what is kept
+    effect: Effect | None = None  # draws what a change of offsets does
+    book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
+    zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
+    changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
+    stop_held: Callable[[], bool] = bool  # whether a key that stops is held down
+    starts_here: bool = True  # whether the page in front is one on which cycles are started
+    hands: StationHands = field(init=False)
+    log: StopLog = field(init=False)
+    answers: Answers = field(init=False)
+    rebuilding: Rebuilding = field(init=False)
+    _pulse: SilenceWatch = field(default_factory=SilenceWatch)
+
+    def __post_init__(self) -> None:
+        self.log = StopLog(self.time_of_day)
+        self.answers = Answers(self.snapshot, self._trouble, self._now)
+        self.rebuilding = Rebuilding(self.session, self.say)
+        starting = self.answers.starting
+        self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
+
+    def _trouble(self) -> str:
+        return self.unkept()
+
+    def say(self, text: str) -> None:
+        """Put an answer on the prompt line; it stays until the next key or the next state."""
+        self.answers.say(text)
+
+    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+        """Ask before something is lost or moves: ``PRESS Y TO …, ESC TO …``.
+
+        ``key`` means yes, and is never the one that asked; a finger has a target on the prompt line.
+        """
+        self.answers.ask(question, yes, key)
+
+    @property
+    def asked(self) -> str:
+        """The key that means yes to the question that stands; empty while none does."""
+        return self.answers.key if self.answers.asked is not None else ""
+
+    def _now(self) -> float:
+        return self.hands.clock()
+
+    def clear(self) -> None:
+        """Take the answer or the question back."""
+        self.answers.take_back()
+
+    @property
+    def notice(self) -> str:
+        """The answer to the last key, empty without one."""
+        return self.answers.notice
+
+    @notice.setter
+    def notice(self, text: str) -> None:
+        self.answers.notice, self.answers.asked = text, None
+
+    @property
+    def start_words(self) -> str:
+        """How a cycle is started at this machine."""
+        if self.station is None:
+            return "PRESS BOTH PALM BUTTONS" if self.two_hand else "PRESS CYCLE START"
+        return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.two_hand else "PRESS CYCLE START (F12)"
+
+    @property
+    def release_words(self) -> str:
+        """How the E-stop is freed at this machine."""
+        return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (U)"
+
+    @property
+    def readout(self) -> Readout:
+        """What the large figures show."""
+        return Readout(self.settings.now.readout)
+
+    def choose_setting(self, name: str, value: object) -> None:
+        """Take a choice of the screen; where it cannot be kept it counts until the end, and that is said."""
+        try:
+            self.settings.choose(name, value)
+        except StoreError as error:
+            self.say(f"NOT KEPT: {error}")
+
+    def next_readout(self) -> None:
+        """Position, distance to go, distance from home."""
+        self.choose_setting("readout", self.readout.following.value)
+
+    def close(self) -> None:
+        """End the loading and whatever drives the machine."""
+        self.session.close()
+        for part in (self.editor, self.special, self.files, self.mdi, self.searchto, self.effect):
+            if part is not None:
+                part.close()
+        self.shut()
+
+    def hear(self, event: Event) -> None:
+        """What the executor has to say; it may be called from its thread."""
+        self.answers.hear(event)
+        self.log.hear(event)
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        if self.stop_held() or not self.starts_here:
+            return prompt_line.STOP_HELD if self.stop_held() else prompt_line.NOT_HERE
+        for page in (self.mdi, self.searchto):
+            if page is not None and page.open:
+                return page.barred()
+        if self.restoring:
+            return prompt_line.RESTORING
+        loaded = self.session.now
+        if self.snapshot().state is not State.IDLE:
+            return ""
+        if loaded.phase is Phase.UNREADABLE:
+            return prompt_line.refusal(loaded)  # the executor still has what was there before
+        stale = self.rebuilding.wanted or self.book.busy or self.zero.busy or loaded.phase is Phase.READING
+        return prompt_line.STALE if stale else ""
+
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
@@ -40,7 +218,7 @@ class Desk(DeskParts):
 
     __slots__ = ()
 
-    def look(self) -> tuple[Snapshot, View, Loaded]:
+    def look(self) -> tuple[Snapshot, MachineStatus, Loaded]:
         """One snapshot, and what the page shows of it; called once a frame."""
         self.hands.turn_knobs()
         snapshot = self.snapshot()
@@ -50,7 +228,7 @@ class Desk(DeskParts):
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             self.counter.see(snapshot, self.post, self.say)
             self.record.see(snapshot, loaded)
-        view = view_of(snapshot, self.readout, self.with_c, self.settings.units)
+        view = status_of(snapshot, self.readout, self.with_c, self.settings.units)
         if self._pulse.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded
@@ -61,17 +239,17 @@ class Desk(DeskParts):
         ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
         """
         if self._pulse.is_silent:
-            return prompts.CONTROL_SILENT
+            return prompt_line.CONTROL_SILENT
         if self.answers.outlived(snapshot):
             self.clear()
-        return prompts.announced(snapshot) + self._prompt(snapshot, loaded, page)
+        return prompt_line.announced(snapshot) + self._prompt(snapshot, loaded, page)
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if self.notice:
             return self.notice
         if page:
-            return prompts.alarm_of(snapshot, self.release_words) or page
-        standing = prompts.prompt(snapshot, loaded, self.start_words, self.release_words)
+            return prompt_line.alarm_of(snapshot, self.release_words) or page
+        standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
         other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
         return f"{other} · {standing}" if other else standing
 
@@ -106,7 +284,7 @@ class Desk(DeskParts):
         found = self.snapshot().interrupted
         self.clear()
         if found is not None and found.program != path.name:
-            self.ask(interrupted.instead(found, path.name), partial(self._load, path))
+            self.ask(interrupted_notice.instead(found, path.name), partial(self._load, path))
         else:
             self._load(path)
 
@@ -164,10 +342,10 @@ class Desk(DeskParts):
     def reset(self) -> None:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
-        if state in prompts.MOVING:
+        if state in prompt_line.MOVING:
             self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
-        elif state in prompts.INTERRUPTED:
-            self.ask(prompts.GIVE_UP, self._give_up)
+        elif state in prompt_line.INTERRUPTED:
+            self.ask(prompt_line.GIVE_UP, self._give_up)
         else:
             self._give_up()
 
@@ -213,7 +391,7 @@ class Desk(DeskParts):
             self.clear()
         elif self.snapshot().confirmed:
             self.post(ConfirmStart(""))
-        elif self.snapshot().state in prompts.MOVING:
+        elif self.snapshot().state in prompt_line.MOVING:
             self.feed_hold("Esc at the screen")
         else:
             return False
@@ -236,18 +414,18 @@ class Desk(DeskParts):
         """The mushroom of the simulated station. A real one is no key: this holds the feed, and says so."""
         if self.station is None:
             self.feed_hold()
-            self.say(prompts.NO_MUSHROOM)
+            self.say(prompt_line.NO_MUSHROOM)
         else:
             self.hands.estop(pressed=True)
 
     def twist_out(self) -> None:
         """Free the E-stop of the simulated station, after asking."""
         if self.station is None:
-            self.say(prompts.NO_MUSHROOM)
+            self.say(prompt_line.NO_MUSHROOM)
         elif not self.hands.estop_pressed:
             self.say("THE E-STOP IS NOT PRESSED")
         else:
-            self.ask(prompts.TWIST_OUT, partial(self.hands.estop, pressed=False))
+            self.ask(prompt_line.TWIST_OUT, partial(self.hands.estop, pressed=False))
 
     def start_button(self) -> None:
         """Cycle start of a machine with one button."""

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.drawing.spots import measuring_words
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.editor import messages
 from app.editor.editor_keys_view import Mode
+from app.path.measuring import measuring_words
+from app.path.path_aspects import Tip
+from app.path.path_view import PathView
 from app.screen.look import Look
-from app.screen.pages import Doings
-from app.screen.path.aspects import Tip
-from app.screen.pathview import PathView
+from app.screen.page_base import Doings
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
     from app.editor.editor_view import EditorPage
-    from app.screen.path.pane import Pane
-    from app.screen.path.sight import Place
+    from app.path.path_pane_view import Pane, Place
+    from app.path.path_picture import Picture
 
 
 class EditedPath(PathView):

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent
 
-from app.desk import pages
 from app.editor import messages
+from app.screen import page_table
 
 if TYPE_CHECKING:
     from app.editor.editor_view import EditorPage
@@ -58,9 +58,9 @@ def doings(page: EditorPage, mode: Mode) -> dict[int, Doing]:
 def _text(page: EditorPage) -> dict[int, Doing]:
     asked = Doing("YES", page.answer) if page.editor.asked else Doing("NEXT ERR", page.next_finding)
     return {
-        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
+        1: Doing("MENU", partial(page.leave_to, page_table.MENU)),
         2: Doing("SAVE", page.save),
-        3: Doing("LEAVE", partial(page.leave_to, pages.AUTOMATIC)),
+        3: Doing("LEAVE", partial(page.leave_to, page_table.AUTOMATIC)),
         4: Doing("FIND", page.ask_text),
         5: Doing("GO TO", page.ask_line),
         6: asked,
@@ -74,7 +74,7 @@ def _text(page: EditorPage) -> dict[int, Doing]:
 def _finding(page: EditorPage) -> dict[int, Doing]:
     finder = page.finder
     return {
-        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
+        1: Doing("MENU", partial(page.leave_to, page_table.MENU)),
         2: Doing("NEXT", partial(finder.step, 1)),
         3: Doing("BEFORE", partial(finder.step, -1)),
         4: Doing("REPLACE", finder.replace),
@@ -89,7 +89,7 @@ def _finding(page: EditorPage) -> dict[int, Doing]:
 def _history(page: EditorPage) -> dict[int, Doing]:
     history, versions = page.history, page.versions
     return {
-        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
+        1: Doing("MENU", partial(page.leave_to, page_table.MENU)),
         2: Doing("RESTORE", page.restore),
         4: Doing("NEWER", lambda: history.mark(history.marked - 1)),
         5: Doing("OLDER", lambda: history.mark(history.marked + 1)),
@@ -102,7 +102,7 @@ def _history(page: EditorPage) -> dict[int, Doing]:
 def _looking(page: EditorPage) -> dict[int, Doing]:
     path = page.path
     return {
-        1: Doing("MENU", partial(page.leave_to, pages.MENU)),
+        1: Doing("MENU", partial(page.leave_to, page_table.MENU)),
         2: Doing("HOLD", page.looking.hold),
         3: Doing("TO LINE", page.looking.to_line),
         4: Doing("VIEW", path.next_view),

@@ -11,11 +11,9 @@ from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.prompts import MOVING
-from app.desk.session import Loaded
-from app.desk.swivel.telling import at_line, plane_words
-from app.desk.view import View
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.prompt_line import MOVING
 from app.editor import messages
 from app.editor.edited_path_view import EditedPath, Looking
 from app.editor.editor import Editor, Stage
@@ -27,13 +25,15 @@ from app.editor.question_view import Asking, AskLine, Finder
 from app.editor.text_view import Draft, TextField
 from app.editor.versions import History
 from app.editor.versions_view import VersionList
+from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
-from app.screen.pages import Doings, Host, Page
-from app.screen.swivel.view import SwivelView
+from app.screen.page_base import Doings, Host, Page
+from app.working_plane.plane_instant import at_line, plane_words
+from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 # --- The parts of the editor page, where they stand, and what they show; what keys do is the page's.
 
@@ -50,7 +50,7 @@ class EditorParts(Page):
         self._with_letters = False
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self)
-        self.space = SwivelView(look, self)  # takes the path's place where the program is for a mill
+        self.space = WorkingPlaneView(look, self)  # takes the path's place where the program is for a mill
         self.findings = FindingList(look, self.go_to, self)
         self.history = History(editor.bench.archive, editor.worker)
         self.versions = VersionList(look, self.history, self)
@@ -150,11 +150,11 @@ class EditorParts(Page):
 class EditorPage(EditorParts):
     """Shows what the desk's editor holds; it opens with the program on the desk or a name that was typed."""
 
-    NAME = pages.EDITOR
+    NAME = page_table.EDITOR
 
     def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
         super().__init__(host, editor, parent)
-        self._target = pages.AUTOMATIC  # where leaving leads to
+        self._target = page_table.AUTOMATIC  # where leaving leads to
         self._moving = False
         self.asking = Asking(self)
         self.looking = Looking(self)
@@ -167,7 +167,7 @@ class EditorPage(EditorParts):
 
     def opened(self) -> None:
         """The program on the desk, or the name that was typed for a new one, is being fetched."""
-        self._target = pages.AUTOMATIC
+        self._target = page_table.AUTOMATIC
         self.enter(Mode.TEXT)
 
     def leave(self) -> bool:
@@ -175,7 +175,7 @@ class EditorPage(EditorParts):
         if self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         if self.editor.stage is not Stage.CLOSED:
-            self._target = pages.AUTOMATIC
+            self._target = page_table.AUTOMATIC
             self.editor.leave(self.draft.now())
         return self.editor.stage is Stage.CLOSED
 
@@ -206,7 +206,7 @@ class EditorPage(EditorParts):
         elif self.editor.is_dirty(self.draft.now()):
             self.editor.notice = messages.UNSAVED
         else:
-            self._target = pages.AUTOMATIC
+            self._target = page_table.AUTOMATIC
             self.abandon()
         return True
 
@@ -230,7 +230,7 @@ class EditorPage(EditorParts):
             return f"LINE {line}: {found.text} {found.hint}".strip()
         return messages.STANDING
 
-    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """Take up what the workers have finished, prove what has been typed, show it."""
         editor = self.editor
         self._moving = snapshot.state in MOVING
@@ -310,7 +310,7 @@ class EditorPage(EditorParts):
     def leave_to(self, page: str) -> None:
         """Save and go to another page."""
         self._target = page
-        self.editor.leave(self.draft.now(), to_desk=page == pages.AUTOMATIC)
+        self.editor.leave(self.draft.now(), to_desk=page == page_table.AUTOMATIC)
 
     def abandon(self) -> None:
         """Go without saving."""

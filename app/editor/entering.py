@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from functools import partial
 
-from app.desk import prompts
+from app.desk import prompt_line
 from app.desk.desk import Desk
-from app.desk.lamps import TURNING
-from app.desk.words import tr
+from app.desk.readouts import TURNING
+from app.desk.translation import tr
 from app.editor import messages
 from app.editor.editor import Editor, Left
 from core.executor.snapshot import Snapshot
 
-UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
+UNDER_WAY = prompt_line.MOVING | prompt_line.INTERRUPTED
 
 
 def refusal(snapshot: Snapshot) -> str:

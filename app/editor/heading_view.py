@@ -9,10 +9,10 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF, QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk.words import tr
-from app.screen.layout import Rect
+from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
+from app.screen.window_layout import Rect
 
 KEYS = 14.0  # units: width of the place that shows the keyboard
 

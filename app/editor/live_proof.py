@@ -7,12 +7,12 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Request
-from app.desk.session import Workshop
+from app.desk.program_loading import LoadingSteps
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 QUIET = 0.008  # seconds without a key after which proving begins
 LONGEST = 0.03  # seconds that typing may put it off
@@ -57,7 +57,7 @@ def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 class LiveProof:
     """``submit`` and ``now`` never wait. A text that a newer one has overtaken is not proved."""
 
-    workshop: Workshop
+    workshop: LoadingSteps
     worker: Latest = field(
         default_factory=lambda: Latest("editing-proof", quiet=QUIET, longest=LONGEST, patience=PATIENCE)
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.latest import Latest, Watch
-from app.desk.session import Workshop
+from app.desk.program_loading import LoadingSteps
 from core.store.errors import StoreError
 from core.store.rows import VersionRow
 
@@ -50,7 +50,7 @@ class NoArchive:
 class Bench:
     """``workshop`` proves without keeping anything, ``programs`` is the operator's own folder."""
 
-    workshop: Workshop
+    workshop: LoadingSteps
     archive: Archive
     programs: Path
     samples: Path

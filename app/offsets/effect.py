@@ -17,7 +17,7 @@ from core.executor.job import Job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 NOUGHT = 1e-9  # mm
 

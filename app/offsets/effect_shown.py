@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from app.desk.desk import Desk
 from app.desk.formats import length
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.effect import Compared, Effect, Tables
 from app.offsets.offset_book import secondary_offsets, tool_offsets
 from app.offsets.offset_history import Ledger

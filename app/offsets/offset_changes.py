@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk import prompts
-from app.desk.words import tr
+from app.desk import prompt_line
+from app.desk.translation import tr
 from core.executor.snapshot import Snapshot, State
 
 CORRECTIONS = frozenset({"wear_x", "wear_z", "remark"})  # of a tool; all of a secondary offset
@@ -18,14 +18,14 @@ def refusal(snapshot: Snapshot, *, correction: bool) -> str:
     state = snapshot.state
     if state in {State.JOG, State.HOME}:
         return tr("THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST")
-    if state in prompts.UNDER_WAY and not correction:
+    if state in prompt_line.UNDER_WAY and not correction:
         return tr("A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
     return ""
 
 
 def standing(snapshot: Snapshot) -> str:
     """What a change entered now will count for; empty between cycles."""
-    if snapshot.state not in prompts.UNDER_WAY:
+    if snapshot.state not in prompt_line.UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
         return tr("PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED")
@@ -34,7 +34,7 @@ def standing(snapshot: Snapshot) -> str:
 
 def counts_later(snapshot: Snapshot) -> str:
     """What stands behind SAVED."""
-    if snapshot.state not in prompts.UNDER_WAY:
+    if snapshot.state not in prompt_line.UNDER_WAY:
         return ""
     return (
         tr("; IT COUNTS FROM THE NEXT PART")

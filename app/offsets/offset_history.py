@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 
 from app.desk.desk import Desk
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import counts_later
 from app.offsets.offset_values import Mode, in_words, shown_value, word, zero_change_in_words

@@ -9,7 +9,7 @@ from math import remainder
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH, fixed
-from app.desk.words import tr
+from app.desk.translation import tr
 from core.store.fields import FIELDS, Field, Sort
 from core.store.rows import Kind, Row, SecondaryRow, ToolRow, Value
 from core.store.zero import ZeroChange, ZeroRow, reach

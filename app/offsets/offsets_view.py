@@ -9,18 +9,18 @@ from typing import Protocol
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.session import Loaded
-from app.desk.view import View
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
 from app.offsets.effect_shown import Rows, ShownEffect
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import Ledger
 from app.offsets.offset_history_view import HistoryList
+from app.path.path_pane_view import ZOOM_STEP
+from app.path.path_view import PathView
+from app.screen import page_table
 from app.screen.entry_panel import AskedPanel, KeyPad
 from app.screen.look import Look
-from app.screen.pages import Doings, Host, Page
-from app.screen.path.sight import ZOOM_STEP
-from app.screen.pathview import PathView
+from app.screen.page_base import Doings, Host, Page
 from core.executor.snapshot import Snapshot
 
 # --- The path before and after a change of offsets on one picture.
@@ -102,7 +102,7 @@ class OffsetPage(Page):
         self.asked = AskedPanel(self.look, self)
         self.shown = ShownEffect(host.desk, model.ledger, model.proposed)
         self.effect = EffectView(self.look, self.shown, self)
-        own = ("C", "C") if self.NAME == pages.SECCMP else None
+        own = ("C", "C") if self.NAME == page_table.SECCMP else None
         self.pad = KeyPad(self.look, self._touched, own=own, parent=self)
 
     def board(self) -> QWidget:
@@ -121,9 +121,9 @@ class OffsetPage(Page):
             "F4": self.shared.undo,
             "F5": self._toggle,
             "F6": self._effect,
-            "F8": lambda: self._go(pages.TOOLS),
-            "F9": lambda: self._go(pages.SECCMP),
-            "F10": lambda: self._go(pages.ZERO),
+            "F8": lambda: self._go(page_table.TOOLS),
+            "F9": lambda: self._go(page_table.SECCMP),
+            "F10": lambda: self._go(page_table.ZERO),
         }
 
     def _go(self, name: str) -> None:
@@ -180,10 +180,10 @@ class OffsetPage(Page):
         if self.shown.open:
             self.shown.close()
         elif not self.shared.escape():
-            self.host.go(pages.AUTOMATIC)
+            self.host.go(page_table.AUTOMATIC)
         return True
 
-    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The table as the store has it, and the question."""
         ledger = self.shared.ledger
         self.shared.look(snapshot)

@@ -8,7 +8,7 @@ from enum import IntEnum
 
 from app.desk.arithmetic import LONGEST, EntryError, value_of
 from app.desk.formats import length
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import Mode, added, to_mm
 from core.store.rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow

@@ -9,16 +9,16 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
 from app.desk.formats import length
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.secondary_dialogue import CHARACTERS
 from app.offsets.secondary_offsets import SeccmpDesk
+from app.screen import page_table
 from app.screen.entry_panel import Asked
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.pages import Host
+from app.screen.page_base import Host
 from app.screen.panel import Panel
 from core.store.rows import SecondaryRow
 
@@ -151,7 +151,7 @@ def _boxes(room: QRectF, rows: int, gap: float) -> list[QRectF]:
 class SeccmpPage(OffsetPage):
     """F9, secondary offsets."""
 
-    NAME = pages.SECCMP
+    NAME = page_table.SECCMP
     LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
 
     def __init__(self, host: Host, parent: QWidget) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.offset_history import Ledger
 from app.offsets.offset_values import value_added, value_typed, word
 from core.store.rows import Kind, Value

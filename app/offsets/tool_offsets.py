@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from app.desk.arithmetic import LONGEST, EntryError
 from app.desk.desk import Desk
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets import offset_changes
 from app.offsets.effect_shown import Rows
 from app.offsets.offset_book import OffsetBook

@@ -9,15 +9,15 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets import tool_offsets
 from app.offsets.offset_values import marked, not_set, word
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import COLUMNS, PAGE, ToolGrid
+from app.screen import page_table
 from app.screen.entry_panel import Asked
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.pages import Doings, Host
+from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from app.screen.tool_tip_drawing import draw_tip
 from core.store.rows import OFFSETS
@@ -172,7 +172,7 @@ class GridTable(Panel):
 class ToolsPage(OffsetPage):
     """F8, tool offsets."""
 
-    NAME = pages.TOOLS
+    NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "", "SECCMP", "ZERO")
 
     def __init__(self, host: Host, parent: QWidget) -> None:

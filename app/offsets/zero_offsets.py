@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk import prompts
+from app.desk import prompt_line
 from app.desk.arithmetic import LONGEST, EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.offsets.offset_book import ZeroBook
 from app.offsets.offset_history import ZeroLedger
 from app.offsets.offset_values import shown_zero, zero_touched, zero_typed
@@ -54,7 +54,7 @@ class ZeroDesk:
             return self.book.locked
         if snapshot.state in {State.JOG, State.HOME}:
             return tr("THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST")
-        if snapshot.state in prompts.MOVING | prompts.INTERRUPTED | {State.PROGRAM_STOP}:
+        if snapshot.state in prompt_line.MOVING | prompt_line.INTERRUPTED | {State.PROGRAM_STOP}:
             return tr("A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY")
         return ""
 

@@ -9,17 +9,17 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.session import Loaded
-from app.desk.view import View
-from app.desk.words import tr
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
 from app.offsets.offset_history_view import HistoryList
 from app.offsets.offset_values import shown_zero, zero_change_in_words
 from app.offsets.secondary_dialogue import CHARACTERS
 from app.offsets.zero_offsets import ZeroDesk
+from app.screen import page_table
 from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
-from app.screen.pages import Doings, Host, Page
+from app.screen.page_base import Doings, Host, Page
 from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
 from core.store.zero import CODES, FIELDS, ZeroRow
@@ -94,7 +94,7 @@ PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the entry
 class ZeroPage(Page):
     """The model decides, this only shows it and hands the keys on."""
 
-    NAME = pages.ZERO
+    NAME = page_table.ZERO
     LABELS = ("MENU", "HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
 
     def __init__(self, host: Host, parent: QWidget) -> None:
@@ -111,8 +111,8 @@ class ZeroPage(Page):
             "F2": self.model.here,
             "F4": self.model.undo,
             "F5": self._toggle,
-            "F8": lambda: self._go(pages.TOOLS),
-            "F9": lambda: self._go(pages.SECCMP),
+            "F8": lambda: self._go(page_table.TOOLS),
+            "F9": lambda: self._go(page_table.SECCMP),
         }
 
     def _go(self, name: str) -> None:
@@ -159,10 +159,10 @@ class ZeroPage(Page):
     def escape(self) -> bool:
         """Esc goes one step back, and then to the Automatic page."""
         if not self.model.escape():
-            self.host.go(pages.AUTOMATIC)
+            self.host.go(page_table.AUTOMATIC)
         return True
 
-    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The table as the store has it, and the entry."""
         model = self.model
         model.ledger.look()

@@ -7,18 +7,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from app.desk import prompts
-from app.desk.keep import Keep
+from app.desk import prompt_line
 from app.desk.latest import Latest
-from app.desk.session import Loaded
-from app.desk.shelf import Shelf
-from app.desk.words import tr
+from app.desk.persistence import Persistence
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
 from app.programs import file_changes
 from app.programs.program_rows import Program
 from app.special.section import Entry
 from core.executor.snapshot import Snapshot
 
-UNDER_WAY = prompts.MOVING | prompts.INTERRUPTED
+UNDER_WAY = prompt_line.MOVING | prompt_line.INTERRUPTED
 SAMPLE = "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
 NONE = "NO PROGRAM IS MARKED"
 BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
@@ -29,7 +29,7 @@ class FilesHost(Protocol):
     """What the list needs of the desk."""
 
     notice: str
-    shelf: Shelf
+    shelf: ProgramFolders
 
     def say(self, text: str) -> None: ...
 
@@ -50,7 +50,7 @@ class Changer:
 
     desk: FilesHost
     own: Path
-    keep: Keep
+    keep: Persistence
     worker: Latest
     loaded: Callable[[], Loaded]
     here: Callable[[], Program | None]

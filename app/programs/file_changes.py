@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.desk.keep import Keep
-from app.desk.shelf import ENDINGS
+from app.desk.persistence import Persistence
+from app.desk.program_folder import ENDINGS
 from app.programs.whole_file import SavingError, present, write_whole
 from core.store.errors import StoreError
 from core.store.programs import check_name
@@ -48,7 +48,7 @@ def copied(source: Path, folder: Path, name: str) -> str:
     return name
 
 
-def renamed(source: Path, name: str, keep: Keep) -> str:
+def renamed(source: Path, name: str, keep: Persistence) -> str:
     """Another name; versions, count and record go along. Raises FileError."""
     name = good_name(name, source)
     if name == source.name:
@@ -65,7 +65,7 @@ def renamed(source: Path, name: str, keep: Keep) -> str:
     return name
 
 
-def deleted(path: Path, keep: Keep) -> str:
+def deleted(path: Path, keep: Persistence) -> str:
     """The file goes, its text stays as a version. Raises FileError, and then the file is still there."""
     try:
         keep.keep_text(path.name, _read(path), "deleted")

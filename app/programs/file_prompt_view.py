@@ -8,8 +8,8 @@ from PySide6.QtCore import QEvent, QObject, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.prompts import ASK_FILE, NOT_FOUND
-from app.desk.shelf import Entry, Shelf
+from app.desk.program_folder import ListedProgram, ProgramFolders
+from app.desk.prompt_line import ASK_FILE, NOT_FOUND
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
 
@@ -24,14 +24,14 @@ class FilePrompt(Panel):
     def __init__(
         self,
         look: Look,
-        shelf: Shelf,
+        shelf: ProgramFolders,
         choose: Callable[[str], bool],
         closed: Callable[[], None],
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(look, parent)
         self._shelf, self._choose, self._closed = shelf, choose, closed
-        self._entries: tuple[Entry, ...] = ()
+        self._entries: tuple[ListedProgram, ...] = ()
         self._row = 0
         self._moved = False  # a row was marked by hand: it goes before what was typed
         self.not_found = False
@@ -197,5 +197,5 @@ class FilePrompt(Panel):
         painter.setFont(look.fit(NOT_FOUND, 2.8, box.width() - 2 * u, bold=True))
         put(painter, box, CENTRE, NOT_FOUND)
 
-    def _picker(self, entry: Entry) -> Callable[[], None]:
+    def _picker(self, entry: ListedProgram) -> Callable[[], None]:
         return lambda: self._try(str(entry.path))

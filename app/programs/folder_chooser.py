@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.shelf import ENDINGS
+from app.desk.program_folder import ENDINGS
 from app.programs.file_changes import FileError
 
 # --- USB sticks and other removable media: where the system has mounted them, and how much room they have.

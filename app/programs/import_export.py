@@ -10,9 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import Protocol
 
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.words import tr
+from app.desk.persistence import Persistence
+from app.desk.translation import tr
 from app.programs.file_changes import FileError, good_name, taken
 from app.programs.folder_chooser import Chooser
 from app.programs.program_rows import chooser_sheet
@@ -38,7 +38,9 @@ class Moved:
     found: tuple[str, ...] = ()
 
 
-def brought_in(sources: Sequence[Path], folder: Path, keep: Keep, check: Check, *, replace: bool) -> Moved:
+def brought_in(
+    sources: Sequence[Path], folder: Path, keep: Persistence, check: Check, *, replace: bool
+) -> Moved:
     """Programs into the operator's folder, each proved. Raises FileError.
 
     Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
@@ -98,7 +100,7 @@ def _differing(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _keep_old(target: Path, keep: Keep, text: bytes) -> None:
+def _keep_old(target: Path, keep: Persistence, text: bytes) -> None:
     try:
         old = present(target)
         if old is not None and old != text:
@@ -172,7 +174,7 @@ class Traffic:
 
     desk: Speaker
     own: Path
-    keep: Keep
+    keep: Persistence
     worker: Latest
     check: Check
     chooser: Chooser

@@ -8,11 +8,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Watch
-from app.desk.session import Workshop
+from app.desk.program_loading import LoadingSteps
 from app.programs.program_rows import Program
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 KEPT = 40
 LARGEST = 5_000_000  # bytes: a larger program is drawn when it is loaded
@@ -23,7 +23,7 @@ Key = tuple[str, float, int]
 class Preview:
     """``workshop`` must keep nothing: looking at a program is no run of it."""
 
-    workshop: Workshop
+    workshop: LoadingSteps
     wanted: Key | None = None
     trouble: str = ""
     _made: OrderedDict[Key, Picture | str] = field(default_factory=OrderedDict)

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.session import Loaded
+from app.desk.persistence import Persistence
+from app.desk.program_loading import Loaded
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, Changer, FilesHost
 from app.programs.import_export import Traffic
 from app.programs.preview import Preview
@@ -23,7 +23,7 @@ class FilesDesk:
 
     desk: FilesHost
     own: Path
-    keep: Keep
+    keep: Persistence
     worker: Latest
     preview: Preview
     traffic: Traffic

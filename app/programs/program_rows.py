@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk import formats
-from app.desk.keep import Keep
-from app.desk.shelf import Shelf
-from app.desk.view import Tone
+from app.desk.machine_status import Tone
+from app.desk.persistence import Persistence
+from app.desk.program_folder import ProgramFolders
 from app.special.section import Row, Sheet
 from core.store.rows import RunRow
 
@@ -38,7 +38,7 @@ class Program:
         return str(self.path), self.changed, self.size
 
 
-def programs(shelf: Shelf, own: Path, keep: Keep) -> tuple[Program, ...]:
+def programs(shelf: ProgramFolders, own: Path, keep: Persistence) -> tuple[Program, ...]:
     """All programs of the shelf. Takes its time; raises StoreError when the store cannot be read."""
     runs = {row.program: row for row in keep.runs()}
     return tuple(

@@ -9,24 +9,24 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.session import Loaded
-from app.desk.swivel.telling import at_line
-from app.desk.view import View
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
 from app.programs.program_list import FilesDesk
 from app.programs.program_rows import Program, details_of
+from app.screen import page_table
 from app.screen.letter_keys import LetterPad
 from app.screen.look import LEFT, Look, put
-from app.screen.pages import Doings, Host
+from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
-from app.screen.pathview import PathView
 from app.screen.sheet_panel import ListPage, SheetPanel
-from app.screen.swivel.view import SwivelView
+from app.working_plane.plane_instant import at_line
+from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from app.desk.picture import Picture
+    from app.path.path_picture import Picture
 
 # --- What is known of the marked program: runs, parts, times, proof.
 
@@ -77,7 +77,7 @@ class PreviewPath(PathView):
     title = "PREVIEW"
 
 
-class PreviewSpace(SwivelView):
+class PreviewSpace(WorkingPlaneView):
     """The same for a mill: table, workpiece and path."""
 
     title = "PREVIEW"
@@ -86,7 +86,7 @@ class PreviewSpace(SwivelView):
 class FilesPage(ListPage):
     """The model decides; this shows it and hands the keys on."""
 
-    NAME = pages.PROGRAMS
+    NAME = page_table.PROGRAMS
     model: FilesDesk
 
     def __init__(self, host: Host, model: FilesDesk, parent: QWidget) -> None:
@@ -119,7 +119,7 @@ class FilesPage(ListPage):
             self.desk.say(NONE)
             return
         self.desk.editor.wanted = str(here.path)
-        self.host.go(pages.EDITOR)
+        self.host.go(page_table.EDITOR)
 
     def _chosen(self, row: int) -> None:
         model = self.model
@@ -141,7 +141,7 @@ class FilesPage(ListPage):
         model = self.model
         if key == "Enter" and not model.traffic.open and not model.question:
             if model.load():
-                self.host.go(pages.AUTOMATIC)
+                self.host.go(page_table.AUTOMATIC)
             return True
         return model.typed(key)
 
@@ -153,7 +153,7 @@ class FilesPage(ListPage):
         """The path is drawn anew."""
         self.path.restart()
 
-    def refresh(self, _snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """List, picture and record of this moment."""
         model = self.model
         model.look()

@@ -6,16 +6,16 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk import prompts
-from app.desk.keep import Keep, NothingKept
-from app.desk.session import Loaded, Phase
+from app.desk import prompt_line
+from app.desk.persistence import NoPersistence, Persistence
+from app.desk.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
 from core.store.store import Store
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
 CUT_OFF = "CUT OFF"  # the control ended in its middle: found at the next start
-_RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompts.INTERRUPTED
+_RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompt_line.INTERRUPTED
 _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 
 
@@ -23,7 +23,7 @@ _SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
 class RunRecord:
     """Looks at every snapshot; posts what has happened to the store and never waits for it."""
 
-    keep: Keep = field(default_factory=NothingKept)
+    keep: Persistence = field(default_factory=NoPersistence)
     running: str = ""  # the program under way
     _parts: int | None = None
     _ends: int = 0

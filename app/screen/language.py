@@ -7,8 +7,7 @@ from importlib.resources import files
 
 from PySide6.QtCore import QTranslator
 
-from app.desk.catalogue import Catalogue
-from app.desk.words import speak
+from app.desk.translation import Catalogue, speak
 
 CONTEXT = "turndesk"
 ENGLISH = "en"

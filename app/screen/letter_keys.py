@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.screen.look import CENTRE, Look, put_raw
 from app.screen.panel import Panel
 

@@ -10,9 +10,9 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
+from app.screen import page_table
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
-from app.screen.pages import Host, Page
+from app.screen.page_base import Host, Page
 from app.screen.panel import Panel
 from app.special.section import Key, Row, Sheet
 
@@ -209,5 +209,5 @@ class ListPage(Page):
     def escape(self) -> bool:
         """One step back, and from the list to the Automatic page."""
         if not self.model.escape():
-            self.host.go(pages.AUTOMATIC)
+            self.host.go(page_table.AUTOMATIC)
         return True

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.pulse import Pulse
+from app.desk.machine_status import SilenceWatch
 from app.shopfloor.conditions import Condition, conditions_of
 from app.shopfloor.execution import Execution, mode_of
 from core.executor.interrupted_job import InterruptedJob
@@ -50,7 +50,7 @@ class FloorReader:
     keys: frozenset[str]  # of the conditions that there are
     clock: Callable[[], float]
     _execution: Execution = field(init=False)
-    _pulse: Pulse = field(default_factory=Pulse)
+    _pulse: SilenceWatch = field(default_factory=SilenceWatch)
 
     def __post_init__(self) -> None:
         wired = self.machine.inputs

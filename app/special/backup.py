@@ -9,11 +9,11 @@ from datetime import datetime
 from pathlib import Path
 
 from app.desk.desk import Desk
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.prompts import UNDER_WAY
-from app.desk.view import Tone
-from app.desk.words import tr
+from app.desk.machine_status import Tone
+from app.desk.persistence import Persistence
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.translation import tr
 from app.programs.file_changes import FileError
 from app.programs.folder_chooser import Stick, sticks
 from app.special.section import Key, Row, Section, Sheet
@@ -43,7 +43,7 @@ class KeepingSection(Section):
     def __init__(
         self,
         desk: Desk,
-        keep: Keep,
+        keep: Persistence,
         worker: Latest,
         folder: Path,
         plugged: Callable[[], Sequence[Stick]] = sticks,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.view import Tone
+from app.desk.machine_status import Tone
 from app.special.section import Row, Section, Sheet
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.machine.model import Axis, Machine

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from datetime import datetime
 
 from app.desk.desk import Desk
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.view import Tone
+from app.desk.machine_status import Tone
+from app.desk.persistence import Persistence
 from app.special.section import Entry, Key, Row, Section, Sheet
 from core.executor.snapshot import Snapshot
 from core.store.rows import EventRow
@@ -29,7 +29,7 @@ class EventsSection(Section):
     name = "EVENT LOG"
     use = "what happened when; search"
 
-    def __init__(self, desk: Desk, keep: Keep, worker: Latest) -> None:
+    def __init__(self, desk: Desk, keep: Persistence, worker: Latest) -> None:
         super().__init__(desk)
         self.keep, self.worker = keep, worker
         self.entry = Entry(words=True)

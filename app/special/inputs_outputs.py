@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from app.desk.desk import Desk
-from app.desk.lamps import Lamp, lamps_of
-from app.desk.view import Tone
-from app.desk.words import tr
+from app.desk.machine_status import Tone
+from app.desk.readouts import Lamp, lamps_of
+from app.desk.translation import tr
 from app.special.section import Key, Row, Section, Sheet
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.desk.changes import FileChanges
 from app.desk.desk import Desk
-from app.desk.view import Tone
-from app.desk.words import tr
+from app.desk.machine_file_changes import FileChanges
+from app.desk.machine_status import Tone
+from app.desk.translation import tr
 from app.special.section import Key, Row, Section, Sheet
 from core.executor.snapshot import Snapshot, State
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.keep import Keep, NothingKept
-from app.desk.words import tr
+from app.desk.persistence import NoPersistence, Persistence
+from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.store.errors import StoreError
@@ -23,7 +23,7 @@ class PartCounter:
     In the cycle that makes the last part Cycle Repeat is switched off, so that the machine stops by itself.
     """
 
-    keep: Keep = field(default_factory=NothingKept)
+    keep: Persistence = field(default_factory=NoPersistence)
     program: str = ""
     count: int = 0
     target: int = 0

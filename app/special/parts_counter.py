@@ -7,7 +7,7 @@ from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.section import FigureSection, Key, Row, Sheet
 from core.executor.snapshot import Snapshot

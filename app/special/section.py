@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 from app.desk.arithmetic import LONGEST
 from app.desk.desk import Desk
-from app.desk.view import Tone
+from app.desk.machine_status import Tone
 from app.offsets.secondary_dialogue import CHARACTERS
 from core.executor.snapshot import Snapshot
 

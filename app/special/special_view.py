@@ -9,13 +9,13 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import pages
-from app.desk.session import Loaded
-from app.desk.view import View
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
 from app.screen.look import CENTRE, LEFT, Look, put
-from app.screen.pages import Doings, Host
+from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.special.special_functions import SpecialDesk
@@ -79,7 +79,7 @@ LETTERS = 24.0  # units: height
 class SpecialPage(ListPage):
     """The models decide; this shows them and hands the keys on."""
 
-    NAME = pages.SPECIAL
+    NAME = page_table.SPECIAL
     model: SpecialDesk
 
     def __init__(self, host: Host, model: SpecialDesk, parent: QWidget) -> None:
@@ -120,7 +120,7 @@ class SpecialPage(ListPage):
         self.model.inside = True
         self.model.section.keys()[name].action()
 
-    def refresh(self, snapshot: Snapshot, _view: View, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
         """The table of this snapshot."""
         self.model.look()
         section = self.model.section

@@ -8,7 +8,7 @@ from functools import partial
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.desk import Desk
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.special.section import FigureSection, Key, Row, Sheet
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields, replace
 from typing import TypeVar
 
-from app.desk.words import tr
+from app.desk.translation import tr
 from core.machine.hardware.model import DncModel
 
 BAUDS = (110, 300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200)

@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.desk.desk import Desk
-from app.desk.keep import Keep
 from app.desk.latest import Latest
-from app.desk.prompts import UNDER_WAY
-from app.desk.view import Tone
-from app.desk.words import tr
+from app.desk.machine_status import Tone
+from app.desk.persistence import Persistence
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.translation import tr
 from app.programs.file_changes import FileError
 from app.special.section import Entry, Key, Row, Section, Sheet
 from app.transfer.received_program import free_name, stored
@@ -99,7 +99,7 @@ class TransferSection(Section):
     name = "RS-232"
     use = "programs over the serial line"
 
-    def __init__(self, desk: Desk, keep: Keep, lines: Lines, default: DncModel, own: Path) -> None:
+    def __init__(self, desk: Desk, keep: Persistence, lines: Lines, default: DncModel, own: Path) -> None:
         super().__init__(desk)
         self.keep, self.lines, self.own = keep, lines, own
         self.worker = Latest("editing-serial")
@@ -283,7 +283,7 @@ class TransferSection(Section):
             self.desk.say(f"REFUSED: {error}")
 
 
-def _kept(keep: Keep, default: DncModel) -> DncModel:
+def _kept(keep: Persistence, default: DncModel) -> DncModel:
     try:
         return form_of(keep.setting(KEPT), default)
     except StoreError:

@@ -24,14 +24,24 @@ LANGUAGES = ("es",)
 COMPOSING = "app/compose"
 COMPOSED = ("journal.py", "offsets.py", "mdi.py", "screen.py", "special.py", "searchto.py", "simulated.py")
 ROOMS = (
-    *("app/desk", "app/screen", "app/editor", "app/offsets", "app/programs", "app/special", "app/transfer"),
+    *(
+        "app/automatic",
+        "app/desk",
+        "app/editor",
+        "app/jog",
+        "app/mdi",
+        "app/offsets",
+        "app/path",
+        "app/programs",
+    ),
+    *("app/screen", "app/searchto", "app/special", "app/transfer", "app/working_plane"),
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", COMPOSING),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
-        *("pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless.py"),
+        *("pictures.py", "interpreter/book.py", "book_page.py", "database.py", "keys.py", "headless_run.py"),
         *("logs.py", "screen/display.py"),
     }
 )

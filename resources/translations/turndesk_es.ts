@@ -169,22 +169,22 @@
       <translation>{what} TERMINÓ: GUARDE LA BITÁCORA, CIERRE TURNDESK Y ÁBRALO OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/answers.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>NO START: %1</source>
       <translation>NO ARRANCA: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/answers.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>NOT COUNTED AS A PART: %1</source>
       <translation>NO CONTADO COMO PIEZA: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/answers.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>NOT KEPT: %1</source>
       <translation>NO SE GUARDÓ: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/answers.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>REFUSED: %1</source>
       <translation>RECHAZADO: %1</translation>
     </message>
@@ -244,7 +244,7 @@
       <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
     </message>
     <message>
-      <location filename="app/desk/changes.py" />
+      <location filename="app/desk/machine_file_changes.py" />
       <source>THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT</source>
       <translation>EL ARCHIVO DE MÁQUINA HA CAMBIADO ({count}): F10, ARCHIVO DE MÁQUINA LO MUESTRA Y LO ACEPTA</translation>
     </message>
@@ -329,52 +329,52 @@
       <translation>{name} NO SE CARGA: HAY UN TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/measured.py" />
+      <location filename="app/path/measuring.py" />
       <source>ANGLE {axis}</source>
       <translation>ÁNGULO {axis}</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/measured.py" />
+      <location filename="app/path/measuring.py" />
       <source>DISTANCE</source>
       <translation>DISTANCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/measured.py" />
+      <location filename="app/path/measuring.py" />
       <source>ROUND</source>
       <translation>REDONDO</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/measured.py" />
+      <location filename="app/path/measuring.py" />
       <source>TO X</source>
       <translation>A LA X</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/measured.py" />
+      <location filename="app/path/measuring.py" />
       <source>TO Z</source>
       <translation>A LA Z</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/spots.py" />
+      <location filename="app/path/measuring.py" />
       <source>ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK</source>
       <translation>FLECHAS: PUNTO SIGUIENTE   TAB: POR LA TRAYECTORIA   RETURN: FIJA, Y MIDE DESDE AHÍ   ESC: REGRESA</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/spots.py" />
+      <location filename="app/path/measuring.py" />
       <source>CENTRE</source>
       <translation>CENTRO</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/spots.py" />
+      <location filename="app/path/measuring.py" />
       <source>CROSSING</source>
       <translation>CRUCE</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/spots.py" />
+      <location filename="app/path/measuring.py" />
       <source>END</source>
       <translation>EXTREMO</translation>
     </message>
     <message>
-      <location filename="app/desk/drawing/spots.py" />
+      <location filename="app/path/measuring.py" />
       <source>FREE</source>
       <translation>LIBRE</translation>
     </message>
@@ -1049,677 +1049,677 @@
       <translation>reemplazado por una importación</translation>
     </message>
     <message>
-      <location filename="app/desk/home.py" />
+      <location filename="app/desk/data_folder.py" />
       <source>TURNDESK_HOME: %1 %2 a file and no folder; name a folder, or unset it</source>
       <translation>TURNDESK_HOME: %1 %2 un archivo y no una carpeta; nombre una carpeta, o quítela</translation>
     </message>
     <message>
-      <location filename="app/desk/home.py" />
+      <location filename="app/desk/data_folder.py" />
       <source>lies below %1, which is</source>
       <translation>está debajo de %1, que es</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>C AXIS</source>
       <translation>EJE C</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>COARSE FEED</source>
       <translation>AVANCE BURDO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>COLLET</source>
       <translation>BOQUILLA</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>COMMENT</source>
       <translation>COMENTARIO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>COOLANT</source>
       <translation>REFRIG.</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>D OFFSET</source>
       <translation>COMPENSACIÓN D</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>F THAT IS A RAPID</source>
       <translation>F QUE ES RÁPIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>FEED</source>
       <translation>AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>FEED MODE</source>
       <translation>MODO DE AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G01 FEED</source>
       <translation>AVANCE G01</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G10 AT NEXT T</source>
       <translation>G10 EN T SIG.</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G10 IN FORCE</source>
       <translation>G10 VIGENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G76 … G77</source>
       <translation>G76 … G77</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G92 PRESET</source>
       <translation>PREAJUSTE G92</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>G97 %1 RPM</source>
       <translation>G97 %1 RPM</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>LOCKED</source>
       <translation>BLOQUEADO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>M FUNCTIONS</source>
       <translation>FUNCIONES M</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>NOSE COMP</source>
       <translation>COMP DE PUNTA</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>OFF</source>
       <translation>APAGADO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>RAPID</source>
       <translation>RÁPIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>RAPID RATE</source>
       <translation>VELOC DE RÁPIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>SFM</source>
       <translation>PIES/MIN</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>SPEED</source>
       <translation>VELOC</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>SPINDLE</source>
       <translation>HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>TOOL</source>
       <translation>HERRAMIENTA</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>TOOL OFFSET</source>
       <translation>COMP HERRAM</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>UNITS</source>
       <translation>UNIDADES</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>X WORDS</source>
       <translation>PALABRAS X</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>cut feed</source>
       <translation>avance de corte</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>feed mode</source>
       <translation>modo de avance</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>first feed</source>
       <translation>primer avance</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>rapid rate</source>
       <translation>velocidad de rápido</translation>
     </message>
     <message>
-      <location filename="app/desk/inforce.py" />
+      <location filename="app/desk/modal_rows.py" />
       <source>tool offset</source>
       <translation>compensación de herramienta</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source> (ITS TEXT HAS CHANGED SINCE)</source>
       <translation> (SU TEXTO HA CAMBIADO DESDE ENTONCES)</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source> PASS {now} OF {all}</source>
       <translation> PASADA {now} DE {all}</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK</source>
       <translation>EMPIEZA EN LA LÍNEA 1, {text}, DESDE DONDE ESTÁ T{tool}: {start}; ESC LO ANULA</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}</source>
       <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {at}: {why}{changed}</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
       <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
       <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>STANDS AT {stood} FROM HOME</source>
       <translation>ESTÁ EN {stood} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>STOOD AT {stood} FROM HOME</source>
       <translation>ESTABA EN {stood} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING</source>
       <translation>ESTABA EN {stood} DESDE LA REFERENCIA; DÓNDE ESTÁ AHORA NO SE SABE SIN REFERENCIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>STOOD AT {stood}, STANDS AT {now} FROM HOME</source>
       <translation>ESTABA EN {stood}, ESTÁ EN {now} DESDE LA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/interrupted.py" />
+      <location filename="app/desk/interrupted_notice.py" />
       <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
       <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>TOOL NUMBER?</source>
       <translation>¿NÚMERO DE HERRAMIENTA?</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)</source>
       <translation>T{number} SOLA: LAS DEMÁS QUEDAN (L: TODAS LA SIGUEN)</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number} IS SET WHEN {axis} IS TOUCHED TOO</source>
       <translation>T{number} QUEDA PUESTA CUANDO TAMBIÉN SE TOQUE {axis}</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
       <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>{tool} MEASURED DIAMETER?</source>
       <translation>¿DIÁMETRO MEDIDO DE {tool}?</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/asked.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>{tool} Z POSITION OF THE FACE?</source>
       <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/choices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED</source>
       <translation>SE ELIGIÓ OTRA VELOCIDAD: TERMINÓ EL MOVIMIENTO A MANO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/choices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED</source>
       <translation>SE ELIGIÓ OTRO PASO: TERMINÓ EL MOVIMIENTO A MANO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
       <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
       <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: THE HANDWHEEL IS OFF</source>
       <translation>HAY UNA ENTRADA ABIERTA: EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
       <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8</source>
       <translation>EN UNA FRESADORA LA COMPENSACIÓN ES EL LARGO DE LA HERRAMIENTA: MÍDALO, Y ESCRÍBALO EN F8</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE HANDWHEEL IS OFF</source>
       <translation>EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE</source>
       <translation>EL VOLANTE ESTÁ DESCONECTADO: EL TECLADO SE FUE A OTRA PARTE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE</source>
       <translation>TERMINÓ EL MOVIMIENTO A MANO: EL TECLADO PASÓ A OTRA PARTE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE SLIDES ARE STILL MOVING</source>
       <translation>LOS CARROS TODAVÍA SE MUEVEN</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/desk.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS</source>
       <translation>ESCRIBA UN VALOR O UNA SUMA COMO .5-.002 Y RETURN; ESC LO DEJA COMO ESTABA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>ANOTHER KEY HAS ENDED THE JOG</source>
       <translation>OTRA TECLA TERMINÓ EL MOVIMIENTO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
       <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U OPRIMA SIN SHIFT</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>SHIFT WAS LET GO: THE RAPID HAS ENDED</source>
       <translation>SE SOLTÓ SHIFT: TERMINÓ EL RÁPIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>THE KEY HAS GONE SILENT: LET IT GO AND PRESS IT AGAIN</source>
       <translation>LA TECLA DEJÓ DE RESPONDER: SUÉLTELA Y OPRÍMALA DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>THE SCREEN WAS AWAY: THE JOG HAS ENDED</source>
       <translation>LA PANTALLA ESTUVO AUSENTE: TERMINÓ EL MOVIMIENTO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/hold.py" />
+      <location filename="app/jog/held_jog.py" />
       <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
       <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source> OR </source>
       <translation> O </translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>, THEN </source>
       <translation>, LUEGO </translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>ABSOLUTE</source>
       <translation>ABSOLUTO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME</source>
       <translation>TODOS LOS EJES CONOCEN SU POSICIÓN: NO HAY NADA QUE REFERENCIAR</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
       <translation>REFERENCIAR {first}: OPRIMA RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>HOMED</source>
       <translation>CON REF</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>HOMING</source>
       <translation>BUSCANDO REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>NOT HOMED</source>
       <translation>SIN REF</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. </source>
       <translation>T{tool} PUEDE ESTAR EN LA PIEZA: PRIMERO SÁQUELA A MANO. </translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/home.py" />
+      <location filename="app/jog/jog_homing.py" />
       <source>{axis} KNOWS ITS POSITION</source>
       <translation>{axis} CONOCE SU POSICIÓN</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source> AND </source>
       <translation> Y </translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O ABANDÓNELO CON R, ANTES DE MOVER A MANO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
       <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH</source>
       <translation>CADA OPRESIÓN DE UNA FLECHA ES UN PASO; F2 CAMBIA SU TAMAÑO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF</source>
       <translation>SOSTENGA UNA FLECHA PARA MOVER, CON SHIFT PARA RÁPIDO; T ELIGE HERRAMIENTA, X o Z LA TOCAN</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
       <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
       <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS</source>
       <translation>EL VOLANTE MUEVE {axis}: UN CLIC ES UN PASO; V PARA EL EJE SIGUIENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM</source>
       <translation>LOS CARROS BUSCAN SU REFERENCIA: H LOS DETIENE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/notices.py" />
+      <location filename="app/jog/jog_model.py" />
       <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
       <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>REFUSED: {why}</source>
       <translation>RECHAZADO: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
       <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN</source>
       <translation>EL CARRO SE MOVIÓ DESPUÉS: OPRIMA ESC Y TOQUE OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number:g} does not exist; tools are T1…32</source>
       <translation>T{number:g} no existe; las herramientas son T1…32</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number} IS AS IT WAS</source>
       <translation>T{number} QUEDA COMO ESTABA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
       <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/tool.py" />
+      <location filename="app/jog/tool_setting.py" />
       <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
       <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>, alone</source>
       <translation>, sola</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>TOUCH OFF WITH THE MACHINE AT REST AND READY</source>
       <translation>TOQUE LA HERRAMIENTA CON LA MÁQUINA EN REPOSO Y LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>touched Z</source>
       <translation>tocada en Z</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>touched off, new tool</source>
       <translation>tocada, herramienta nueva</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>touched Ø</source>
       <translation>tocada en Ø</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET</source>
       <translation>{axis} NO TIENE REFERENCIA: SU POSICIÓN AÚN NO VALE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/touch.py" />
+      <location filename="app/jog/touch_off.py" />
       <source>{axis} would be out of range</source>
       <translation>{axis} quedaría fuera de alcance</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/wheel.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>THE HANDWHEEL IS OFF: {why}</source>
       <translation>EL VOLANTE ESTÁ DESCONECTADO: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/wheel.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF</source>
       <translation>LA PANTALLA ESTUVO AUSENTE: EL VOLANTE ESTÁ DESCONECTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/wheel.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL</source>
       <translation>EL INTERRUPTOR DE LA ESTACIÓN ELIGE EL EJE DEL VOLANTE</translation>
     </message>
     <message>
-      <location filename="app/desk/jogging/wheel.py" />
+      <location filename="app/jog/jog_handwheel.py" />
       <source>THIS MACHINE HAS NO HANDWHEEL</source>
       <translation>ESTA MÁQUINA NO TIENE VOLANTE</translation>
     </message>
     <message>
-      <location filename="app/desk/keep.py" />
+      <location filename="app/desk/persistence.py" />
       <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>BLOCK DELETE</source>
       <translation>SALTO BLOQUE</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>COLLET CLOSED</source>
       <translation>BOQUILLA CERRADA</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>COLLET OPEN</source>
       <translation>BOQUILLA ABIERTA</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>CYCLE REPEAT</source>
       <translation>REPETIR CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>LIVE TOOL</source>
       <translation>HERR MOTRIZ</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>NO COUNT</source>
       <translation>SIN CONT</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>OPTIONAL STOP</source>
       <translation>PARO OPCIONAL</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>SINGLE BLOCK</source>
       <translation>BLOQUE A BLOQUE</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>SPINDLE COASTS</source>
       <translation>HUSILLO POR INERCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>SPINDLE FWD</source>
       <translation>HUSILLO ADELANTE</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>SPINDLE REV</source>
       <translation>HUSILLO REVERSA</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>TABLE TURNED</source>
       <translation>MESA GIRADA</translation>
     </message>
     <message>
-      <location filename="app/desk/lamps.py" />
+      <location filename="app/desk/readouts.py" />
       <source>TILTED PLANE</source>
       <translation>PLANO INCLINADO</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>PROVING THE LINE</source>
       <translation>COMPROBANDO LA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>Set it with F8.</source>
       <translation>Póngala con F8.</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT</source>
       <translation>LA LÍNEA NO CORRE: CORRÍJALA, O ESC PARA BORRARLA</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>TO RUN THE LINE {start}; ESC TAKES IT BACK</source>
       <translation>PARA CORRER LA LÍNEA {start}; ESC LA RETIRA</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
       <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/findings.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>Tool {number} was never set.</source>
       <translation>La herramienta {number} nunca se puso.</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
       <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
       <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
       <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>THE LINE CANNOT BE PROVED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET</source>
       <translation>LA LÍNEA SE COMPRUEBA Y CORRE CON SERVOS ENCENDIDOS: F5 LOS ENCIENDE, F6 ES RESET</translation>
     </message>
     <message>
-      <location filename="app/desk/mdi/mdi.py" />
+      <location filename="app/mdi/mdi_model.py" />
       <source>TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK</source>
       <translation>ESCRIBA PRIMERO UNA LÍNEA; LA FLECHA ARRIBA TRAE LAS ANTERIORES</translation>
     </message>
@@ -2059,632 +2059,632 @@
       <translation>sí</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>AUTO</source>
       <translation>AUTO</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>AUTOMATIC</source>
       <translation>AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>D1…D32: corrections of wear and size</source>
       <translation>D1…D32: correcciones de desgaste y medida</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>EDIT</source>
       <translation>EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>EDITOR</source>
       <translation>EDITOR</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>G54…G59: where SINUMERIK programs have their zero</source>
       <translation>G54…G59: dónde tienen su cero los programas SINUMERIK</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>JOG</source>
       <translation>MANUAL</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>LIST</source>
       <translation>LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>MAIN MENU</source>
       <translation>MENÚ PRINCIPAL</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>MDI</source>
       <translation>MDI</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>PROGRAMS</source>
       <translation>PROGRAMAS</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>SEARCHTO</source>
       <translation>BUSCAR A</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>SECCMP</source>
       <translation>COMPSEC</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>SECONDARY OFFSETS</source>
       <translation>COMPENSACIÓN SECUNDARIA</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>SPECIAL</source>
       <translation>ESPECIAL</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>SPECIAL FUNCTIONS</source>
       <translation>FUNCIONES ESPECIALES</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>T1…T32: position and nose radius</source>
       <translation>T1…T32: posición y radio de punta</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>TOOL OFFSETS</source>
       <translation>HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>TOOLS</source>
       <translation>HERRAM</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>ZERO</source>
       <translation>CEROS</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>ZERO OFFSETS</source>
       <translation>CEROS DE PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>list, preview, copy, import and export</source>
       <translation>lista, vista previa, copiar, importar y exportar</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>move by hand, touch tools off</source>
       <translation>mover a mano, tocar herramientas</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>one line at a time</source>
       <translation>una línea a la vez</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>run programs</source>
       <translation>correr programas</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>speed limit, parts, inputs and outputs, log, backup</source>
       <translation>tope de velocidad, piezas, entradas y salidas, bitácora, respaldo</translation>
     </message>
     <message>
-      <location filename="app/desk/pages.py" />
+      <location filename="app/screen/page_table.py" />
       <source>write and prove programs</source>
       <translation>escribir y comprobar programas</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS</source>
       <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
       <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>PRESS CYCLE START</source>
       <translation>OPRIMA INICIO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>PRESS CYCLE START (F12)</source>
       <translation>OPRIMA INICIO DE CICLO (F12)</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>RELEASE THE BUTTON</source>
       <translation>SUELTE EL BOTÓN</translation>
     </message>
     <message>
-      <location filename="app/desk/parts.py" />
+      <location filename="app/desk/desk.py" />
       <source>RELEASE THE BUTTON (U)</source>
       <translation>SUELTE EL BOTÓN (U)</translation>
     </message>
     <message>
-      <location filename="app/desk/program_file.py" />
+      <location filename="app/desk/program_folder.py" />
       <source>{name} HAS CHANGED ON THE DISK: F2 READS IT ANEW, THE START RUNS WHAT IS SHOWN</source>
       <translation>{name} CAMBIÓ EN EL DISCO: F2 LO LEE DE NUEVO, EL ARRANQUE CORRE LO QUE SE MUESTRA</translation>
     </message>
     <message>
-      <location filename="app/desk/program_file.py" />
+      <location filename="app/desk/program_folder.py" />
       <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
       <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source> %1 BLOCKS</source>
       <translation> %1 BLOQUES</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source> (%1 MORE)</source>
       <translation> (%1 MÁS)</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>%1  ·  WHAT TO DO: %2</source>
       <translation>%1  ·  QUÉ HACER: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>%1 CANNOT BE LOADED: %2; PRESS F2 FOR ANOTHER</source>
       <translation>NO SE PUEDE CARGAR %1: %2; OPRIMA F2 PARA OTRO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST</source>
       <translation>HAY UNA TECLA DE PARO OPRIMIDA: SUÉLTELA PRIMERO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE</source>
       <translation>ALARMA: CORRIJA LA CAUSA Y OPRIMA R PARA RECONOCERLA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>CAUSE: %1</source>
       <translation>CAUSA: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>COMING TO REST</source>
       <translation>DETENIÉNDOSE</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
       <translation>LOS CICLOS SE INICIAN EN LA PÁGINA AUTOMÁTICO: OPRIMA F1 Y LUEGO F2</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
       <translation>SERVOS APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>E-STOP: MAKE THE MACHINE SAFE, %1, THEN PRESS D FOR DRIVES ON</source>
       <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA, %1, Y OPRIMA D PARA ENCENDER SERVOS</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
       <translation>NO SE ENCONTRÓ EL ARCHIVO, OPRIMA CUALQUIER TECLA PARA CONTINUAR</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>FILE TO BE PROCESSED</source>
       <translation>ARCHIVO A PROCESAR</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>LINE %1: </source>
       <translation>LÍNEA %1: </translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>NO START: A BACKUP IS BEING RESTORED</source>
       <translation>NO ARRANCA: SE ESTÁ RESTAURANDO UN RESPALDO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>NO START: THE PROGRAM IS BEING READ ANEW</source>
       <translation>NO ARRANCA: SE ESTÁ LEYENDO DE NUEVO EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND</source>
       <translation>UN SOLO BOTÓN DE PALMA NO ARRANCA: OPRIMA LOS DOS EN MEDIO SEGUNDO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH</source>
       <translation>UN BOTÓN DE PALMA SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y OPRIMA LOS DOS</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>PAUSE HOLDS THE FEED (SO DO H AND ESC), SCROLL LOCK IS THE E-STOP</source>
       <translation>PAUSA RETIENE EL AVANCE (TAMBIÉN H Y ESC), BLOQ DESPL ES EL PARO DE EMERGENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>PRESS F2 TO CHOOSE A PROGRAM</source>
       <translation>OPRIMA F2 PARA ELEGIR UN PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
       <translation>OPRIMA Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN</source>
       <translation>OPRIMA Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO OPRIMIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>PROVING FOUND ERRORS</source>
       <translation>LA COMPROBACIÓN HALLÓ ERRORES</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW</source>
       <translation>EL CONTROL NO RESPONDE: OPRIMA EL PARO DE EMERGENCIA; LO QUE SE VE NO ES DE AHORA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED</source>
       <translation>EL PARO DE EMERGENCIA ES EL BOTÓN ROJO DE LA MÁQUINA: OPRÍMALO. ESTA TECLA RETUVO EL AVANCE</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>THE PROGRAM IS NOT PROVED YET AND WILL NOT START</source>
       <translation>EL PROGRAMA AÚN NO ESTÁ COMPROBADO Y NO ARRANCARÁ</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>THE SLIDES ARE LOOKING FOR HOME</source>
       <translation>LOS CARROS BUSCAN SU REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>TO GO ON %1; R GIVES THE PROGRAM UP</source>
       <translation>PARA SEGUIR %1; R ABANDONA EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>TO START</source>
       <translation>PARA ARRANCAR</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>TO START %1</source>
       <translation>PARA ARRANCAR %1</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING</source>
       <translation>ESCRIBA UN NOMBRE, O MARQUE UN PROGRAMA CON LAS FLECHAS, ANTES DE EDITAR</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>WHAT TO DO: %1  ·  R ACKNOWLEDGES, F7 LISTS</source>
       <translation>QUÉ HACER: %1  ·  R RECONOCE, F7 LISTA</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT RUN: %1</source>
       <translation>NO CORRERÁ: %1</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT RUN: %1%2%3</source>
       <translation>NO CORRERÁ: %1%2%3</translation>
     </message>
     <message>
-      <location filename="app/desk/prompts.py" />
+      <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT START: NO OFFSET WAS EVER SET FOR %1 (F8 SETS THEM)</source>
       <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>%1  ·  CONTROL IN %2</source>
       <translation>%1  ·  CONTROL EN %2</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>DISTANCE TO GO</source>
       <translation>DISTANCIA POR RECORRER</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>INCH</source>
       <translation>PULGADAS</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>MM</source>
       <translation>MM</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>POSITION</source>
       <translation>POSICIÓN</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>X IS A DIAMETER</source>
       <translation>X ES DIÁMETRO</translation>
     </message>
     <message>
-      <location filename="app/desk/readout.py" />
+      <location filename="app/desk/readouts.py" />
       <source>X IS A RADIUS</source>
       <translation>X ES RADIO</translation>
     </message>
     <message>
-      <location filename="app/desk/rebuilding.py" />
+      <location filename="app/desk/program_renewal.py" />
       <source>NO NEXT PART WITH THE CHANGED OFFSETS: {why}</source>
       <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT</source>
       <translation>C GIRÓ DESDE QUE ENTRÓ T{tool}: LIBÉRELA GIRANDO EL HUSILLO A MANO Y SAQUE T{tool} A MANO</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME</source>
       <translation>NO SE SABE CÓMO LLEGÓ AQUÍ T{tool}: SÁQUELA A MANO DE LA PIEZA POR DONDE ENTRÓ</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING</source>
       <translation>T{tool} ES UN MACHUELO EN SU ROSCA: SÁQUELO A MANO GIRANDO EL HUSILLO, CON Z DETRÁS</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} STANDS CLEAR OF THE PART ALREADY</source>
       <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z</source>
       <translation>T{tool} ESTÁ EN UNA ROSCA: SAQUE PRIMERO X DE LA ROSCA A MANO, NO Z</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER</source>
       <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA A MANO POR DONDE ENTRÓ, {x} Y Z+ A LA VEZ</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X</source>
       <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN Z+, NO EN X</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/leaving.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z</source>
       <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA PRIMERO A MANO EN {x}, NO EN Z</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/opening.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/opening.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>CHOOSE A PROGRAM FIRST (F2)</source>
       <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/opening.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE</source>
       <translation>BUSCAR A LEE SÓLO PROGRAMAS OMNITURN; ÉSTE ARRANCA DESDE SU PRIMERA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/opening.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
       <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>CALLED ON LINE</source>
       <translation>LLAMADA EN LA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>LOOK: LINES {first} TO {last} ARE LEFT OUT AND THEIR METAL IS STILL THERE</source>
       <translation>OJO: SE OMITEN LAS LÍNEAS {first} A {last} Y SU METAL SIGUE AHÍ</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>PASS OF LINES {first}-{last}</source>
       <translation>PASADA DE LAS LÍNEAS {first}-{last}</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>SPINDLE FORWARD</source>
       <translation>HUSILLO ADELANTE</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>SPINDLE LOCKED AS C, TURNED TO ITS ANGLE</source>
       <translation>HUSILLO BLOQUEADO COMO C, GIRADO A SU ÁNGULO</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>SPINDLE REVERSE</source>
       <translation>HUSILLO REVERSA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI</source>
       <translation>LA BOQUILLA ESTÁ CERRADA Y DEBE ESTAR ABIERTA EN ESTA LÍNEA: M13 EN MDI</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>THE COLLET IS OPEN AND MUST BE CLOSED AT THIS LINE: M12 IN MDI</source>
       <translation>LA BOQUILLA ESTÁ ABIERTA Y DEBE ESTAR CERRADA EN ESTA LÍNEA: M12 EN MDI</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>{name} ON</source>
       <translation>{name} ENCENDIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/plan.py" />
+      <location filename="app/searchto/searchto_plan.py" />
       <source>{number} OF {count}</source>
       <translation>{number} DE {count}</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS</source>
       <translation>COMPARE; VEA EL CAMINO Y LO QUE ARRANCARÁ; F10 CONFIRMA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>GOING THROUGH THE PROGRAM; ESC GIVES UP</source>
       <translation>RECORRIENDO EL PROGRAMA; ESC ABANDONA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT</source>
       <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT</source>
       <translation>VEA EL CAMINO DE SALIDA DE LA PIEZA; F10 LO CONFIRMA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE</source>
       <translation>DESDE ESTA LÍNEA NO ARRANCA: F8 O F9 VA A LA BUENA MÁS CERCANA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>PROVING THE RESTART; ESC GIVES UP</source>
       <translation>COMPROBANDO EL REARRANQUE; ESC ABANDONA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>TO START THE RESTART {start}; ESC TAKES IT BACK</source>
       <translation>PARA INICIAR EL REARRANQUE {start}; ESC LO RETIRA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK</source>
       <translation>PARA SACAR LA HERRAMIENTA DE LA PIEZA {start}; ESC LO ANULA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/prompting.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
       <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>(WAY OUT OF THE PART)</source>
       <translation>(SALIDA DE LA PIEZA)</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>CHOOSE A GOOD LINE FIRST</source>
       <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES</source>
       <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN LAZO O DE UNA SUBRUTINA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)</source>
       <translation>NO ARRANCA: BUSQUE PRIMERO UNA LÍNEA Y CONFÍRMELA (F10)</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>SWITCH THE DRIVES ON FIRST (D)</source>
       <translation>ENCIENDA PRIMERO LOS SERVOS (D)</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>THE LINE CANNOT BE SEARCHED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE</source>
       <translation>ESCRIBA PRIMERO UN TEXTO; COMILLAS ANTES DE LAS CIFRAS LAS VUELVEN TEXTO</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>WAY OUT</source>
       <translation>SALIDA</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>WILL NOT START: {why}</source>
       <translation>NO ARRANCARÁ: {why}</translation>
     </message>
     <message>
-      <location filename="app/desk/searchto/search.py" />
+      <location filename="app/searchto/searchto_model.py" />
       <source>{text} IS IN NO LINE</source>
       <translation>{text} NO ESTÁ EN NINGUNA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/desk/session.py" />
+      <location filename="app/desk/program_loading.py" />
       <source>DRAWING</source>
       <translation>DIBUJANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/session.py" />
+      <location filename="app/desk/program_loading.py" />
       <source>EMPTY</source>
       <translation>VACÍO</translation>
     </message>
     <message>
-      <location filename="app/desk/session.py" />
+      <location filename="app/desk/program_loading.py" />
       <source>PROVING</source>
       <translation>COMPROBANDO</translation>
     </message>
     <message>
-      <location filename="app/desk/session.py" />
+      <location filename="app/desk/program_loading.py" />
       <source>READY</source>
       <translation>LISTO</translation>
     </message>
     <message>
-      <location filename="app/desk/session.py" />
+      <location filename="app/desk/program_loading.py" />
       <source>REFUSED</source>
       <translation>RECHAZADO</translation>
     </message>
     <message>
-      <location filename="app/desk/settings.py" />
+      <location filename="app/desk/screen_settings.py" />
       <source>AS THE PROGRAM</source>
       <translation>COMO EL PROGRAMA</translation>
     </message>
@@ -3379,27 +3379,27 @@
       <translation>un tope hasta reiniciar</translation>
     </message>
     <message>
-      <location filename="app/desk/swivel/camera.py" />
+      <location filename="app/working_plane/plane_drawing.py" />
       <source>FRONT</source>
       <translation>FRENTE</translation>
     </message>
     <message>
-      <location filename="app/desk/swivel/camera.py" />
+      <location filename="app/working_plane/plane_drawing.py" />
       <source>RIGHT</source>
       <translation>DERECHA</translation>
     </message>
     <message>
-      <location filename="app/desk/swivel/position.py" />
+      <location filename="app/desk/readouts.py" />
       <source>MACHINE</source>
       <translation>MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/desk/swivel/position.py" />
+      <location filename="app/desk/readouts.py" />
       <source>TILTED PLANE OF LINE {line}</source>
       <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/desk/swivel/position.py" />
+      <location filename="app/desk/readouts.py" />
       <source>WORKPIECE</source>
       <translation>PIEZA</translation>
     </message>
@@ -3684,22 +3684,22 @@
       <translation>RECIBIDO</translation>
     </message>
     <message>
-      <location filename="app/desk/view.py" />
+      <location filename="app/desk/machine_status.py" />
       <source>ALARM %1: %2</source>
       <translation>ALARMA %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/view.py" />
+      <location filename="app/desk/machine_status.py" />
       <source>FEED HOLD %1: %2</source>
       <translation>RETENCIÓN DE AVANCE %1: %2</translation>
     </message>
     <message>
-      <location filename="app/desk/view.py" />
+      <location filename="app/desk/machine_status.py" />
       <source>PROGRAM STOP</source>
       <translation>PARO DE PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/desk/view.py" />
+      <location filename="app/desk/machine_status.py" />
       <source>WAITING: %1</source>
       <translation>ESPERANDO: %1</translation>
     </message>
@@ -3774,62 +3774,62 @@
       <translation>mm</translation>
     </message>
     <message>
-      <location filename="app/screen/bars.py" />
+      <location filename="app/screen/window_bars.py" />
       <source>STARTING</source>
       <translation>ARRANCANDO</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>CYCLE START: BOTH PALMS</source>
       <translation>INICIO DE CICLO: DOS PALMAS</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>FEED RATE</source>
       <translation>AVANCE</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>IS IN</source>
       <translation>OPRIMIDO</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>OPERATOR STATION</source>
       <translation>ESTACIÓN DEL OPERADOR</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>OUT</source>
       <translation>AFUERA</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>PAUSE</source>
       <translation>PAUSA</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>SCR LOCK</source>
       <translation>BLOQ DES</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>SPINDLE SPEED</source>
       <translation>VELOC DE HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>SPINDLE SWITCH</source>
       <translation>INTERRUPTOR HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>STOP</source>
       <translation>PARO</translation>
     </message>
     <message>
-      <location filename="app/screen/dock.py" />
+      <location filename="app/screen/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
     </message>
@@ -4079,167 +4079,167 @@
       <translation>REGISTRO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>%1 TO GO ON</source>
       <translation>%1 PARA SEGUIR</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
       <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>NOT KEPT</source>
       <translation>SIN GUARDAR</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>NOT KEPT: {why}</source>
       <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>PARTS  ·  TIME</source>
       <translation>PIEZAS  ·  TIEMPO</translation>
     </message>
     <message>
-      <location filename="app/screen/frame_parts.py" />
+      <location filename="app/screen/window_frame.py" />
       <source>TOOL  ·  OFFSET</source>
       <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
     </message>
     <message>
-      <location filename="app/screen/gauges.py" />
+      <location filename="app/screen/readout_panels.py" />
       <source>SWITCH OFF</source>
       <translation>APAGADO</translation>
     </message>
     <message>
-      <location filename="app/screen/head.py" />
+      <location filename="app/screen/readout_panels.py" />
       <source>FEED %1</source>
       <translation>AVANCE %1</translation>
     </message>
     <message>
-      <location filename="app/screen/head.py" />
+      <location filename="app/screen/readout_panels.py" />
       <source>SPINDLE %1</source>
       <translation>HUSILLO %1</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>CONT</source>
       <translation>CONT</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>HELD</source>
       <translation>SOSTENIDO</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>IN/MIN</source>
       <translation>PULG/MIN</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>JOG  ·  HOLD TO MOVE</source>
       <translation>MANUAL  ·  SOSTENGA PARA MOVER</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>MM/MIN</source>
       <translation>MM/MIN</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>STEP</source>
       <translation>PASO</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>STEP IN</source>
       <translation>PASO PLG</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>STEP MM</source>
       <translation>PASO MM</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>WHEEL</source>
       <translation>VOLANTE</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>WHEEL {axis}</source>
       <translation>VOLANTE {axis}</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/pad.py" />
+      <location filename="app/jog/jog_pad_view.py" />
       <source>in</source>
       <translation>pulg</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/page.py" />
+      <location filename="app/jog/jog_view.py" />
       <source>ALONE</source>
       <translation>SOLA</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/page.py" />
+      <location filename="app/jog/jog_view.py" />
       <source>NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING</source>
       <translation>BLOQ NUM ESTÁ DESACTIVADO: LAS FLECHAS DEL TECLADO NUMÉRICO NO MUEVEN NADA</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/page.py" />
+      <location filename="app/jog/jog_view.py" />
       <source>READOUT</source>
       <translation>LECTURA</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/page.py" />
+      <location filename="app/jog/jog_view.py" />
       <source>Return enters it, Esc leaves it as it was</source>
       <translation>Return lo pone, Esc lo deja como estaba</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/page.py" />
+      <location filename="app/jog/jog_view.py" />
       <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
       <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/toolpanel.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>ITS TIP IS NOW AT</source>
       <translation>SU PUNTA ESTÁ AHORA EN</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/toolpanel.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>THIS ONE</source>
       <translation>ÉSTA</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/toolpanel.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TOOL SETTING</source>
       <translation>AJUSTE DE HERRAMIENTA</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/toolpanel.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TOUCH X</source>
       <translation>TOCAR X</translation>
     </message>
     <message>
-      <location filename="app/screen/jog/toolpanel.py" />
+      <location filename="app/jog/tool_setting_view.py" />
       <source>TOUCH Z</source>
       <translation>TOCAR Z</translation>
     </message>
@@ -4284,42 +4284,42 @@
       <translation>PROGRAMA  ·  %1 LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/screen/main.py" />
+      <location filename="app/screen/run_screen.py" />
       <source>A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: %1: %2</source>
       <translation>UN ERROR DE LA PANTALLA; LA MÁQUINA NO TIENE QUE VER: %1: %2</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/history.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>HISTORY  ·  ARROW UP AND DOWN</source>
       <translation>HISTORIA  ·  FLECHA ARRIBA Y ABAJO</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/history.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>No line was run yet.</source>
       <translation>Todavía no se corre ninguna línea.</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/inforce.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>IN FORCE</source>
       <translation>VIGENTE</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/line.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>LINE  ·  READY, CYCLE START RUNS IT</source>
       <translation>LÍNEA  ·  LISTA, INICIO DE CICLO LA CORRE</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/page.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>DRIVES</source>
       <translation>SERVOS</translation>
     </message>
     <message>
-      <location filename="app/screen/mdi/page.py" />
+      <location filename="app/mdi/mdi_view.py" />
       <source>SPN STOP</source>
       <translation>PARO HUS</translation>
     </message>
     <message>
-      <location filename="app/screen/menu.py" />
+      <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
       <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
     </message>
@@ -4369,267 +4369,267 @@
       <translation>F2 suma lo escrito; F3 muestra X y Z desde la maestra; Esc sale</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER</source>
       <translation>ALARMAS Y PAROS  ·  ESC CIERRA  ·  AV PÁG: ANTERIORES</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>ALSO: %1</source>
       <translation>TAMBIÉN: %1</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>CAUSE, THE LIKELIEST FIRST</source>
       <translation>CAUSA, LA MÁS PROBABLE PRIMERO</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>LINE %1</source>
       <translation>LÍNEA %1</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>No alarm and no stop yet.</source>
       <translation>Todavía ninguna alarma ni paro.</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>WHAT TO DO</source>
       <translation>QUÉ HACER</translation>
     </message>
     <message>
-      <location filename="app/screen/overlay.py" />
+      <location filename="app/screen/alarm_panels.py" />
       <source>line %1</source>
       <translation>línea %1</translation>
     </message>
     <message>
-      <location filename="app/screen/path/aspects.py" />
+      <location filename="app/path/path_aspects.py" />
       <source>FACE</source>
       <translation>CARA</translation>
     </message>
     <message>
-      <location filename="app/screen/path/aspects.py" />
+      <location filename="app/path/path_aspects.py" />
       <source>PATH</source>
       <translation>TRAYECTORIA</translation>
     </message>
     <message>
-      <location filename="app/screen/path/aspects.py" />
+      <location filename="app/path/path_aspects.py" />
       <source>SIDE</source>
       <translation>LADO</translation>
     </message>
     <message>
-      <location filename="app/screen/path/furniture.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>after</source>
       <translation>después</translation>
     </message>
     <message>
-      <location filename="app/screen/path/furniture.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>before</source>
       <translation>antes</translation>
     </message>
     <message>
-      <location filename="app/screen/path/furniture.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>done</source>
       <translation>hecho</translation>
     </message>
     <message>
-      <location filename="app/screen/path/furniture.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>rapid</source>
       <translation>rápido</translation>
     </message>
     <message>
-      <location filename="app/screen/path/furniture.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>to come</source>
       <translation>por hacer</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>AT MOST {length} {unit} APART  ·  AT THE CIRCLE</source>
       <translation>A LO MÁS {length} {unit} DE DIFERENCIA  ·  EN EL CÍRCULO</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>FACE  ·  SEEN FROM THE TAILSTOCK</source>
       <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>MEAS</source>
       <translation>MEDIR</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>NOTHING THAT IS CUT HAS CHANGED</source>
       <translation>NO CAMBIÓ NADA DE LO QUE SE CORTA</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>SIDE  ·  UNROLLED AT Ø {diameter}</source>
       <translation>LADO  ·  DESARROLLADO EN Ø {diameter}</translation>
     </message>
     <message>
-      <location filename="app/screen/path/whole.py" />
+      <location filename="app/path/path_marks_view.py" />
       <source>The path is shown when a program is loaded.</source>
       <translation>La trayectoria se muestra cuando hay un programa cargado.</translation>
     </message>
     <message>
-      <location filename="app/screen/runline.py" />
+      <location filename="app/screen/readout_panels.py" />
       <source>STOP %1: %2</source>
       <translation>PARO %1: %2</translation>
     </message>
     <message>
-      <location filename="app/screen/scenes.py" />
+      <location filename="app/screen/pictures.py" />
       <source>%1 cannot be written</source>
       <translation>no se puede escribir %1</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/asked.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>LINE OR TEXT?</source>
       <translation>¿LÍNEA O TEXTO?</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/beside.py" />
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>AT THE LINE</source>
       <translation>EN LA LÍNEA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/beside.py" />
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>NOW</source>
       <translation>AHORA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/beside.py" />
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>Pass after</source>
       <translation>Pasada sig.</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/beside.py" />
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>Pass before</source>
       <translation>Pasada ant.</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>AFTER</source>
       <translation>DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>CONFIRM</source>
       <translation>CONFIRMA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
       <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>F5: WITH COOLANT</source>
       <translation>F5: CON REFRIGERANTE</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>F5: WITHOUT COOLANT</source>
       <translation>F5: SIN REFRIGERANTE</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>GOING THROUGH THE PROGRAM TO LINE {line}</source>
       <translation>RECORRIENDO EL PROGRAMA HASTA LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>GOOD AFTER</source>
       <translation>BUENA DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>GOOD BEFORE</source>
       <translation>BUENA ANTES</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>H HOLDS IT ON ITS WAY</source>
       <translation>H LA RETIENE EN SU CAMINO</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>LINE {line} IS NOT GOOD</source>
       <translation>LA LÍNEA {line} NO ES BUENA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>NOTHING BUT THE SLIDES</source>
       <translation>NADA MÁS LOS CARROS</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>PASS {number} OF {count}</source>
       <translation>PASADA {number} DE {count}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>PREVIOUS</source>
       <translation>PREVIA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>STATE AT LINE {line}</source>
       <translation>ESTADO EN LA LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>THE TOOL LEAVES THE PART AT {feed}</source>
       <translation>LA HERRAMIENTA SALE DE LA PIEZA A {feed}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>THE WAY OUT OF THE PART</source>
       <translation>CAMINO DE SALIDA DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>{which}: LINE {line}</source>
       <translation>{which}: LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/page.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>{which}: NONE</source>
       <translation>{which}: NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/starts.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>CONFIRMED: CYCLE START BEGINS IT</source>
       <translation>CONFIRMADO: INICIO DE CICLO LO ARRANCA</translation>
     </message>
     <message>
-      <location filename="app/screen/searchto/starts.py" />
+      <location filename="app/searchto/searchto_view.py" />
       <source>WILL START</source>
       <translation>ARRANCARÁ</translation>
     </message>
     <message>
-      <location filename="app/screen/swivel/view.py" />
+      <location filename="app/working_plane/working_plane_view.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
     </message>
     <message>
-      <location filename="app/screen/window.py" />
+      <location filename="app/screen/main_window.py" />
       <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
       <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
     </message>
     <message>
-      <location filename="app/screen/window.py" />
+      <location filename="app/screen/main_window.py" />
       <source>AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE</source>
       <translation>UN CAMPO TIENE EL TECLADO, Y NO ADMITE {key} AQUÍ</translation>
     </message>
     <message>
-      <location filename="app/screen/window.py" />
+      <location filename="app/screen/main_window.py" />
       <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
       <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
     </message>
     <message>
-      <location filename="app/screen/window.py" />
+      <location filename="app/screen/main_window.py" />
       <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
       <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>

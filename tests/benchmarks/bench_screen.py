@@ -25,10 +25,10 @@ from PySide6.QtWidgets import QApplication
 
 from app.cli.offset_file import read_offsets
 from app.compose.screen import build_desk
-from app.desk.session import Phase
+from app.desk.program_loading import Phase
 from app.screen.look import Look, dress, load_fonts
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.snapshot import State
 from tests.benchmarks.bench_hold import chords
 

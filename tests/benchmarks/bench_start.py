@@ -51,7 +51,7 @@ from pathlib import Path
 from app.compose.machine import read_machine, setup_for
 from app.compose.offsets import chosen_offsets
 from app.compose.simulated import simulated
-from app.desk.headless import HeadlessRun
+from app.desk.headless_run import HeadlessRun
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.catalogue import Catalogue
-from app.desk.words import speak, tr
+from app.desk.translation import Catalogue, speak, tr
 
 KNOWN = {
     "READY": "LISTO",

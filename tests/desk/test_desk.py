@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import SILENT, Desk
-from app.desk.prompts import CONTROL_SILENT, GIVE_UP, ONE_PALM
-from app.desk.session import Phase, Session, Workshop
-from app.desk.shelf import Shelf
-from app.desk.view import Tone
+from app.desk.machine_status import Tone
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import LoadingSteps, Phase, ProgramLoader
+from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_PALM
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
@@ -222,7 +222,12 @@ def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
 
 
 def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path: Path) -> None:
-    desk = Desk(machine.post, machine.snapshot, Session(_no_workshop(), machine.post), Shelf((tmp_path,)))
+    desk = Desk(
+        machine.post,
+        machine.snapshot,
+        ProgramLoader(_no_workshop(), machine.post),
+        ProgramFolders((tmp_path,)),
+    )
     desk.override(-20)
     assert machine.posted == [FeedOverride(0.0)]
     desk.hands.palm("left", down=True)
@@ -280,11 +285,11 @@ def test_time_left_stands_still_at_override_zero(desk: Desk, machine: FakeMachin
     assert desk.time_left(snapshot, loaded) == float("inf")
 
 
-def _no_workshop() -> Workshop:
+def _no_workshop() -> LoadingSteps:
     def refuse(*_given: object) -> None:
         raise AssertionError("nothing is loaded here")
 
-    return Workshop(refuse, refuse, refuse, refuse)  # type: ignore[arg-type]
+    return LoadingSteps(refuse, refuse, refuse, refuse)  # type: ignore[arg-type]
 
 
 def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, machine: FakeMachine) -> None:

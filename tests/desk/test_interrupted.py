@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from app.desk import interrupted
+from app.desk import interrupted_notice
 from app.desk.desk import Desk
-from app.desk.session import Loaded
-from app.desk.settings import Units
+from app.desk.program_loading import Loaded
+from app.desk.screen_settings import Units
 from app.programs.copy_rename_delete import RENAME
 from core.executor.commands import ConfirmStart, LoadJob
 from core.executor.snapshot import Snapshot, Starts, State
@@ -30,22 +30,24 @@ STOOD = Snapshot(
 
 
 def figures(snapshot: Snapshot, units: Units = Units.PROGRAM) -> str:
-    found = interrupted.standing(snapshot, Loaded(), units)
+    found = interrupted_notice.notice_of(snapshot, Loaded(), units)
     assert found is not None
     return found.figures
 
 
 def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
     now = datetime.now(UTC).replace(hour=12, minute=30).isoformat()
-    found = interrupted.standing(replace(STOOD, interrupted=broken_off(at=now)), Loaded(), Units.PROGRAM)
+    found = interrupted_notice.notice_of(
+        replace(STOOD, interrupted=broken_off(at=now)), Loaded(), Units.PROGRAM
+    )
     assert found is not None
     at = datetime.fromisoformat(now).astimezone().strftime("%H:%M")
     assert found.text == f"INTERRUPTED: PIN.NC LINE 8, T3, PART 5, {at}: E-STOP"
 
 
 def test_yesterdays_job_has_its_date() -> None:
-    assert interrupted.clock_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
-    assert interrupted.clock_time("half past nine") == "half past nine"
+    assert interrupted_notice.clock_time("2026-05-04T09:30:00Z").startswith("2026-05-0")
+    assert interrupted_notice.clock_time("half past nine") == "half past nine"
 
 
 def test_where_it_stood_and_where_it_stands_now() -> None:
@@ -74,16 +76,18 @@ def test_without_a_home_nobody_knows_where_it_stands() -> None:
     ],
 )
 def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: Snapshot) -> None:
-    assert interrupted.prompt(STOOD, Loaded(), "PRESS").startswith("LINE 8 WAS INTERRUPTED: F6")
-    assert interrupted.prompt(replace(STOOD, confirmed=True), Loaded(), "PRESS").startswith(
-        "BEGINS AT LINE 1"
+    assert interrupted_notice.interrupted_prompt(STOOD, Loaded(), "PRESS").startswith(
+        "LINE 8 WAS INTERRUPTED: F6"
     )
-    assert interrupted.prompt(other, Loaded(), "PRESS") == ""
+    assert interrupted_notice.interrupted_prompt(
+        replace(STOOD, confirmed=True), Loaded(), "PRESS"
+    ).startswith("BEGINS AT LINE 1")
+    assert interrupted_notice.interrupted_prompt(other, Loaded(), "PRESS") == ""
 
 
 def test_where_searchto_does_not_read_the_language_it_is_not_offered() -> None:
     loaded = Loaded(source=Source("PIN.NC", "G0 X10\n", Dialect.SINUMERIK))
-    assert interrupted.prompt(STOOD, loaded, "PRESS") == (
+    assert interrupted_notice.interrupted_prompt(STOOD, loaded, "PRESS") == (
         "LINE 8 WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1"
     )
 

@@ -14,7 +14,7 @@ from app.compose.accepted import differences, key_of, record_of
 from app.compose.journal import Journal
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
-from app.desk.keep import NothingKept
+from app.desk.persistence import NoPersistence
 from app.special.machine_file_acceptance import MachineFileSection
 from core.executor.executor import Executor
 from core.executor.snapshot import State
@@ -150,7 +150,7 @@ def bus_machine(tmp_path: Path) -> Machine:
 
 
 def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: Path) -> None:
-    machine, kept = bus_machine(tmp_path), NothingKept()
+    machine, kept = bus_machine(tmp_path), NoPersistence()
     record = record_of(machine)
     drives = record["drives"]
     assert isinstance(drives, dict)
@@ -165,6 +165,6 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
 
 @pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
 def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
-    machine, kept = bus_machine(tmp_path), NothingKept()
+    machine, kept = bus_machine(tmp_path), NoPersistence()
     kept.keep_setting(key_of(machine), damaged)
     assert differences(machine, kept) is None

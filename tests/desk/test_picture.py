@@ -7,9 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from app.desk.drawing.chords import CHORD_ERROR, arc_pieces
-from app.desk.drawing.trail import Stroke
-from app.desk.picture import Sketch, sketched
+from app.path.path_picture import Sketch, sketched
+from app.path.polyline import CHORD_ERROR, Stroke, arc_pieces
 from core.interpreter.actions import SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 from core.interpreter.modal_state import Modal

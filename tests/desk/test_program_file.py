@@ -6,8 +6,8 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from app.desk.program_file import ProgramFile
-from app.desk.session import Loaded, Phase
+from app.desk.program_folder import ProgramFile
+from app.desk.program_loading import Loaded, Phase
 from core.language.source import load_source
 
 TEXT = "G90G94\nX.5F10\nM30\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.renewing import Renewing
-from app.desk.session import Phase, Workshop
+from app.desk.program_loading import LoadingSteps, Phase
+from app.desk.program_renewal import Renewing
 from core.executor.commands import Renew
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot, State
@@ -23,7 +23,7 @@ class Shop(Bench):
         super().__init__()
         self.renewals = 0
         self.broken = False
-        self.session.workshop = Workshop(self.read, self.make, self.prove, self.draw, self.renewed)
+        self.session.workshop = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
         self.renewing = Renewing(self.session)
         self.session.load(Path("part.nc"))
         self.settled()

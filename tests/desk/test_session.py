@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from app.desk.latest import Watch
-from app.desk.picture import Picture, Sketch
-from app.desk.prompts import prompt, refusal
-from app.desk.session import Loaded, Phase, Proved, Session, Workshop
+from app.desk.program_loading import Loaded, LoadingSteps, Phase, ProgramLoader, Proved
+from app.desk.prompt_line import prompt, refusal
+from app.path.path_picture import Picture, Sketch
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
@@ -33,7 +33,9 @@ class Bench:
         self.go_on = threading.Event()
         self.go_on.set()
         self.found: tuple[Diagnostic, ...] = ()
-        self.session = Session(Workshop(self.read, self.make, self.prove, self.draw), self.posted.append)
+        self.session = ProgramLoader(
+            LoadingSteps(self.read, self.make, self.prove, self.draw), self.posted.append
+        )
 
     def read(self, path: Path) -> Source:
         if path.name == "gone.nc":

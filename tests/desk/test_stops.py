@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.alarms import KEPT, StopLog, read_back
+from app.desk.alarm_log import KEPT, StopLog, read_back
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event

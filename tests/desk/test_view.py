@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.readout import Readout, coordinates
-from app.desk.view import Tone, view_of
+from app.desk.machine_status import Tone, status_of
+from app.desk.readouts import Readout, coordinates
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -26,7 +26,7 @@ AT = Snapshot(
 
 def shown(snapshot: Snapshot, readout: Readout = Readout.POSITION) -> list[tuple[str, str, str]]:
     """(mark, large, small) of each axis."""
-    return [(a.mark, a.value, a.beside) for a in view_of(snapshot, readout, with_c=True).position.axes]
+    return [(a.mark, a.value, a.beside) for a in status_of(snapshot, readout, with_c=True).position.axes]
 
 
 def test_radius_in_inch() -> None:
@@ -46,7 +46,7 @@ def test_a_diameter_doubles_position_and_distance_to_go_of_x_alone() -> None:
 def test_metric_has_four_places_and_says_so() -> None:
     metric = replace(AT, modal=Modal(metric=True))
     assert shown(metric)[0] == ("R", "12.7000", "6.3500")
-    assert view_of(metric, Readout.POSITION, with_c=True).position.unit == "MM"
+    assert status_of(metric, Readout.POSITION, with_c=True).position.unit == "MM"
 
 
 @pytest.mark.parametrize(
@@ -65,11 +65,11 @@ def test_readouts_come_round() -> None:
 
 
 def test_beside_distance_to_go_stands_the_position() -> None:
-    assert view_of(AT, Readout.TO_GO, with_c=True).position.beside is Readout.POSITION
+    assert status_of(AT, Readout.TO_GO, with_c=True).position.beside is Readout.POSITION
 
 
 def test_a_lathe_without_c_shows_two_axes() -> None:
-    assert [a.name for a in view_of(AT, Readout.POSITION, with_c=False).position.axes] == ["X", "Z"]
+    assert [a.name for a in status_of(AT, Readout.POSITION, with_c=False).position.axes] == ["X", "Z"]
 
 
 def test_tiny_negative_positions_have_no_sign() -> None:
@@ -80,32 +80,34 @@ def test_tiny_negative_positions_have_no_sign() -> None:
 def test_feed_per_revolution_is_measured_against_the_spindle() -> None:
     # .005 in/rev at 1200 rpm = 20 rev/s: 2.54 mm/s
     modal = Modal(per_rev=True)
-    view = view_of(
+    view = status_of(
         replace(AT, modal=modal, feed=0.127, velocity=2.54, rpm_actual=1200), Readout.POSITION, True
     )
     assert (view.feed.value, view.feed.actual, view.feed.actual_unit) == ("0.00500", "0.00500", "in/rev")
 
 
 def test_feed_per_revolution_of_a_standing_spindle_is_not_a_number() -> None:
-    view = view_of(replace(AT, modal=Modal(per_rev=True), feed=0.127, velocity=0.0), Readout.POSITION, True)
+    view = status_of(replace(AT, modal=Modal(per_rev=True), feed=0.127, velocity=0.0), Readout.POSITION, True)
     assert view.feed.actual == "—"
 
 
 def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
-    view = view_of(replace(AT, modal=Modal(per_rev=True), rapid=True, velocity=127.0), Readout.POSITION, True)
+    view = status_of(
+        replace(AT, modal=Modal(per_rev=True), rapid=True, velocity=127.0), Readout.POSITION, True
+    )
     assert (view.feed.value, view.feed.unit) == ("RAPID", "")
     assert (view.feed.actual, view.feed.actual_unit) == ("300.00", "in/min")
 
 
 def test_metric_feeds_carry_the_prefix() -> None:
-    view = view_of(replace(AT, modal=Modal(metric=True), feed=2.0, velocity=1.9), Readout.POSITION, True)
+    view = status_of(replace(AT, modal=Modal(metric=True), feed=2.0, velocity=1.9), Readout.POSITION, True)
     assert (view.feed.value, view.feed.actual) == ("MM120.0", "MM114.0")
 
 
 def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> None:
     # 2 · pi · .5 in · 1000 rpm / 12 = 261.8 ft/min
     back = replace(AT, actual=(0.5 * INCH, 0.0, 0.0), rpm_command=-1000.0, rpm_actual=-1000.0)
-    spindle = view_of(back, Readout.POSITION, True).spindle
+    spindle = status_of(back, Readout.POSITION, True).spindle
     assert math.isclose(2 * math.pi * 0.5 * 1000 / 12, 261.8, rel_tol=1e-4)
     assert (spindle.surface, spindle.surface_label) == ("262", "SFM")
     assert (spindle.direction, spindle.rpm, spindle.actual) == ("M04 REV", "1000", "1000")
@@ -113,7 +115,7 @@ def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> N
 
 def test_constant_surface_speed_is_named() -> None:
     turning = replace(AT, modal=Modal(css=True, metric=True), rpm_command=500.0)
-    spindle = view_of(turning, Readout.POSITION, True).spindle
+    spindle = status_of(turning, Readout.POSITION, True).spindle
     assert spindle.direction == "M03 FWD · G96"
     assert spindle.surface_label == "M/MIN"
 
@@ -131,56 +133,56 @@ def test_constant_surface_speed_is_named() -> None:
 def test_spindle_lamp_tells_what_turns(
     command: float, actual: float, word: str, lit: bool, warn: bool
 ) -> None:
-    view = view_of(replace(AT, rpm_command=command, rpm_actual=actual), Readout.POSITION, True)
+    view = status_of(replace(AT, rpm_command=command, rpm_actual=actual), Readout.POSITION, True)
     lamp = view.lamps[0]
     assert (lamp.word, lamp.lit, lamp.warn) == (word, lit, warn)
 
 
 def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
     make_alarm = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
-    words = {lamp.word: lamp.lit for lamp in view_of(make_alarm, Readout.POSITION, True).lamps}
+    words = {lamp.word: lamp.lit for lamp in status_of(make_alarm, Readout.POSITION, True).lamps}
     assert words["COOLANT"] is False
     assert "COLLET OPEN" in words
     done = replace(make_alarm, outputs=frozenset({"coolant", "collet", "live2"}))
-    words = {lamp.word: lamp.lit for lamp in view_of(done, Readout.POSITION, True).lamps}
+    words = {lamp.word: lamp.lit for lamp in status_of(done, Readout.POSITION, True).lamps}
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
 
 
 def test_every_state_has_a_word_and_a_tone() -> None:
     for state in State:
-        view = view_of(replace(AT, state=state), Readout.POSITION, True)
+        view = status_of(replace(AT, state=state), Readout.POSITION, True)
         assert view.state == state.value
         assert isinstance(view.tone, Tone)
-    assert view_of(replace(AT, state=State.FAULT), Readout.POSITION, True).tone is Tone.ALARM
+    assert status_of(replace(AT, state=State.FAULT), Readout.POSITION, True).tone is Tone.ALARM
 
 
 def test_a_wait_says_for_what() -> None:
-    view = view_of(replace(AT, state=State.WAIT, waiting_for="AT SPEED"), Readout.POSITION, True)
+    view = status_of(replace(AT, state=State.WAIT, waiting_for="AT SPEED"), Readout.POSITION, True)
     assert view.state == "WAITING: AT SPEED"
 
 
 def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
     stop = replace(AT, state=State.PROGRAM_STOP, message="CHECK THE BORE")
-    assert view_of(stop, Readout.POSITION, True).message == "CHECK THE BORE"
-    assert view_of(replace(stop, message=""), Readout.POSITION, True).message == "PROGRAM STOP"
-    assert view_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
+    assert status_of(stop, Readout.POSITION, True).message == "CHECK THE BORE"
+    assert status_of(replace(stop, message=""), Readout.POSITION, True).message == "PROGRAM STOP"
+    assert status_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
 
 
 def test_the_alarm_that_came_first_is_named_first() -> None:
     """What comes behind it follows from it more often than not."""
     first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
-    view = view_of(replace(AT, state=State.FAULT, alarms=(first, then)), Readout.POSITION, True)
+    view = status_of(replace(AT, state=State.FAULT, alarms=(first, then)), Readout.POSITION, True)
     assert view.alarms == (first, then)
     assert view.state == "ALARM 101: TROUBLE 101"
 
 
 def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
     silent = make_alarm("station-silent", "", 4, 0.0)
-    view = view_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
+    view = status_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
     assert view.stop is silent
     assert view.state == "FEED HOLD 601: OPERATOR STATION SILENT"
     pressed = make_alarm("feed-hold", "H at the keyboard", 4, 0.0)
-    view = view_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
+    view = status_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
     assert (view.stop, view.state) == (None, "FEED HOLD")
 
 
@@ -205,8 +207,8 @@ def test_c_from_0_to_under_360_or_as_it_counts(
 
 def test_the_feed_of_c_alone_is_in_degrees() -> None:
     alone = replace(AT, turns=True, feed=50.0, modal=Modal(metric=True))
-    feed = view_of(alone, Readout.POSITION, with_c=True).feed
+    feed = status_of(alone, Readout.POSITION, with_c=True).feed
     assert (feed.value, feed.unit) == ("3000.0", "°/min")
     by_turn = replace(alone, feed=2.0, modal=Modal(metric=True, per_rev=True))
-    feed = view_of(by_turn, Readout.POSITION, with_c=True).feed
+    feed = status_of(by_turn, Readout.POSITION, with_c=True).feed
     assert (feed.value, feed.unit) == ("2.0000", "°/rev")

@@ -9,9 +9,9 @@ from pathlib import Path
 from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.desk.latest import Watch
-from app.desk.picture import Picture, sketched
-from app.desk.session import Proved, Workshop
+from app.desk.program_loading import LoadingSteps, Proved
 from app.editor.versions import Bench
+from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import ToolOffset
@@ -52,7 +52,7 @@ class Memory:
         return len(rows)
 
 
-def workshop() -> Workshop:
+def workshop() -> LoadingSteps:
     """The real interpreter and prover on the shipped lathe."""
     lathe = load_machine(None)
 
@@ -67,7 +67,7 @@ def workshop() -> Workshop:
     def draw(job: Job, watch: Watch) -> Picture:
         return sketched(timed_blocks(Timeline.of(job.source, job.setup, lathe)), watch)
 
-    return Workshop(load_source, make_job, proved, draw)
+    return LoadingSteps(load_source, make_job, proved, draw)
 
 
 def bench_in(folder: Path, archive: Memory | None = None) -> Bench:

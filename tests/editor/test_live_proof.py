@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from app.desk.latest import Watch
-from app.desk.session import Proved
+from app.desk.program_loading import Proved
 from app.editor.live_proof import LiveProof, by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from app.compose.machine import control_limits
 from app.compose.proof import proof_of
-from app.desk.searchto.leaving import now_of
+from app.searchto.searchto_plan import now_of
 from core.executor.commands import CycleStart, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Starts, State

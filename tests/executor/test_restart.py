@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from app.compose.proof import proof_of
-from app.desk.searchto.leaving import leaving_of
-from app.desk.searchto.search import WAY_OUT
+from app.searchto.searchto_model import WAY_OUT
+from app.searchto.searchto_plan import leaving_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State

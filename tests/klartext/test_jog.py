@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from app.desk.jogging.directions import directions_of
-from app.desk.jogging.speeds import Speeds
+from app.jog.jog_speeds import Speeds, directions_of
 from app.offsets.offset_values import Mode
 from core.machine.load import load_machine, shipped_machine
 

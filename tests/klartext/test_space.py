@@ -7,14 +7,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.desk.lamps import lamps_of
-from app.desk.picture import sketched
-from app.desk.readout import Readout
-from app.desk.swivel.camera import ASPECTS, Camera
-from app.desk.swivel.figure import Figure, camera_for, figure
-from app.desk.swivel.scene import Ink, Scene
-from app.desk.swivel.telling import Instant, at_line, plane_words, running
-from app.desk.view import view_of
+from app.desk.machine_status import status_of
+from app.desk.readouts import Readout, lamps_of
+from app.path.path_picture import sketched
+from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for, figure
+from app.working_plane.plane_instant import Instant, at_line, plane_words, running
+from app.working_plane.plane_scene import Ink, Scene
 from core.executor.snapshot import Snapshot
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.modal_state import Modal
@@ -55,14 +53,14 @@ def cut_of(blocks: list[Block], number: int) -> Block:
 
 
 def values(snapshot: Snapshot, readout: Readout) -> list[str]:
-    view = view_of(snapshot, readout, with_c=False)
+    view = status_of(snapshot, readout, with_c=False)
     return [axis.value for axis in view.position.axes]
 
 
 def test_figures_count_in_the_working_plane(chamfers: tuple[Scene, list[Block]]) -> None:
     cut = cut_of(chamfers[1], 2)
     snapshot = snapshot_at(cut)
-    view = view_of(snapshot, Readout.POSITION, with_c=False).position
+    view = status_of(snapshot, Readout.POSITION, with_c=False).position
     assert [axis.name for axis in view.axes] == list(NAMES)
     assert values(snapshot, Readout.POSITION) == ["115.0000", "−7.0710", "0.0000", "45.000", "90.000"]
     assert view.x_words.startswith("TILTED PLANE OF LINE")
@@ -72,7 +70,7 @@ def test_figures_count_in_the_working_plane(chamfers: tuple[Scene, list[Block]])
 def test_figures_from_home_are_the_machines(chamfers: tuple[Scene, list[Block]]) -> None:
     snapshot = snapshot_at(cut_of(chamfers[1], 1))
     assert values(snapshot, Readout.HOME) == ["345.0000", "278.2843", "−352.2183", "45.000", "0.000"]
-    assert view_of(snapshot, Readout.HOME, with_c=False).position.x_words == "MACHINE"
+    assert status_of(snapshot, Readout.HOME, with_c=False).position.x_words == "MACHINE"
 
 
 def test_what_is_left_counts_along_the_planes_axes(chamfers: tuple[Scene, list[Block]]) -> None:
@@ -88,7 +86,7 @@ def test_c_shows_less_than_a_turn(chamfers: tuple[Scene, list[Block]]) -> None:
     snapshot = snapshot_at(chamfers[1][-1])
     assert snapshot.actual[4] == pytest.approx(360.0)
     assert values(snapshot, Readout.POSITION)[4] == "0.000"
-    assert view_of(snapshot, Readout.POSITION, with_c=False).position.x_words == "WORKPIECE"
+    assert status_of(snapshot, Readout.POSITION, with_c=False).position.x_words == "WORKPIECE"
 
 
 def test_lamps_tell_of_plane_and_table(chamfers: tuple[Scene, list[Block]]) -> None:
@@ -239,7 +237,7 @@ def test_a_long_path_is_thinned_out() -> None:
 def test_the_feed_of_a_swivel_is_degrees(feed: str, shown: tuple[str, str]) -> None:
     (block,) = run(f"PLANE AXIAL A+30 TURN {feed}").planes
     snapshot = snapshot_at(block, feed=block.feed, rapid=block.rapid, turns=block.swivels and not block.rapid)
-    made = view_of(snapshot, Readout.POSITION, with_c=False).feed
+    made = status_of(snapshot, Readout.POSITION, with_c=False).feed
     assert (made.value, made.unit) == shown
 
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import Desk
-from app.desk.picture import Sketch
-from app.desk.session import Proved, Session, Workshop
-from app.desk.shelf import Shelf
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets import SeccmpDesk
 from app.offsets.tool_offsets import ToolGrid
+from app.path.path_picture import Sketch
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
@@ -70,7 +70,7 @@ def room(tmp_path: Path) -> Iterator[Room]:
         loads.append(path.name)
         return Source(path.name, "G90\nM30\n")
 
-    workshop = Workshop(
+    workshop = LoadingSteps(
         read,
         lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
         lambda job, _watch: Proved(Proof(job.digest, ())),
@@ -79,8 +79,8 @@ def room(tmp_path: Path) -> Iterator[Room]:
     desk = Desk(
         post=lambda _command: None,
         snapshot=lambda: now[0],
-        session=Session(workshop, lambda _command: None),
-        shelf=Shelf(()),
+        session=ProgramLoader(workshop, lambda _command: None),
+        shelf=ProgramFolders(()),
         clock=lambda: 0.0,
         book=OffsetBook(store),
     )

@@ -10,8 +10,8 @@ import pytest
 from app.compose.effect import drawer
 from app.compose.machine import setup_for
 from app.desk.latest import Watch
-from app.desk.picture import Picture
 from app.offsets.effect import Effect, Tables
+from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.keep import NothingKept
+from app.desk.persistence import NoPersistence
 from app.programs import import_export
 from app.programs.file_changes import FileError, deleted, good_name, renamed
 from app.programs.folder_chooser import UP, Chooser, Stick
@@ -54,7 +54,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     own = tmp_path / "own"
     made(own, a="M00\n")
     with pytest.raises(FileError, match="CANNOT BE KEPT"):
-        brought_in(sources, own, NothingKept(), lambda _path: "", replace=True)
+        brought_in(sources, own, NoPersistence(), lambda _path: "", replace=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
 
@@ -115,15 +115,15 @@ def test_a_name_that_will_not_do(typed: str) -> None:
 
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
-    assert renamed(path, "A", NothingKept()) == "A.nc"
+    assert renamed(path, "A", NoPersistence()) == "A.nc"
     with pytest.raises(FileError, match="IS ITS NAME ALREADY"):
-        renamed(path.with_name("A.nc"), "A.nc", NothingKept())
+        renamed(path.with_name("A.nc"), "A.nc", NoPersistence())
 
 
 def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     with pytest.raises(FileError, match="NOT DELETED"):
-        deleted(path, NothingKept())
+        deleted(path, NoPersistence())
     assert path.exists()
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.keep import NothingKept
-from app.desk.session import Loaded, Phase
+from app.desk.persistence import NoPersistence
+from app.desk.program_loading import Loaded, Phase
 from app.programs.run_record import RunRecord
 from core.executor.job import Proof
 from core.executor.snapshot import Alarm, Snapshot, State
@@ -20,7 +20,7 @@ NO_PROGRAM = Loaded()
 
 
 @dataclass
-class Kept(NothingKept):
+class Kept(NoPersistence):
     """Writes down what is posted."""
 
     told: list[tuple[object, ...]] = field(default_factory=list)

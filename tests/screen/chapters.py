@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk import pages
 from app.editor.editor import Stage
 from app.editor.editor_view import EditorPage
+from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.day import NEAR, Day, Key
 
@@ -61,7 +61,7 @@ def editor(day: Day) -> EditorPage:
 def open_editor(day: Day) -> EditorPage:
     """F3, and the text is there."""
     day.key(Key.Key_F3)
-    day.sees(lambda: day.page == pages.EDITOR)
+    day.sees(lambda: day.page == page_table.EDITOR)
     page = day.frame.page
     assert isinstance(page, EditorPage)
     day.sees(lambda: page.editor.stage is Stage.OPEN and bool(page.field.toPlainText()))
@@ -82,7 +82,7 @@ def write_program(day: Day) -> None:
     day.key(Key.Key_Return, Key.Key_X, Key.Key_F3)
     assert day.prompt == "PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT"
     day.key(Key.Key_F1)
-    day.sees(lambda: day.page == pages.EDITOR)
+    day.sees(lambda: day.page == page_table.EDITOR)
     for number, line in enumerate(PROGRAM.replace("\nX1.1\n", "\nX1.1.5\n").splitlines()):
         if number:
             day.key(Key.Key_Return)
@@ -95,7 +95,7 @@ def write_program(day: Day) -> None:
     assert editor(day).field.toPlainText() == PROGRAM
     assert [d.message for d in editor(day).findings.findings.diagnostics if d.line == 7] == []
     day.key(Key.Key_F3)
-    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.sees(lambda: day.page == page_table.AUTOMATIC)
 
 
 def set_tools(day: Day) -> None:
@@ -131,7 +131,7 @@ def _step(day: Day, key: Key, presses: int) -> None:
 def back_to_automatic(day: Day) -> None:
     """F1 and F2, from any page; the program is proved anew by then."""
     day.key(Key.Key_F1, Key.Key_F2)
-    assert day.page == pages.AUTOMATIC
+    assert day.page == page_table.AUTOMATIC
     asks = f"LINE {day.shot.interrupted_line} WAS INTERRUPTED" if day.shot.interrupted_line else "TO START"
     day.sees(lambda: day.prompt.startswith(asks))
 
@@ -143,7 +143,7 @@ def correct(day: Day, x: str, z: str = "") -> None:
     day.sees(lambda: not day.desk.book.busy)
     assert day.prompt.startswith("D1 SAVED")
     day.key(Key.Key_Escape)
-    assert day.page == pages.AUTOMATIC
+    assert day.page == page_table.AUTOMATIC
 
 
 def stand_at(day: Day, place: tuple[float, float]) -> None:

@@ -16,8 +16,8 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.screen.look import Look, dress, load_fonts
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands

@@ -19,10 +19,10 @@ from app.compose.journal import Journal
 from app.compose.offsets import stored_offsets
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
-from app.screen.frame import Frame
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
+from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store

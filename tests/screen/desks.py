@@ -10,14 +10,14 @@ from app.compose.machine import setup_for
 from app.compose.proof import proof_of
 from app.compose.special import furnish
 from app.desk.desk import Desk
-from app.desk.keep import Keep, NothingKept
 from app.desk.latest import Watch
-from app.desk.picture import Picture, sketched
-from app.desk.session import Proved, Session, Workshop
-from app.desk.shelf import Shelf
+from app.desk.persistence import NoPersistence, Persistence
+from app.desk.program_folder import ProgramFolders
+from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, Bench, NoArchive
 from app.offsets.effect import Effect
+from app.path.path_picture import Picture, sketched
 from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -36,7 +36,7 @@ def desk_on(
     *folders: Path,
     two_hand: bool = True,
     archive: Archive | None = None,
-    keep: Keep | None = None,
+    keep: Persistence | None = None,
 ) -> Desk:
     """A desk with the simulated station, on these folders or on the samples."""
     lathe = load_machine(None)
@@ -59,13 +59,13 @@ def desk_on(
         setup = replace(job.setup, secondary=_secondary(built[0]))
         return replace(job, setup=setup, digest=f"{job.digest} {sorted(setup.secondary.items())}")
 
-    work = Workshop(load_source, make_job, proved, draw, renewed)
+    work = LoadingSteps(load_source, make_job, proved, draw, renewed)
     archive = archive or NoArchive()
     desk = Desk(
         post=machine.post,
         snapshot=machine.snapshot,
-        session=Session(work, machine.post),
-        shelf=Shelf(folders or (SAMPLES,)),
+        session=ProgramLoader(work, machine.post),
+        shelf=ProgramFolders(folders or (SAMPLES,)),
         station=machine,
         two_hand=two_hand,
         lathe=lathe,
@@ -74,7 +74,7 @@ def desk_on(
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )
-    furnish(desk, lathe, keep or NothingKept(), work, folders[0] if folders else None)
+    furnish(desk, lathe, keep or NoPersistence(), work, folders[0] if folders else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk

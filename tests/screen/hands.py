@@ -10,10 +10,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
-from app.screen.frame import Frame
-from app.screen.page import AutomaticPage
-from app.screen.window import MainWindow
+from app.screen.main_window import MainWindow
+from app.screen.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.fake import FakeMachine
 

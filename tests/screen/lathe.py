@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.desk.mdi.mdi import MdiDesk
-from app.screen.frame import Frame
+from app.mdi.mdi_model import MdiModel
+from app.screen.main_window import MainWindow
 from app.screen.pictures import Stage
-from app.screen.window import MainWindow
+from app.screen.window_frame import Frame
 from core.executor.snapshot import Snapshot, State
 
 Key = Qt.Key
@@ -35,7 +35,7 @@ class Operator:
         return self.stage.desk.snapshot()
 
     @property
-    def mdi(self) -> MdiDesk:
+    def mdi(self) -> MdiModel:
         assert self.stage.desk.mdi is not None
         return self.stage.desk.mdi
 

@@ -6,11 +6,11 @@ import pytest
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QApplication
 
-from app.desk.prompts import alarm_of, exactly, reason
-from app.desk.readout import Readout
-from app.desk.view import view_of
+from app.desk.machine_status import status_of
+from app.desk.prompt_line import alarm_of, exactly, reason
+from app.desk.readouts import Readout
 from app.screen.look import Look, load_fonts
-from app.screen.runline import stop_words
+from app.screen.readout_panels import stop_words
 from app.screen.theme import DARK
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.raised_alarm import make_alarm
@@ -44,7 +44,7 @@ def snapshot(code: Code) -> Snapshot:
 @CODES
 def test_head_cause_and_remedy_are_whole(look: Look, code: Code) -> None:
     shot = snapshot(code)
-    view = view_of(shot, Readout.POSITION, True)
+    view = status_of(shot, Readout.POSITION, True)
     assert fits(look, view.state, 2.5, 42 * look.u, bold=True), view.state
     assert fits(look, stop_words(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
     assert fits(look, reason(view), 1.9, ACROSS), reason(view)

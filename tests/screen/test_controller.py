@@ -14,8 +14,8 @@ import resources
 from app.compose.screen import build_desk
 from app.desk.desk import Desk
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.snapshot import State
 from drivers.grblhal.peer.firmware import Firmware
 from drivers.grblhal.peer.serve import TcpEnd, serve

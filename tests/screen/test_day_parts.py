@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.desk import pages
-from app.screen.mdi.page import MdiPage
+from app.mdi.mdi_view import MdiPage
+from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.chapters import (
     ENDS,
@@ -160,7 +160,7 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
 def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
-    assert day.page == pages.SEARCHTO
+    assert day.page == page_table.SEARCHTO
     model = day.desk.searchto
     assert model is not None
     if text:
@@ -214,7 +214,7 @@ def test_mdi_between_two_parts_keeps_the_spindle(day: Day) -> None:
     day.until(lambda: day.shot.rpm_actual == pytest.approx(500, abs=10))
     assert day.shot.rpm_command == 500
     day.key(Key.Key_F3)
-    assert day.page == pages.AUTOMATIC
+    assert day.page == page_table.AUTOMATIC
     assert day.prompt.startswith("THE SPINDLE IS ON")
     day.palms()
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)

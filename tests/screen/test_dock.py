@@ -7,7 +7,7 @@ from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.screen.dock import StationDock
+from app.screen.station_dock import StationDock
 from core.executor.commands import CycleStart
 from core.executor.snapshot import State
 from tests.screen.hands import Hands

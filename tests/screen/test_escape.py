@@ -10,9 +10,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.desk import pages
 from app.editor import messages
 from app.editor.editor_view import EditorPage
+from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.chapters import drives_on
 from tests.screen.day import Day, Key, begun
@@ -39,13 +39,13 @@ def opened(day: Day, key: Key, name: str) -> None:
 
 
 KEYS = {
-    Key.Key_F4: pages.MDI,
-    Key.Key_F5: pages.JOG,
-    Key.Key_F6: pages.PROGRAMS,
-    Key.Key_F8: pages.TOOLS,
-    Key.Key_F9: pages.SECCMP,
-    Key.Key_F10: pages.SPECIAL,
-    Key.Key_G: pages.ZERO,
+    Key.Key_F4: page_table.MDI,
+    Key.Key_F5: page_table.JOG,
+    Key.Key_F6: page_table.PROGRAMS,
+    Key.Key_F8: page_table.TOOLS,
+    Key.Key_F9: page_table.SECCMP,
+    Key.Key_F10: page_table.SPECIAL,
+    Key.Key_G: page_table.ZERO,
 }
 
 
@@ -56,27 +56,27 @@ def test_every_page_leads_to_automatic(day: Day, switched_on: bool) -> None:
     for key, name in KEYS.items():
         opened(day, key, name)
         day.key(Key.Key_Escape)
-        day.sees(lambda: day.page == pages.AUTOMATIC)
+        day.sees(lambda: day.page == page_table.AUTOMATIC)
 
 
 @pytest.mark.parametrize("switched_on", [True, False])
 def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
     if switched_on:
         drives_on(day)
-    opened(day, Key.Key_F4, pages.MDI)
+    opened(day, Key.Key_F4, page_table.MDI)
     if switched_on:
         day.type("X1")
         day.key(Key.Key_Escape)
-        assert day.page == pages.MDI
+        assert day.page == page_table.MDI
         assert day.desk.mdi is not None
         assert day.desk.mdi.typing.text == ""
     day.key(Key.Key_Escape)
-    assert day.page == pages.AUTOMATIC
+    assert day.page == page_table.AUTOMATIC
 
 
 def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     drives_on(day)
-    opened(day, Key.Key_F4, pages.MDI)
+    opened(day, Key.Key_F4, page_table.MDI)
     assert day.desk.mdi is not None
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
@@ -86,9 +86,9 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     day.reaches(State.RUN)
     day.key(Key.Key_Escape)
     day.reaches(State.HOLD)
-    assert day.page == pages.MDI
+    assert day.page == page_table.MDI
     day.key(Key.Key_Escape)
-    assert day.page == pages.MDI  # a line that is held is not walked away from
+    assert day.page == page_table.MDI  # a line that is held is not walked away from
     day.key(Key.Key_Escape, Key.Key_R)
     yes(day.window)
     day.reaches(State.IDLE)
@@ -96,29 +96,29 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
 
 def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
     drives_on(day)
-    opened(day, Key.Key_F5, pages.JOG)
+    opened(day, Key.Key_F5, page_table.JOG)
     day.type("t")
     day.key(Key.Key_Escape)
-    assert day.page == pages.JOG
+    assert day.page == page_table.JOG
     QTest.keyPress(day.window, Key.Key_Right)
     day.reaches(State.JOG)
     day.key(Key.Key_Escape)
-    assert day.page == pages.JOG
+    assert day.page == page_table.JOG
     day.reaches(State.IDLE)
     QTest.keyRelease(day.window, Key.Key_Right)
     assert day.desk.notice == "ANOTHER KEY HAS ENDED THE JOG"
     day.key(Key.Key_Escape)
-    assert (day.page, day.desk.notice) == (pages.JOG, "")
+    assert (day.page, day.desk.notice) == (page_table.JOG, "")
     day.key(Key.Key_Escape)
-    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.sees(lambda: day.page == page_table.AUTOMATIC)
 
 
 def test_an_answer_is_taken_back_before_the_page(day: Day) -> None:
     drives_on(day)
-    opened(day, Key.Key_F5, pages.JOG)
+    opened(day, Key.Key_F5, page_table.JOG)
     day.desk.say("AN ANSWER")
     day.key(Key.Key_Escape)
-    assert (day.page, day.desk.notice) == (pages.JOG, "")
+    assert (day.page, day.desk.notice) == (page_table.JOG, "")
 
 
 def edited(day: Day) -> EditorPage:
@@ -128,7 +128,7 @@ def edited(day: Day) -> EditorPage:
     day.key(Key.Key_Return)
     day.sees(lambda: day.prompt.startswith("TO START"))
     day.key(Key.Key_F3)
-    day.sees(lambda: day.page == pages.EDITOR)
+    day.sees(lambda: day.page == page_table.EDITOR)
     page = day.frame.page
     assert isinstance(page, EditorPage)
     day.sees(lambda: bool(page.field.toPlainText()))
@@ -140,9 +140,9 @@ def test_the_editor_is_left_where_there_is_nothing_to_save(day: Day, tmp_path: P
     edited(day)
     day.key(Key.Key_F4)
     day.key(Key.Key_Escape)  # the search first
-    assert day.page == pages.EDITOR
+    assert day.page == page_table.EDITOR
     day.key(Key.Key_Escape)
-    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.sees(lambda: day.page == page_table.AUTOMATIC)
     assert day.prompt.startswith("TO START")
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
@@ -156,7 +156,7 @@ def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
     assert day.prompt == messages.UNSAVED
     for _ in range(3):
         day.key(Key.Key_Escape)
-        assert day.page == pages.EDITOR
+        assert day.page == page_table.EDITOR
     assert page.field.toPlainText().endswith("(END)")
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
@@ -171,15 +171,15 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
     day.reaches(State.RUN)
     day.key(Key.Key_Escape)
     day.reaches(State.HOLD)
-    assert day.page == pages.AUTOMATIC
+    assert day.page == page_table.AUTOMATIC
     day.palms()
     day.reaches(State.RUN)
-    opened(day, Key.Key_F5, pages.JOG)
+    opened(day, Key.Key_F5, page_table.JOG)
     day.key(Key.Key_Escape)
     day.reaches(State.HOLD)
-    assert day.page == pages.JOG
+    assert day.page == page_table.JOG
     day.key(Key.Key_Escape)
-    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.sees(lambda: day.page == page_table.AUTOMATIC)
     day.key(Key.Key_R)
     yes(day.window)
     day.reaches(State.IDLE)
@@ -187,9 +187,9 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
 
 def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
     drives_on(day)
-    opened(day, Key.Key_F5, pages.JOG)
+    opened(day, Key.Key_F5, page_table.JOG)
     day.key(Key.Key_E)
     day.reaches(State.ESTOP)
     day.key(Key.Key_Escape)
-    day.sees(lambda: day.page == pages.AUTOMATIC)
+    day.sees(lambda: day.page == page_table.AUTOMATIC)
     twist_out(day.window)

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication
 from app.compose.machine import setup_for
 from app.compose.screen import desk_and_executor, step_clock
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source

@@ -13,12 +13,12 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.desk import pages
 from app.programs.folder_chooser import Stick, sticks
 from app.programs.programs_view import FilesPage
+from app.screen import page_table
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.commands import LoadJob
 from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
@@ -90,7 +90,7 @@ def shop(
 
 def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     shop.open_list()
-    assert shop.frame.title.page == pages.PROGRAMS
+    assert shop.frame.title.page == page_table.PROGRAMS
     shop.type("alp")
     shop.sees(lambda: shop.rows() == ["alpha.nc"])
     shop.sees(lambda: shop.list.path.picture is not None)
@@ -305,7 +305,7 @@ def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
     shop.key(Key.Key_F2)
     assert shop.page.files.isVisible()
     shop.key(Key.Key_F2)
-    assert shop.frame.title.page == pages.PROGRAMS
+    assert shop.frame.title.page == page_table.PROGRAMS
     assert not shop.page.files.isVisible()
     shop.key(Key.Key_Escape)
     assert shop.frame.page is shop.page

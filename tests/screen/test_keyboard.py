@@ -9,9 +9,9 @@ from PySide6.QtCore import QCoreApplication, QEvent, Qt
 from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
-from app.desk import pages
+from app.screen import page_table
 from app.screen.event_times import FRAMES, STALL, EventTimes
-from app.screen.window import MainWindow
+from app.screen.main_window import MainWindow
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
@@ -108,9 +108,9 @@ def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> No
 
 def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s")
-    watched.frame.go(pages.MENU)
+    watched.frame.go(page_table.MENU)
     watched.window.refresh()
-    watched.frame.go(pages.AUTOMATIC)
+    watched.frame.go(page_table.AUTOMATIC)
     watched.window.refresh()
     send(watched, Key.Key_S, text="s", repeat=True)
     assert watched.machine.now.single_block  # from the press, and turned once

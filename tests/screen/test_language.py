@@ -12,13 +12,13 @@ from PySide6.QtCore import QTranslator
 from PySide6.QtGui import QRawFont
 
 import app
-from app.desk.words import tr
+from app.desk.translation import tr
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
 from app.screen.look import Look
-from app.screen.pages import Page
+from app.screen.main_window import MainWindow
+from app.screen.page_base import Page
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.alarms.catalogue import CATALOGUE, Entry
 from core.executor.snapshot import Alarm
 from resources.translations.collect import HERE, HOLE, texts

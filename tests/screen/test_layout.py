@@ -6,7 +6,7 @@ from itertools import combinations
 
 import pytest
 
-from app.screen.layout import LEAST, Rect, low_places, places, unit
+from app.screen.window_layout import LEAST, Rect, low_places, places, unit
 
 SIZES = [
     LEAST,

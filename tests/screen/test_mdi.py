@@ -7,13 +7,13 @@ from itertools import chain
 
 import pytest
 
-from app.desk import pages
+from app.mdi.mdi_view import MdiPage
+from app.screen import page_table
 from app.screen.letter_keys import LINES
 from app.screen.look import Look
-from app.screen.mdi.page import MdiPage
+from app.screen.main_window import MainWindow
 from app.screen.pictures import Stage
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import yes
@@ -38,7 +38,7 @@ def at_mdi(operator: Operator) -> Operator:
     """Drives on, MDI in front."""
     operator.drives_on()
     operator.key(Key.Key_F1, Key.Key_F4)
-    assert operator.frame.title.page == pages.MDI
+    assert operator.frame.title.page == page_table.MDI
     operator.pause(0.05)
     return operator
 
@@ -135,7 +135,7 @@ def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> N
     at_mdi.key(Key.Key_H)
     at_mdi.reaches(State.HOLD)
     at_mdi.key(Key.Key_F1)  # it is still under way
-    assert at_mdi.frame.title.page == pages.MDI
+    assert at_mdi.frame.title.page == page_table.MDI
     at_mdi.key(Key.Key_R)
     yes(at_mdi.window)
     at_mdi.reaches(State.IDLE)
@@ -164,7 +164,7 @@ def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Ope
     at_mdi.run("M03S900")
     at_mdi.pause(2.0)
     at_mdi.key(Key.Key_F1)
-    assert at_mdi.frame.title.page == pages.MENU
+    assert at_mdi.frame.title.page == page_table.MENU
     at_mdi.pause(1.0)
     assert at_mdi.shot.rpm_actual == pytest.approx(900, rel=0.05)
     assert at_mdi.shot.starts is Starts.PROGRAM
@@ -179,7 +179,7 @@ def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Ope
 def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> None:
     operator.stage.start()
     operator.key(Key.Key_F1, Key.Key_F4)
-    assert operator.frame.title.page == pages.MENU
+    assert operator.frame.title.page == page_table.MENU
     assert operator.prompt().startswith("A PROGRAM IS UNDER WAY")
 
 

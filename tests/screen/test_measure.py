@@ -12,12 +12,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.desk.drawing.approach import Leg
-from app.desk.drawing.spots import Kind, Spot
-from app.desk.picture import Picture, Sketch
+from app.path.measuring import Point, PointKind
+from app.path.path_aspects import Aspect, DrawnLeg, Tip
+from app.path.path_picture import Picture, Sketch
+from app.path.path_view import PathView
 from app.screen.look import Look
-from app.screen.path.aspects import Aspect, Tip
-from app.screen.pathview import PathView
 from app.screen.theme import DARK
 from core.executor.snapshot import State
 from core.interpreter.elementary_blocks import Block
@@ -89,11 +88,11 @@ def test_measuring_by_keys_alone(view: PathView) -> None:
     view.measure()
     ruler = view.ruler
     assert ruler is not None
-    ruler.cursor = Spot(0.0, 5.0, Kind.END)
+    ruler.cursor = Point(0.0, 5.0, PointKind.END)
     press(view, Key.Key_Return, Key.Key_Left)
-    assert ruler.cursor == Spot(-20.0, 5.0, Kind.END)
+    assert ruler.cursor == Point(-20.0, 5.0, PointKind.END)
     press(view, Key.Key_Down, Key.Key_Return)
-    assert (ruler.first, ruler.second) == (Spot(0, 5, Kind.END), Spot(-20, 8, Kind.END))
+    assert (ruler.first, ruler.second) == (Point(0, 5, PointKind.END), Point(-20, 8, PointKind.END))
     rows = dict(ruler.rows(view.in_mm))
     assert (rows["ΔX Ø"], rows["ΔX R"], rows["ΔZ"]) == ("6.0000", "3.0000", "−20.0000")
     press(view, Key.Key_Backspace)
@@ -103,7 +102,7 @@ def test_measuring_by_keys_alone(view: PathView) -> None:
 def test_tab_goes_along_the_path(view: PathView) -> None:
     view.measure()
     assert view.ruler is not None
-    view.ruler.cursor = Spot(2.0, 10.0, Kind.END)
+    view.ruler.cursor = Point(2.0, 10.0, PointKind.END)
     press(view, Key.Key_Tab, Key.Key_Tab)
     assert view.ruler.cursor[:2] == (-20.0, 5.0)
     QTest.keyClick(view, Key.Key_Tab, SHIFT)
@@ -113,9 +112,9 @@ def test_tab_goes_along_the_path(view: PathView) -> None:
 def test_shift_creeps_by_a_pixel_and_catches_nothing(view: PathView) -> None:
     view.measure()
     assert view.ruler is not None
-    view.ruler.cursor = Spot(0.0, 5.0, Kind.END)
+    view.ruler.cursor = Point(0.0, 5.0, PointKind.END)
     QTest.keyClick(view, Key.Key_Right, SHIFT)
-    assert view.ruler.cursor.kind is Kind.FREE
+    assert view.ruler.cursor.kind is PointKind.FREE
     assert view.ruler.cursor.z == pytest.approx(view.panes[0].pixel)
 
 
@@ -124,7 +123,7 @@ def test_the_pointer_catches_a_corner_and_holds_it(view: PathView) -> None:
     for z, x in ((0.0, 5.0), (-20.0, 5.0)):
         QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=on_widget(view, z, x) + QPoint(4, -3))
     assert view.ruler is not None
-    assert (view.ruler.first, view.ruler.second) == (Spot(0, 5, Kind.END), Spot(-20, 5, Kind.END))
+    assert (view.ruler.first, view.ruler.second) == (Point(0, 5, PointKind.END), Point(-20, 5, PointKind.END))
 
 
 def test_the_cross_stays_in_sight(view: PathView) -> None:
@@ -301,7 +300,9 @@ def test_a_comparison_ends_with_the_next_picture(view: PathView) -> None:
 
 def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -> None:
     before = view.view
-    view.show_approach([Leg(60.0, 40.0), Leg(60.0, 8.0, label="1 X"), Leg(-5.0, 8.0, label="2 Z")])
+    view.show_approach(
+        [DrawnLeg(60.0, 40.0), DrawnLeg(60.0, 8.0, label="1 X"), DrawnLeg(-5.0, 8.0, label="2 Z")]
+    )
     _z0, z1, _x0, x1 = view.panes[0].sight()
     assert z1 > 60
     assert x1 > 40
@@ -309,14 +310,18 @@ def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -
     assert view.view == before
     view.zoom(2)
     near = view.view
-    view.show_approach([Leg(60.0, 40.0), Leg(60.0, 8.0)])
+    view.show_approach([DrawnLeg(60.0, 40.0), DrawnLeg(60.0, 8.0)])
     assert view.view == near
     view.fit()
     assert view.panes[0].sight()[1] > 60
 
 
 def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
-    legs = [Leg(10.0, 12.0), Leg(10.0, 8.0, label="1 X"), Leg(-5.0, 8.0, rapid=False, label="2 Z")]
+    legs = [
+        DrawnLeg(10.0, 12.0),
+        DrawnLeg(10.0, 8.0, label="1 X"),
+        DrawnLeg(-5.0, 8.0, rapid=False, label="2 Z"),
+    ]
     view.fit()
     view.zoom(-3)
     plain = settle(view)

@@ -10,15 +10,15 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.automatic.automatic_view import AutomaticPage
 from app.cli.offset_file import read_offsets
 from app.compose.screen import desk_and_executor, step_clock
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
 from app.screen.look import Look
-from app.screen.page import AutomaticPage
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from tests.screen.hands import Key

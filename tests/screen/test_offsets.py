@@ -10,13 +10,13 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.desk import pages
-from app.desk.session import Phase
+from app.desk.program_loading import Phase
 from app.offsets.offset_book import OffsetBook
 from app.offsets.secondary_offsets_view import SeccmpPage
 from app.offsets.tool_offsets_view import ToolsPage
-from app.screen.layout import FINGER
+from app.screen import page_table
 from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold, LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
@@ -60,7 +60,7 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     hands.load("bushing")
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    assert hands.frame.title.page == pages.SECCMP
+    assert hands.frame.title.page == page_table.SECCMP
     hands.sees(lambda: page.asked.asked.question == "Offset Number?")
     assert (page.asked.asked.which, page.asked.asked.foot) == (
         "Secondary offset number:",
@@ -189,7 +189,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     hands.load("pin")
     hands.key(Key.Key_F8)
     page = tools_of(hands)
-    assert hands.frame.title.page == pages.TOOLS
+    assert hands.frame.title.page == page_table.TOOLS
     for _ in range(8):
         hands.key(Key.Key_Down)
     hands.sees(lambda: page.asked.asked.question == "T9  X R?")

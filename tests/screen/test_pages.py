@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.desk import pages
-from app.desk.prompts import NOT_HERE
+from app.desk.prompt_line import NOT_HERE
+from app.screen import page_table
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.hands import Hands, Key
@@ -14,8 +14,8 @@ from tests.screen.hands import Hands, Key
 
 def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:
     hands.key(Key.Key_F1)
-    assert hands.frame.page.NAME == pages.MENU
-    assert hands.frame.title.page == pages.MENU
+    assert hands.frame.page.NAME == page_table.MENU
+    assert hands.frame.title.page == page_table.MENU
     assert hands.frame.keys.labels[1] == "AUTO"
     hands.key(Key.Key_F2)
     assert hands.frame.page is hands.page
@@ -75,7 +75,7 @@ def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     assert hands.frame.log.isVisible()
     hands.key(Key.Key_Escape)
     assert not hands.frame.log.isVisible()
-    assert hands.frame.page.NAME == pages.MENU
+    assert hands.frame.page.NAME == page_table.MENU
 
 
 def test_the_run_stays_in_sight_on_every_other_page(hands: Hands) -> None:

@@ -6,12 +6,22 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QColor, QImage
 
-from app.desk.drawing.trail import Stroke
-from app.desk.picture import Picture
+from app.path.path_layers_view import (
+    SMOOTH_TO,
+    Ends,
+    Frame,
+    Layers,
+    clipped,
+    fitted,
+    polygon,
+    runs,
+    scale_length,
+    stepped,
+    travelled,
+)
+from app.path.path_picture import Picture
+from app.path.polyline import Stroke
 from app.screen.look import Look
-from app.screen.path.layers import SMOOTH_TO, Layers
-from app.screen.path.plot import Frame, fitted, polygon, runs, scale_length, travelled
-from app.screen.path.raster import Ends, clipped, stepped
 from app.screen.theme import DARK
 
 FRAME = Frame(z=0.0, x=0.0, scale=10.0, width=400, height=200)

@@ -7,15 +7,14 @@ from collections.abc import Iterator
 import pytest
 from PySide6.QtCore import QPointF
 
-from app.desk import pages
-from app.desk.prompts import HOW_TO_HOLD
-from app.desk.searchto.search import SearchDesk
-from app.desk.searchto.stage import Stage
+from app.desk.prompt_line import HOW_TO_HOLD
+from app.screen import page_table
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.pictures import Stage as Lathe
-from app.screen.searchto.page import SearchPage
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
+from app.searchto.searchto_model import SearchtoModel, Stage
+from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
@@ -33,15 +32,15 @@ def operator(qapp: object) -> Iterator[Operator]:
     stage.close()
 
 
-def model_of(operator: Operator) -> SearchDesk:
+def model_of(operator: Operator) -> SearchtoModel:
     assert operator.stage.desk.searchto is not None
     return operator.stage.desk.searchto
 
 
-def page_of(operator: Operator) -> SearchPage:
+def page_of(operator: Operator) -> SearchtoPage:
     operator.window.refresh()
     page = operator.frame.page
-    assert isinstance(page, SearchPage)
+    assert isinstance(page, SearchtoPage)
     return page
 
 
@@ -62,7 +61,7 @@ def estop_and_recover(operator: Operator) -> None:
     operator.reaches(State.IDLE)
 
 
-def found(operator: Operator) -> SearchPage:
+def found(operator: Operator) -> SearchtoPage:
     """Enter, and wait for the worker."""
     operator.key(Key.Key_Return)
     model_of(operator).settle(10.0)
@@ -83,7 +82,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     operator.pause(0.2)
     estop_and_recover(operator)
     operator.key(Key.Key_F6)
-    assert operator.frame.title.page == pages.SEARCHTO
+    assert operator.frame.title.page == page_table.SEARCHTO
     assert operator.prompt().startswith("LINE 18 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
     page = found(operator)
     assert page.state.shown.title == "STATE AT LINE 18"
@@ -334,7 +333,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     assert operator.prompt().startswith("TO TAKE THE TOOL OUT OF THE PART PRESS BOTH PALM BUTTONS")
     operator.palms()
     assert operator.shot.state is State.RUN
-    assert operator.frame.title.page == pages.SEARCHTO
+    assert operator.frame.title.page == page_table.SEARCHTO
     operator.key(Key.Key_H)
     operator.reaches(State.HOLD)
     operator.pause(0.4)

@@ -10,10 +10,10 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.desk import pages
+from app.screen import page_table
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from app.special.backup import BARRED
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
@@ -65,7 +65,7 @@ def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
 
 def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    assert hands.frame.title.page == pages.SPECIAL
+    assert hands.frame.title.page == page_table.SPECIAL
     page = hands.frame.page
     assert isinstance(page, SpecialPage)
     hands.key(Key.Key_Down)

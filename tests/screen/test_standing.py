@@ -6,14 +6,23 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk import pages
+from app.screen import page_table
 from core.executor.snapshot import State
 from tests.interrupted import broken_off
 from tests.screen.hands import Hands, Key
 
 
 @pytest.mark.parametrize(
-    "page", [pages.AUTOMATIC, pages.MENU, pages.JOG, pages.PROGRAMS, pages.TOOLS, pages.SPECIAL, pages.ZERO]
+    "page",
+    [
+        page_table.AUTOMATIC,
+        page_table.MENU,
+        page_table.JOG,
+        page_table.PROGRAMS,
+        page_table.TOOLS,
+        page_table.SPECIAL,
+        page_table.ZERO,
+    ],
 )
 def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
@@ -39,7 +48,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
 def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     time = [100.0]
     hands.desk.hands.clock = lambda: time[0]
-    hands.frame.go(pages.JOG)
+    hands.frame.go(page_table.JOG)
     now = hands.desk.snapshot()
     hands.desk.snapshot = lambda: replace(now, state=State.JOG)
     hands.window.refresh()
@@ -79,7 +88,7 @@ def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
     hands.window.refresh()
     rows = hands.frame.standing
     assert [key for key, _label in rows.rows[0].keys] == ["F6", "Y"]
-    hands.frame.go(pages.JOG)
+    hands.frame.go(page_table.JOG)
     hands.window.refresh()
     assert rows.rows[0].keys == ()  # there these keys mean other things
     hands.key(Key.Key_F1)

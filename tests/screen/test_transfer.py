@@ -12,8 +12,8 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from app.special.special_view import SpecialPage
 from app.transfer.serial_line import Received
 from app.transfer.serial_transfer import TransferSection

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from app.desk import pages
 from app.offsets.offset_book import ZeroBook
 from app.offsets.zero_offsets_view import ZeroPage
+from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.zero import ZeroRow
@@ -31,7 +31,7 @@ def opened(hands: Hands) -> ZeroPage:
     hands.key(Key.Key_G)
     page = hands.frame.page
     assert isinstance(page, ZeroPage)
-    assert hands.frame.title.page == pages.ZERO
+    assert hands.frame.title.page == page_table.ZERO
     return page
 
 
@@ -126,7 +126,7 @@ def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F10)
     assert isinstance(hands.frame.page, ZeroPage)
     hands.key(Key.Key_F9)
-    assert hands.frame.title.page == pages.SECCMP
+    assert hands.frame.title.page == page_table.SECCMP
 
 
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:

@@ -11,9 +11,9 @@ from app.compose.journal import Journal
 from app.compose.offsets import stored_offsets
 from app.compose.screen import desk_and_executor, step_clock
 from app.desk.desk import Desk
-from app.desk.readout import Readout
-from app.desk.session import Phase
-from app.desk.view import view_of
+from app.desk.machine_status import status_of
+from app.desk.program_loading import Phase
+from app.desk.readouts import Readout
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from drivers.simulated import StepClock
@@ -68,7 +68,7 @@ class Bench:
         self.until(lambda s: s.state is State.RUN)
 
     def c(self) -> str:
-        return view_of(self.desk.snapshot(), Readout.POSITION, with_c=True).position.axes[2].value
+        return status_of(self.desk.snapshot(), Readout.POSITION, with_c=True).position.axes[2].value
 
     def close(self) -> None:
         self.desk.close()
@@ -87,7 +87,7 @@ def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> 
     bench.started()
     over = bench.until(lambda s: s.line == 4 and s.actual[2] > 500)
     assert 0.0 <= float(bench.c()) < 360.0
-    view = view_of(over, Readout.POSITION, with_c=True)
+    view = status_of(over, Readout.POSITION, with_c=True)
     assert (view.feed.value, view.feed.unit) == ("3000.0", "°/min")
     end = bench.until(lambda s: s.state is State.IDLE)
     assert (end.parts, end.alarms) == (1, ())
@@ -124,7 +124,7 @@ def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
         bench.desk.look()
     bench.started()
     turned = bench.until(lambda s: s.line == 5)
-    assert view_of(turned, Readout.POSITION, with_c=True).tool == "G54"
+    assert status_of(turned, Readout.POSITION, with_c=True).tool == "G54"
     bench.until(lambda s: s.line == 5 and bench.c() == "0.00")
     end = bench.until(lambda s: s.state is State.IDLE and s.parts == 1)
     assert end.actual[1] == pytest.approx(-15.0, abs=0.01)
@@ -142,7 +142,7 @@ def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_pa
 
 
 def shown(bench: Bench) -> str:
-    return view_of(bench.desk.snapshot(), Readout.POSITION, with_c=True).position.unit
+    return status_of(bench.desk.snapshot(), Readout.POSITION, with_c=True).position.unit
 
 
 def test_a_metric_lathe_counts_in_mm_before_in_and_after_a_program(bench: Bench) -> None:

@@ -23,8 +23,8 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QW
 from app.cli.main import console
 from app.desk.desk import Desk
 from app.screen.keyboard import Keyboard
+from app.screen.main_window import MainWindow
 from app.screen.panel import Panel
-from app.screen.window import MainWindow
 from drivers.simulated.machine import SimMachine
 
 LOOK = 0.01  # s

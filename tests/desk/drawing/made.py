@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.desk.drawing.trail import Stroke, Trail
+from app.path.polyline import Polyline, Stroke
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 
@@ -19,8 +19,8 @@ def turned(n: int, kind: Kind, start: Way, end: Way, **more: object) -> Block:
     return Block(n, n, kind, "", *start, *end, **given)  # type: ignore[arg-type]
 
 
-def trail(points: list[tuple[float, float, Stroke]], first: list[int]) -> Trail:
+def trail(points: list[tuple[float, float, Stroke]], first: list[int]) -> Polyline:
     """A trail of (z, x, stroke) points and where blocks end."""
     z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
     bounds = (float(z.min()), float(z.max()), float(x.min()), float(x.max()))
-    return Trail(z.astype(float), x.astype(float), stroke.astype(np.uint8), np.array(first), bounds)
+    return Polyline(z.astype(float), x.astype(float), stroke.astype(np.uint8), np.array(first), bounds)

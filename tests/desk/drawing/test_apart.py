@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk.drawing.apart import Apart, farthest
-from app.desk.drawing.trail import Stroke
+from app.path.measuring import Apart, farthest
+from app.path.polyline import Stroke
 from tests.desk.drawing.made import trail
 
 JUMP, RAPID, TURN = Stroke.JUMP, Stroke.RAPID, Stroke.TURN

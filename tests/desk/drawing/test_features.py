@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.desk.drawing.features import MOST_CROSSED, Features, crossings, point_at
-from app.desk.drawing.spots import Kind, Spot
-from app.desk.drawing.trail import Stroke
+from app.path.measuring import MOST_CROSSED, Features, Point, PointKind, crossings, point_at
+from app.path.polyline import Stroke
 from tests.desk.drawing.made import trail
 
 EVERYWHERE = (-100.0, 100.0, -100.0, 100.0)
@@ -29,27 +28,27 @@ SQUARE = trail(
 
 def test_ends_of_blocks_and_starts_after_jumps_are_points() -> None:
     features = Features(SQUARE)
-    assert features.nearest(0.3, 0.2) == Spot(0, 0, Kind.END)
-    assert features.nearest(-3, 1) == Spot(-2, 1, Kind.END)
+    assert features.nearest(0.3, 0.2) == Point(0, 0, PointKind.END)
+    assert features.nearest(-3, 1) == Point(-2, 1, PointKind.END)
 
 
 def test_points_within_an_arc_are_none() -> None:
     bend = trail([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
-    assert Features(bend).nearest(1, 1) != Spot(1, 1, Kind.END)
+    assert Features(bend).nearest(1, 1) != Point(1, 1, PointKind.END)
 
 
 def test_middles_of_arcs_are_points() -> None:
     features = Features(replace(SQUARE, centres=np.array([[2.0, 2.0]])))
-    assert features.nearest(2.4, 2.1) == Spot(2, 2, Kind.CENTRE)
+    assert features.nearest(2.4, 2.1) == Point(2, 2, PointKind.CENTRE)
 
 
 def test_crossings_are_found_where_they_are_in_sight() -> None:
     features = Features(SQUARE)
-    assert features.nearest(4, 1.1) == Spot(4, 0, Kind.END)
+    assert features.nearest(4, 1.1) == Point(4, 0, PointKind.END)
     features.look(EVERYWHERE)
-    assert features.nearest(4, 1.1) == Spot(4, 1, Kind.CROSSING)
+    assert features.nearest(4, 1.1) == Point(4, 1, PointKind.CROSSING)
     features.look((-100, 3, -100, 100))
-    assert features.nearest(4, 1.1) == Spot(4, 0, Kind.END)
+    assert features.nearest(4, 1.1) == Point(4, 0, PointKind.END)
 
 
 def test_a_jump_crosses_nothing() -> None:
@@ -76,9 +75,9 @@ def test_an_arrow_goes_to_the_next_point_that_way(
 
 def test_along_the_path_and_on_at_the_other_end() -> None:
     features = Features(SQUARE)
-    assert features.following(4, 4, 1) == Spot(0, 4, Kind.END)
-    assert features.following(0, 0, -1) == Spot(6, 1, Kind.END)
-    assert features.following(6, 1, 1) == Spot(0, 0, Kind.END)
+    assert features.following(4, 4, 1) == Point(0, 4, PointKind.END)
+    assert features.following(0, 0, -1) == Point(6, 1, PointKind.END)
+    assert features.following(6, 1, 1) == Point(0, 0, PointKind.END)
 
 
 def test_an_empty_trail_has_no_points() -> None:

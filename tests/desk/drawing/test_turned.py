@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from app.compose.machine import read_machine, setup_for
-from app.desk.drawing.chords import CHORD_ERROR
-from app.desk.drawing.trail import Stroke, Trail
-from app.desk.drawing.turned import face_point
-from app.desk.picture import Picture, Sketch, sketched
+from app.path.face_and_side import face_point
+from app.path.path_picture import Picture, Sketch, sketched
+from app.path.polyline import CHORD_ERROR, Polyline, Stroke
 from core.geometry.virtual_mill import Face, PlaneMove, Side
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import ToolOffset
@@ -31,12 +30,12 @@ def drawn(*blocks: Block) -> Picture:
     return sketch.picture()
 
 
-def face_of(picture: Picture) -> Trail:
+def face_of(picture: Picture) -> Polyline:
     assert picture.face is not None
     return picture.face
 
 
-def side_of(picture: Picture) -> Trail:
+def side_of(picture: Picture) -> Polyline:
     assert picture.side is not None
     return picture.side
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from app.desk.jogging.hold import JogHold
-from app.desk.jogging.speeds import CONTINUOUS, Speeds
+from app.jog.held_jog import JogHold
+from app.jog.jog_speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal

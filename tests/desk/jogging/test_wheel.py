@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from app.desk.jogging.hold import JogHold
-from app.desk.jogging.speeds import CONTINUOUS, Speeds
-from app.desk.jogging.wheel import WheelHold
+from app.jog.held_jog import JogHold
+from app.jog.jog_handwheel import WheelHold
+from app.jog.jog_speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal

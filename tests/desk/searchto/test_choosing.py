@@ -7,9 +7,9 @@ import threading
 import pytest
 
 from app.compose.searchto import rebuilt
-from app.desk.searchto.cursor import Cursor
-from app.desk.searchto.finder import Finder
-from app.desk.session import Proved
+from app.desk.program_loading import Proved
+from app.searchto.searchto_cursor import Cursor
+from app.searchto.searchto_finder import Finder
 from core.executor.job import Job, Proof, make_job
 from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
 from core.language.source import Source

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.searchto.leaving import jog_words, leaving_of
+from app.searchto.searchto_plan import jog_words, leaving_of
 from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.job import make_job
 from core.executor.snapshot import Snapshot

@@ -9,8 +9,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
 from tests.editor.shop import Memory
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.editor.writer import Writer

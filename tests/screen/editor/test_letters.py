@@ -8,10 +8,10 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.desk import pages
-from app.screen.layout import FINGER
+from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS
 from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 
@@ -97,7 +97,7 @@ def test_it_goes_away_and_the_path_is_seen_again(writer: Writer) -> None:
     assert not writer.editor.letters.isVisible()
     writer.key(Key.Key_Escape)
     assert writer.editor.letters.isVisible()
-    assert writer.front == pages.EDITOR
+    assert writer.front == page_table.EDITOR
 
 
 def test_the_text_keeps_room_over_it(writer: Writer) -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from app.desk import pages
-from app.desk.session import Phase
+from app.desk.program_loading import Phase
 from app.editor import messages
 from app.editor.editor import Stage
+from app.screen import page_table
 from core.executor.commands import CycleStart, FeedHold, LoadJob
 from core.executor.snapshot import State
 from core.language.diagnostics import Severity
@@ -45,7 +45,7 @@ def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: P
     writer.key(Key.Key_Backspace)
     writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.diagnostics)
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     assert writer.desk.session.now.name == "first.nc"
     assert (tmp_path / "first.nc").read_text() == GOOD
@@ -59,14 +59,14 @@ def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.prompt() == messages.CREATE)
     writer.key(Key.Key_Escape)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 
 
 def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None:
     writer.edit("pin")
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_F3)
@@ -85,13 +85,13 @@ def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
     writer.key(Key.Key_F1)
     writer.sees(lambda: "CANNOT NAME A PROGRAM" in writer.prompt())
     writer.key(Key.Key_Escape)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
 
 def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) -> None:
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.prompt() == messages.NO_PROGRAM)
-    assert writer.front == pages.AUTOMATIC
+    assert writer.front == page_table.AUTOMATIC
 
 
 @pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.BLOCK_END, State.WAIT])
@@ -101,7 +101,7 @@ def test_refused_while_a_program_is_under_way(writer: Writer, state: State) -> N
     writer.machine.blocks = ()
     writer.key(Key.Key_F3)
     assert writer.prompt() == messages.UNDER_WAY
-    assert writer.front == pages.AUTOMATIC
+    assert writer.front == page_table.AUTOMATIC
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured
     writer.machine.now = replace(writer.machine.now, rpm_command=command, rpm_actual=measured)
     writer.key(Key.Key_F3)
     assert writer.prompt() == why
-    assert writer.front == pages.AUTOMATIC
+    assert writer.front == page_table.AUTOMATIC
 
 
 def test_the_palms_start_nothing_from_the_editor(writer: Writer) -> None:
@@ -232,7 +232,7 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     writer.key(Key.Key_F10)
     writer.sees(lambda: writer.prompt() == messages.ABANDON)  # never the key that asked
     writer.key(Key.Key_F6)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
 
 
@@ -261,7 +261,7 @@ def test_closing_the_window_saves_first(writer: Writer, tmp_path: Path) -> None:
     writer.write(GOOD)
     writer.sees(writer.proved)
     assert not writer.window.close()
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     assert (tmp_path / "closing.nc").read_text() == GOOD
 
 
@@ -270,14 +270,14 @@ def test_an_empty_program_is_not_saved(writer: Writer) -> None:
     writer.key(Key.Key_F2)
     writer.sees(lambda: writer.prompt() == messages.EMPTY)
     writer.key(Key.Key_F3)  # an untouched new file is forgotten
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
 
 def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> None:
     writer.new("menu")
     writer.write(GOOD)
     writer.key(Key.Key_F1)
-    writer.sees(lambda: writer.front == pages.MENU)
+    writer.sees(lambda: writer.front == page_table.MENU)
     assert (tmp_path / "menu.nc").exists()
     assert writer.desk.session.now.phase is Phase.EMPTY  # that is what F3 is for
     assert writer.desk.notice == "menu.nc IS SAVED; F2 PUTS IT ON THE DESK"
@@ -291,14 +291,14 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
     on_desk, posted, model = writer.desk.session.now, len(writer.machine.posted), writer.desk.files
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
-        writer.frame.go(pages.PROGRAMS)
+        writer.frame.go(page_table.PROGRAMS)
         writer.sees(lambda: "other.nc" in [program.name for program in model.shown])
         model.choose([program.name for program in model.shown].index("other.nc"))
         writer.key(Key.Key_F3)
-        writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.name == "other.nc")
+        writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.name == "other.nc")
         writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
         writer.key(leaves)
-        writer.sees(lambda: writer.front != pages.EDITOR)
+        writer.sees(lambda: writer.front != page_table.EDITOR)
         assert writer.desk.session.now is on_desk
         if leaves is not Key.Key_Escape:
             assert writer.desk.notice == "other.nc WAS ONLY LOOKED AT: mine.nc STAYS ON THE DESK"
@@ -315,13 +315,13 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
     writer.key(Key.Key_F1)
-    writer.sees(lambda: writer.front == pages.MENU)
+    writer.sees(lambda: writer.front == page_table.MENU)
     assert writer.desk.session.loads == before
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.stage is Stage.OPEN)
+    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is Stage.OPEN)
     writer.write("(CHANGED)\n")
     writer.key(Key.Key_F1)
-    writer.sees(lambda: writer.front == pages.MENU)
+    writer.sees(lambda: writer.front == page_table.MENU)
     writer.sees(lambda: writer.desk.session.loads == before + 1)
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
 
@@ -330,14 +330,14 @@ def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    writer.frame.go(pages.PROGRAMS)
+    writer.frame.go(page_table.PROGRAMS)
     model = writer.desk.files
     assert model is not None
     writer.sees(lambda: bool(model.shown))
     writer.type("NOSUCHNAME")
     writer.sees(lambda: not model.shown)
     writer.key(Key.Key_F3)
-    assert writer.front == pages.PROGRAMS
+    assert writer.front == page_table.PROGRAMS
     assert writer.desk.notice == "NO PROGRAM IS MARKED"
 
 
@@ -348,14 +348,14 @@ def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Wri
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     writer.key(Key.Key_F2)
     writer.key(Key.Key_F3)
-    assert writer.front == pages.AUTOMATIC
+    assert writer.front == page_table.AUTOMATIC
     assert writer.desk.notice.startswith("TYPE A NAME, OR MARK A PROGRAM")
     files = writer.page.files
     names = [entry.name for entry in files._entries]
     for _ in range(names.index("other.nc")):
         writer.key(Key.Key_Down)
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == pages.EDITOR and writer.editor.editor.name == "other.nc")
+    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.name == "other.nc")
 
 
 def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None:
@@ -410,7 +410,7 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.key(Key.Key_Return)
     writer.sees(lambda: writer.text().rstrip() == written)
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == pages.AUTOMATIC)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     assert (tmp_path / "day.nc").read_text().rstrip() == written
     assert len(memory.kept["day.nc"]) == 3

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk import pages
 from app.editor.editor_view import EditorPage
+from app.screen import page_table
 from tests.screen.hands import Hands, Key
 
 
@@ -41,13 +41,13 @@ class Writer(Hands):
         self.key(Key.Key_X)
         self.key(Key.Key_F3)
         self.key(Key.Key_F1)
-        self.sees(lambda: self.front == pages.EDITOR and self.editor.field.hasFocus())
+        self.sees(lambda: self.front == page_table.EDITOR and self.editor.field.hasFocus())
 
     def edit(self, name: str) -> None:
         """A program of the shelf, from the desk into the editor."""
         self.load(name)
         self.key(Key.Key_F3)
-        self.sees(lambda: self.front == pages.EDITOR and bool(self.text()))
+        self.sees(lambda: self.front == page_table.EDITOR and bool(self.text()))
 
     def proved(self) -> bool:
         """Whether what is typed is proved."""

@@ -15,12 +15,12 @@ from PySide6.QtWidgets import QApplication
 from app.compose.offsets import offsets_of
 from app.compose.screen import desk_and_executor
 from app.desk.desk import Desk
+from app.jog.jog_view import JogPage
 from app.offsets.offset_book import OffsetBook
-from app.screen.frame import Frame
-from app.screen.jog.page import JogPage
 from app.screen.look import Look
+from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
-from app.screen.window import MainWindow
+from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store

@@ -8,7 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialog
 from pytestqt.qtbot import QtBot
 
-from app.desk import pages
+from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
@@ -121,7 +121,7 @@ def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
 def test_the_page_changes(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F8)
-    assert jog.frame.page.NAME == pages.TOOLS
+    assert jog.frame.page.NAME == page_table.TOOLS
     stands(jog, at)
 
 

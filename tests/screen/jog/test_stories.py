@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.jogging.asked import tip
+from app.jog.tool_setting import tip
 from core.executor.snapshot import State
 from core.store.rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key

@@ -1,0 +1,1 @@
+"""The Automatic page; its model is the desk itself."""

@@ -1,0 +1,178 @@
+"""The Automatic page: program window, comment, path view, and the question for a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.prompt_line import MOVING, NONE_NAMED
+from app.path.measuring import measuring_words
+from app.path.path_aspects import tip_of
+from app.path.path_view import PathView
+from app.programs.file_prompt_view import FilePrompt
+from app.screen import page_table
+from app.screen.page_base import Doings, Host, Page
+from app.screen.program_listing import Listing
+from app.screen.window_bars import CommentLine
+from app.screen.window_layout import Rect, work_parts
+from app.working_plane.plane_instant import plane_words, running
+from app.working_plane.working_plane_view import WorkingPlaneView
+from core.executor.snapshot import Snapshot, State
+
+_NO_LINES: tuple[str, ...] = ()
+
+
+class AutomaticPage(Page):
+    """Each part redraws only what changed. The readouts above it are large (see ``Frame``)."""
+
+    NAME = page_table.AUTOMATIC
+    LABELS = (
+        "MENU",
+        "FILE",
+        "EDIT",
+        "READOUT",
+        "FIT",
+        "SEARCHTO",
+        "ALARMS",
+        "TOOLS",
+        "SECCMP",
+        "SPECIAL",
+    )
+    STARTS = True
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        look, desk = host.look, host.desk
+        self._loaded = Loaded()
+        self._moving = False
+        self.listing = Listing(look, self)
+        self.comment = CommentLine(look, self)
+        self.path = PathView(look, self)
+        self.space = WorkingPlaneView(look, self)  # takes the path's place where the machine is a mill
+        self.files = FilePrompt(look, desk.shelf, desk.choose, self._files_closed, self)
+
+    def dress(self) -> None:
+        """Everything in the colours that are in force now."""
+        self.files.dress()
+        self.path.restart()
+
+    def _files_closed(self) -> None:
+        self.window().setFocus()
+
+    def leave(self) -> bool:
+        """The question for a file goes with the page."""
+        self.files.dismiss()
+        return True
+
+    def prompt(self) -> str:
+        """The keys of measuring; while something moves it is told what stops it, as ever."""
+        return measuring_words() if self.path.ruler is not None and not self._moving else ""
+
+    def escape(self) -> bool:
+        """Ends measuring; while something moves it holds the feed instead, as everywhere."""
+        measuring = self.path.ruler is not None and not self._moving
+        if measuring:
+            self.path.measure(on=False)
+        return measuring
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Everything again, in the new unit."""
+        listing, comment, path = work_parts(Rect(0, 0, self.width(), self.height()), self.look.u)
+        for part, rect in (
+            (self.listing, listing),
+            (self.comment, comment),
+            (self.path, path),
+            (self.space, path),
+            (self.files, path),
+        ):
+            part.setGeometry(*rect)
+            part.update()
+
+    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """The program, where it is, and what it says."""
+        if self.files.isVisible() and snapshot.state in {State.RUN, State.WAIT}:
+            self.files.dismiss()  # a cycle was started at the station: the keys belong to it
+        self._moving = snapshot.state in MOVING
+        self._show_program(loaded)
+        self.comment.show_text(view.comment)
+        self.listing.show_run(view.line or snapshot.interrupted_line, view.block_text, view.next_text)
+        self._show_path(snapshot, loaded)
+
+    def _show_program(self, loaded: Loaded) -> None:
+        if loaded is self._loaded:
+            return
+        self._loaded = loaded
+        lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
+        self.listing.show_source(lines, {d.line: d.message for d in loaded.errors if d.line})
+        scene = loaded.picture.scene if loaded.picture is not None else None
+        self.space.show_scene(scene)
+        self.space.setVisible(scene is not None)
+        self.path.show_picture(loaded.picture if scene is None else None)
+
+    def _show_path(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        scene = self.space.scene
+        if scene is not None:
+            self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
+            return
+        self.path.show_tip(tip_of(snapshot, loaded.job))
+        self.path.advance()
+
+    @property
+    def _looked_at(self) -> PathView | WorkingPlaneView:
+        """Which of the two the keys of looking around are for."""
+        return self.path if self.space.scene is None else self.space
+
+    def doings(self) -> Doings:
+        """What the page itself does, by key."""
+        return {
+            "F2": self.ask_file,
+            "F3": self._edit,
+            "F4": self.desk.next_readout,
+            "F5": self._fit,
+            "F6": partial(self._go, page_table.SEARCHTO),
+            "F8": partial(self._go, page_table.TOOLS),
+            "F9": partial(self._go, page_table.SECCMP),
+            "F10": partial(self._go, page_table.SPECIAL),
+            "Zoom in": lambda: self._looked_at.zoom(1),
+            "Zoom out": lambda: self._looked_at.zoom(-1),
+            "Measure": self.path.measure,
+            "View": self._next_view,
+            "Pan left": lambda: self._looked_at.pan(-1, 0),
+            "Pan right": lambda: self._looked_at.pan(1, 0),
+            "Pan up": lambda: self._looked_at.pan(0, -1),
+            "Pan down": lambda: self._looked_at.pan(0, 1),
+            "Page up": lambda: self.listing.look_at(-self.listing.rows),
+            "Page down": lambda: self.listing.look_at(self.listing.rows),
+            "Follow": self.listing.follow,
+        }
+
+    def _fit(self) -> None:
+        self._looked_at.fit()
+
+    def _next_view(self) -> None:
+        self._looked_at.next_view()
+
+    def _go(self, name: str) -> None:
+        self.host.go(name)
+
+    def _edit(self) -> None:
+        """The program on the desk, or whatever name stands in the question for a file."""
+        wanted = self.files.wanted if self.files.isVisible() else ""
+        if self.files.isVisible() and not wanted:
+            self.desk.say(NONE_NAMED)
+        elif self.desk.editor is not None:
+            self.desk.editor.wanted = wanted
+            self._go(page_table.EDITOR)
+
+    def ask_file(self) -> None:
+        """``FILE TO BE PROCESSED``, unless a program is under way; asked already, the list of programs."""
+        if self.files.isVisible():
+            self._go(page_table.PROGRAMS)
+        elif self.desk.may_choose():
+            self.host.clear_away()
+            self.files.ask()

@@ -1,0 +1,37 @@
+"""Where this installation keeps what it must remember."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from platformdirs import user_data_path
+
+
+class DataFolderError(Exception):
+    """TURNDESK_HOME names no folder; ``str()`` is the sentence for whoever set it."""
+
+
+def check_data_folder() -> None:
+    """Refuse a TURNDESK_HOME that is a file or lies below one; one that is not there yet will be made.
+
+    Raises HomeError.
+    """
+    named = os.environ.get("TURNDESK_HOME", "")
+    if not named:
+        return
+    folder = data_folder()
+    there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
+    if there.exists() and not there.is_dir():
+        what = "is" if there == folder else f"lies below {there}, which is"
+        raise DataFolderError(
+            f"TURNDESK_HOME: {folder} {what} a file and no folder; name a folder, or unset it"
+        )
+
+
+def data_folder() -> Path:
+    """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder."""
+    named = os.environ.get("TURNDESK_HOME", "")
+    if named:
+        return Path(named).expanduser().absolute()
+    return user_data_path("turndesk", appauthor=False)

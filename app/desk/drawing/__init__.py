@@ -1,1 +1,0 @@
-"""Programs as polylines: seen from above, on the face of the part, on its unrolled side."""

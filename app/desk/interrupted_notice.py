@@ -1,0 +1,134 @@
+"""The interrupted job in words and figures for every page: which it is, where its tool stood and stands."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.desk import formats
+from app.desk.program_loading import Loaded
+from app.desk.screen_settings import Units
+from app.desk.translation import tr
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.snapshot import Snapshot, Starts, State
+from core.language.source import Dialect
+
+_SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
+
+
+@dataclass(frozen=True, slots=True)
+class InterruptedNotice:
+    """One row: what stands, and the figures to it."""
+
+    text: str
+    figures: str = ""
+
+
+def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> InterruptedNotice | None:
+    """Of the interrupted job; None when there is none."""
+    found = snapshot.interrupted
+    if found is None:
+        return None
+    words = tr(
+        "INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}"
+    ).format(
+        program=found.program,
+        line=found.line,
+        passed=_pass(found, loaded),
+        tool=found.tool,
+        part=found.part,
+        at=clock_time(found.at),
+        why=tr(found.why),
+        changed=tr(" (ITS TEXT HAS CHANGED SINCE)") if _changed(found, loaded) else "",
+    )
+    return InterruptedNotice(words, _places(found, snapshot, units))
+
+
+def clock_time(at: str) -> str:
+    """The time of day as a wall clock here shows it, with the date when that is not today's."""
+    try:
+        then = datetime.fromisoformat(at).astimezone()
+    except ValueError:
+        return at
+    today = datetime.now().astimezone().date() == then.date()
+    return then.strftime("%H:%M" if today else "%Y-%m-%d %H:%M")
+
+
+def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
+    """What can be done about it on the Automatic page; empty when the loaded program is none such."""
+    line = snapshot.interrupted_line
+    if not line or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
+        return ""
+    if snapshot.confirmed:
+        words = tr("BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK")
+        return words.format(text=_first(loaded), tool=snapshot.modal.tool, start=start)
+    if not may_go_on(loaded):
+        return tr("LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1").format(
+            line=line
+        )
+    words = tr(
+        "LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1"
+    )
+    return words.format(line=line)
+
+
+def may_go_on(loaded: Loaded) -> bool:
+    """Whether SEARCHTO reads the language of this program."""
+    return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
+
+
+def instead(found: InterruptedJob, name: str) -> str:
+    """The question before another program takes the place of an interrupted one."""
+    words = tr(
+        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT"
+    )
+    return words.format(tool=found.tool, program=found.program, line=found.line, name=name)
+
+
+def _first(loaded: Loaded) -> str:
+    lines: Sequence[str] = loaded.source.lines if loaded.source is not None else ()
+    return next((line.strip() for line in lines if line.strip()), "")
+
+
+def _changed(found: InterruptedJob, loaded: Loaded) -> bool:
+    job = loaded.job
+    return job is not None and job.source.name == found.program and job.text_digest != found.text
+
+
+def _pass(found: InterruptedJob, loaded: Loaded) -> str:
+    """Which time the line was gone through, where it is more than once in a part."""
+    picture, job = loaded.picture, loaded.job
+    if picture is None or job is None or job.text_digest != found.text:
+        return ""
+    passes = picture.blocks_of_line(found.line)
+    now = next((n for n, (a, b) in enumerate(passes, 1) if a <= found.block <= b), 0)
+    return tr(" PASS {now} OF {all}").format(now=now, all=len(passes)) if now and len(passes) > 1 else ""
+
+
+def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
+    """From home, as the readout FROM HOME counts: where the tool stood, and where it stands by now."""
+    stood = _figures(found.axes, found.where, snapshot, units)
+    if not all(snapshot.homed):
+        return tr("STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING").format(
+            stood=stood
+        )
+    if snapshot.axes != found.axes:
+        return tr("STOOD AT {stood} FROM HOME").format(stood=stood)
+    if max(abs(a - b) for a, b in zip(found.where, snapshot.actual, strict=True)) <= _SAME:
+        return tr("STANDS AT {stood} FROM HOME").format(stood=stood)
+    now = _figures(snapshot.axes, snapshot.actual, snapshot, units)
+    return tr("STOOD AT {stood}, STANDS AT {now} FROM HOME").format(stood=stood, now=now)
+
+
+def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:
+    """Slides only: where C stands is nothing that a hand can be in the way of."""
+    metric, twice = units.metric(snapshot.modal.metric), snapshot.modal.diameter
+    found = [
+        f"{name} {'Ø' if twice else 'R'}{formats.length(2 * at if twice else at, metric)}"
+        if name == "X" and "Y" not in axes
+        else f"{name} {formats.length(at, metric)}"
+        for name, at in zip(axes, where, strict=False)
+        if name in "XYZ"
+    ]
+    return " ".join(found)

@@ -1,1 +1,0 @@
-"""Moving by hand, homing and touching tools off; no Qt."""

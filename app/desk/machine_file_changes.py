@@ -1,0 +1,35 @@
+"""A machine file that is not the one that was accepted: what differs, and that no drive goes on before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from app.desk.translation import tr
+from core.machine.changes import Change
+
+
+def _forget() -> None:
+    """Nothing is kept here."""
+
+
+@dataclass(slots=True)
+class FileChanges:
+    """``source`` is the file; ``keep`` remembers it as it is now. No changes: it is as it was accepted."""
+
+    source: str = ""
+    changes: Sequence[Change] = field(default_factory=tuple)
+    keep: Callable[[], None] = _forget
+
+    @property
+    def barred(self) -> str:
+        """Why the drives stay off; empty when they need not."""
+        if not self.changes:
+            return ""
+        text = tr("THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT")
+        return text.format(count=len(self.changes))
+
+    def accept(self) -> None:
+        """Somebody has read the changes and takes them."""
+        self.keep()
+        self.changes = ()

@@ -1,0 +1,162 @@
+"""One snapshot, put into the words and figures that the operator reads; and whether it is still of now.
+
+No Qt and no machine logic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.desk import formats
+from app.desk.readouts import (
+    FeedFigures,
+    Lamp,
+    PositionFigures,
+    Readout,
+    SpindleFigures,
+    feed_figures,
+    lamps_of,
+    modes_of,
+    position_figures,
+    spindle_figures,
+)
+from app.desk.screen_settings import Units
+from core.alarms import CATALOGUE, Reaction
+from core.executor.snapshot import Alarm, Snapshot, State
+
+
+class Tone(StrEnum):
+    """How a state is drawn: colour and shape together, so that colour alone never says it."""
+
+    OFF = "off"
+    READY = "ready"
+    RUN = "run"
+    PAUSE = "pause"
+    WAIT = "wait"
+    ALARM = "alarm"
+
+
+TONES = {
+    State.ESTOP: Tone.ALARM,
+    State.DISABLED: Tone.OFF,
+    State.IDLE: Tone.READY,
+    State.RUN: Tone.RUN,
+    State.HOLDING: Tone.PAUSE,
+    State.HOLD: Tone.PAUSE,
+    State.BLOCK_END: Tone.PAUSE,
+    State.PROGRAM_STOP: Tone.PAUSE,
+    State.WAIT: Tone.WAIT,
+    State.JOG: Tone.RUN,
+    State.HOME: Tone.RUN,
+    State.FAULT: Tone.ALARM,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MachineStatus:
+    """Everything on the page that comes from the machine."""
+
+    program: str
+    state: str
+    tone: Tone
+    position: PositionFigures
+    tool: str
+    secondary: str
+    feed: FeedFigures
+    spindle: SpindleFigures
+    modes: tuple[Lamp, ...]
+    lamps: tuple[Lamp, ...]
+    parts: str
+    cycle: str
+    last_cycle: str
+    line: int
+    block: int
+    block_text: str
+    next_text: str
+    comment: str
+    message: str
+    alarms: tuple[Alarm, ...]  # that stand, the first one first: what came behind may only follow from it
+    stop: Alarm | None  # why it stands where no alarm says it, unless somebody asked for it
+
+
+def status_of(
+    snapshot: Snapshot, readout: Readout, with_c: bool, units: Units = Units.PROGRAM
+) -> MachineStatus:
+    """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis.
+
+    Every figure is in the one unit that ``units`` and this very snapshot come to.
+    """
+    modal = snapshot.modal
+    metric = units.metric(modal.metric)
+    stop = unasked(snapshot)
+    return MachineStatus(
+        program=snapshot.program,
+        state=_state(snapshot, stop),
+        tone=TONES[snapshot.state],
+        position=position_figures(snapshot, readout, with_c, metric),
+        tool=f"G{modal.settable}" if modal.settable else f"T{modal.tool}",
+        secondary="" if modal.settable else f"D{modal.secondary}",
+        feed=feed_figures(snapshot, metric),
+        spindle=spindle_figures(snapshot, metric),
+        modes=modes_of(snapshot),
+        lamps=lamps_of(snapshot),
+        parts=str(snapshot.parts),
+        cycle=formats.duration(snapshot.cycle_elapsed),
+        last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
+        line=snapshot.line,
+        block=snapshot.block,
+        block_text=snapshot.block_text,
+        next_text=snapshot.next_text,
+        comment=snapshot.comment,
+        message=_message(snapshot),
+        alarms=snapshot.alarms,
+        stop=stop,
+    )
+
+
+def unasked(snapshot: Snapshot) -> Alarm | None:
+    """A hold that nobody pressed, or the E-stop: told with cause and remedy as an alarm is."""
+    stop = snapshot.stop
+    if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
+        return None
+    return stop
+
+
+def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
+    """In words, with the number of what is in the way."""
+    if snapshot.state is State.WAIT and snapshot.waiting_for:
+        return f"WAITING: {snapshot.waiting_for}"
+    if snapshot.state is State.FAULT and snapshot.alarms:
+        return f"ALARM {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
+    if snapshot.state is State.HOLD and stop is not None:
+        return f"FEED HOLD {stop.number}: {stop.text}"
+    return snapshot.state.value
+
+
+def _message(snapshot: Snapshot) -> str:
+    if snapshot.state is not State.PROGRAM_STOP:
+        return ""
+    return snapshot.message or "PROGRAM STOP"
+
+
+# --- Whether the executor still speaks: figures that stand still look exactly like a machine that does.
+
+
+SILENT_AFTER = 1.0  # seconds without another snapshot; the executor makes one every 10 ms
+
+
+@dataclass(slots=True)
+class SilenceWatch:
+    """Watches the time stamps of snapshots against the screen's own clock."""
+
+    is_silent: bool = False
+    _stamp: float | None = None
+    _since: float = 0.0
+
+    def silent(self, stamp: float, now: float) -> bool:
+        """Whether no other snapshot than the one with this stamp has come for too long."""
+        if stamp != self._stamp:
+            self._stamp, self._since = stamp, now
+        self.is_silent = now - self._since > SILENT_AFTER
+        return self.is_silent

@@ -1,1 +1,0 @@
-"""MDI: one line at a time."""

@@ -1,0 +1,236 @@
+"""The operator station of the simulated machine: palm buttons, feed hold, E-stop, spindle switch and pots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from app.desk.prompt_line import BOTH_UP, ONE_PALM
+
+# --- The simulated operator station as the desk handles it, and its two palm buttons under two hands.
+
+
+TOGETHER = 0.5  # seconds within which the second palm button must follow the first
+
+
+class StationPanel(Protocol):
+    """What a hand can do to the simulated station. Whether both palms came together the station says."""
+
+    def press_left(self) -> None: ...
+
+    def release_left(self) -> None: ...
+
+    def press_right(self) -> None: ...
+
+    def release_right(self) -> None: ...
+
+    def press_hold(self) -> None: ...
+
+    def release_hold(self) -> None: ...
+
+    def press_estop(self) -> None: ...
+
+    def release_estop(self) -> None:
+        """Twist the mushroom out again."""
+        ...
+
+    def set_spindle_auto(self, auto: bool) -> None: ...
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """0…1."""
+        ...
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """0…1.5."""
+        ...
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Signed; only where the machine has a handwheel."""
+        ...
+
+
+@dataclass(slots=True)
+class Palms:
+    """Which palm buttons are down and since when; tells a person what was wrong with a start.
+
+    A pair that did not come within the time, or one let go while the other stays, is dead until both are up:
+    a palm that is taped down starts nothing.
+    """
+
+    down: dict[str, float] = field(default_factory=dict)  # "left"/"right" → seconds, monotonic
+    together: bool = False  # both have been down at once since the last time none was
+    dead: bool = False
+
+    def press(self, side: str, now: float) -> bool:
+        """Note a press; True when this made both go down within the time."""
+        if side in self.down:
+            return False
+        self.down[side] = now
+        times = self.down.values()
+        if len(self.down) < 2:
+            return False
+        self.dead = self.dead or max(times) - min(times) > TOGETHER
+        self.together = self.together or not self.dead
+        return not self.dead
+
+    def release(self, side: str) -> bool:
+        """Note a release; True when a button was let go that never had the other beside it in time."""
+        if self.down.pop(side, None) is None:
+            return False
+        alone = not self.together
+        self.dead = bool(self.down)
+        if not self.down:
+            self.together = False
+        return alone
+
+
+SLEW = 1.0  # of the whole range a second: faster than that a control takes it for a bad wiper, not for a hand
+
+
+@dataclass(slots=True)
+class Pot:
+    """A pot on the screen: ``wanted`` jumps with the finger, ``value`` turns after it as a knob can."""
+
+    most: float
+    wanted: float = 1.0
+    value: float = 1.0
+
+    def set(self, fraction: float) -> None:
+        """Where it shall stand."""
+        self.wanted = max(0.0, min(self.most, fraction))
+
+    def turn(self, seconds: float) -> bool:
+        """Turn on for so long; True when it has moved."""
+        if self.value == self.wanted:
+            return False
+        step = SLEW * seconds
+        self.value += max(-step, min(step, self.wanted - self.value))
+        return True
+
+
+OVERRIDE_STEP = 0.1
+OVERRIDE_MOST = 1.5
+LONGEST_TURN = 0.1  # seconds of turning at a time: a screen that was away does not catch up with a jump
+
+
+def _free() -> str:
+    return ""
+
+
+def _just_now() -> float:
+    return 0.0
+
+
+@dataclass(slots=True)
+class StationHands:
+    """What is held and where the knobs stand. Without a station (a real machine has its own) nothing happens.
+
+    ``say`` answers on the prompt line, ``clear`` takes an answer back, ``starting`` hears of both palms;
+    ``barred`` tells why they start nothing now.
+    """
+
+    station: StationPanel | None
+    clock: Callable[[], float]
+    say: Callable[[str], None]
+    clear: Callable[[], None]
+    starting: Callable[[], None]
+    barred: Callable[[], str] = _free
+    ago: Callable[[], float] = _just_now  # s since the press that is handled now really happened
+    palms: Palms = field(default_factory=Palms)
+    estop_pressed: bool = False
+    spindle_knob: Pot = field(default_factory=lambda: Pot(1.0))
+    feed_knob: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
+    _looked: float | None = None
+
+    def at(self) -> float:
+        """When the press that is handled now happened, by this clock."""
+        return self.clock() - self.ago()
+
+    def palm(self, side: str, down: bool) -> None:
+        """A palm button goes down or up, at the time of its event.
+
+        The station's relay decides whether that is a start; it sees presses when they come here, so of a pair
+        that was not pressed together it sees one only.
+        """
+        station = self.station
+        if station is None:
+            return
+        if down and self.barred():
+            self.palms.dead = bool(self.palms.down)
+            self.say(self.barred())
+        elif down and side not in self.palms.down:
+            self._palm_down(station, side)
+        elif not down and side in self.palms.down:
+            (station.release_left if side == "left" else station.release_right)()
+            if self.palms.release(side):
+                self.say(ONE_PALM)
+
+    def _palm_down(self, station: StationPanel, side: str) -> None:
+        self.clear()
+        if self.palms.press(side, self.at()):
+            self.starting()
+        if self.palms.dead:
+            self.say(BOTH_UP)
+        else:
+            (station.press_left if side == "left" else station.press_right)()
+
+    def let_go(self) -> None:
+        """Hands off: the window has lost the keyboard, so no release would ever arrive."""
+        for side in tuple(self.palms.down):
+            self.palm(side, down=False)
+
+    def hold(self, down: bool) -> None:
+        """The station's feed hold button."""
+        if self.station:
+            (self.station.press_hold if down else self.station.release_hold)()
+
+    def estop(self, pressed: bool) -> None:
+        """Hit the mushroom, or twist it out."""
+        if self.station and pressed is not self.estop_pressed:
+            self.estop_pressed = pressed
+            self.clear()
+            (self.station.press_estop if pressed else self.station.release_estop)()
+
+    def set_spindle_auto(self, auto: bool) -> None:
+        """The spindle switch AUTO/OFF."""
+        if self.station:
+            self.station.set_spindle_auto(auto)
+
+    @property
+    def spindle_pot(self) -> float:
+        """Where the spindle override pot shall stand, 0…1."""
+        return self.spindle_knob.wanted
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """Put the spindle override pot there."""
+        self.spindle_knob.set(fraction)
+
+    def turn_spindle_pot(self, steps: int) -> None:
+        """The spindle pot by so many steps of ten percent."""
+        self.set_spindle_pot(stepped(self.spindle_pot, steps))
+
+    @property
+    def feed_pot(self) -> float:
+        """Where the feed override pot shall stand, 0…1.5."""
+        return self.feed_knob.wanted
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Put the feed override pot there."""
+        self.feed_knob.set(fraction)
+
+    def turn_knobs(self) -> None:
+        """Once a frame: the pots turn on towards where they shall stand."""
+        now = self.clock()
+        passed = min(LONGEST_TURN, now - self._looked) if self._looked is not None else 0.0
+        self._looked = now
+        if self.station is not None:
+            if self.spindle_knob.turn(passed):
+                self.station.set_spindle_pot(self.spindle_knob.value)
+            if self.feed_knob.turn(passed):
+                self.station.set_feed_pot(self.feed_knob.value)
+
+
+def stepped(fraction: float, steps: int) -> float:
+    """An override so many steps further."""
+    return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP

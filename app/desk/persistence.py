@@ -1,0 +1,141 @@
+"""What is kept from one day to the next, as far as the screen asks for it; and a desk where nothing is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+from core.store.errors import StoreError
+from core.store.rows import EventRow, RunRow
+
+NOTHING_KEPT = "nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)"
+
+
+class Persistence(Protocol):
+    """Settings, part counts, runs, versions and the event log.
+
+    Reading raises StoreError; writing is posted and never waits. ``backup``, ``restore``, ``events``,
+    ``runs`` and ``keep_text`` take their time: they are called on a worker.
+    """
+
+    def setting(self, key: str) -> object:
+        """What was kept under this name; None: nothing."""
+        ...
+
+    def keep_setting(self, key: str, value: object) -> None:
+        """Keep anything JSON can hold; None forgets it."""
+        ...
+
+    def parts(self, program: str) -> int:
+        """Parts counted of this program."""
+        ...
+
+    def correct_parts(self, program: str, by: int) -> None:
+        """Parts added or taken away by hand."""
+        ...
+
+    def reset_parts(self, program: str) -> None:
+        """Its count to nought."""
+        ...
+
+    def events(self, search: str, kinds: Collection[str], limit: int) -> Sequence[EventRow]:
+        """The log, newest first; no ``kinds``: all."""
+        ...
+
+    def runs(self) -> Sequence[RunRow]:
+        """What each program has done."""
+        ...
+
+    def run_started(self, program: str) -> None:
+        """A run begins."""
+        ...
+
+    def run_ended(self, program: str, outcome: str) -> None:
+        """How it ended."""
+        ...
+
+    def cycle_finished(self, program: str, seconds: float) -> None:
+        """One whole cycle."""
+        ...
+
+    def program_proved(self, program: str, result: str, planned: float | None) -> None:
+        """What proving found."""
+        ...
+
+    def renamed(self, old: str, new: str) -> None:
+        """Versions, count and record go with a program that gets another name."""
+        ...
+
+    def keep_text(self, program: str, text: bytes, why: str) -> None:
+        """Keep a version before the file goes; back when it is on the disk. Raises StoreError."""
+        ...
+
+    def backup(self, target: Path) -> None:
+        """A copy of everything that is kept."""
+        ...
+
+    def restore(self, source: Path) -> Path | None:
+        """Put a backup in the place of what is kept; answers where that went."""
+        ...
+
+
+@dataclass(slots=True)
+class NoPersistence:
+    """For scripts and a store that cannot be opened: settings live until the program ends."""
+
+    settings: dict[str, object] = field(default_factory=dict)
+
+    def setting(self, key: str) -> object:
+        """What was set since the start."""
+        return self.settings.get(key)
+
+    def keep_setting(self, key: str, value: object) -> None:
+        """Until the program ends."""
+        self.settings[key] = value
+
+    def parts(self, _program: str) -> int:
+        """None are counted here."""
+        return 0
+
+    def correct_parts(self, _program: str, _by: int) -> None:
+        """None are counted here."""
+
+    def reset_parts(self, _program: str) -> None:
+        """Nothing to put to nought."""
+
+    def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
+        """There is no log."""
+        return ()
+
+    def runs(self) -> Sequence[RunRow]:
+        """No run is remembered."""
+        return ()
+
+    def run_started(self, _program: str) -> None:
+        """Not remembered."""
+
+    def run_ended(self, _program: str, _outcome: str) -> None:
+        """Not remembered."""
+
+    def cycle_finished(self, _program: str, _seconds: float) -> None:
+        """Not remembered."""
+
+    def program_proved(self, _program: str, _result: str, _planned: float | None) -> None:
+        """Not remembered."""
+
+    def renamed(self, _old: str, _new: str) -> None:
+        """Nothing goes with it."""
+
+    def keep_text(self, _program: str, _text: bytes, _why: str) -> None:
+        """Versions are not kept here, so nothing may be thrown away."""
+        raise StoreError(NOTHING_KEPT)
+
+    def backup(self, _target: Path) -> None:
+        """Nothing to copy."""
+        raise StoreError(NOTHING_KEPT)
+
+    def restore(self, _source: Path) -> Path | None:
+        """No place for it."""
+        raise StoreError(NOTHING_KEPT)

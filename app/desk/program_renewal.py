@@ -1,0 +1,168 @@
+"""The program on the desk proved anew when offsets, or a unit that it was proved with, have changed.
+
+Between two programs it is loaded again; under a running one it is proved with the new offsets meanwhile, and
+the executor takes it up at the end of the part.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from app.desk.latest import AbandonedError, sentence
+from app.desk.program_loading import Loaded, Phase, ProgramLoader
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.translation import tr
+from app.offsets.offset_book import OffsetBook, ZeroBook, secondary_offsets, tool_offsets
+from core.executor.commands import Command, Renew, UseOffsets
+from core.executor.job import outdated
+from core.executor.snapshot import Snapshot, State
+
+# --- The program under way with the offsets of now: proved and drawn while the old one runs.
+
+
+@dataclass(slots=True)
+class Renewing:
+    """One renewal at a time; a later one takes its place, and so does a program that is loaded.
+
+    The text is that of the program under way, not what stands on the disk by now. On the screen the old
+    program stays until the executor has taken the new one up.
+    """
+
+    session: ProgramLoader
+    _ticket: int = 0
+    _loads: int = 0  # of the session when it was begun
+    _next: Loaded | None = None
+    _shown: Loaded | None = None
+    _told: bool = True
+    _future: Future[None] | None = None
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def begin(self) -> bool:
+        """Announce it, so that nothing is begun with the old offsets, and prove; False without a program."""
+        now = self.session.now
+        if now.job is None:
+            return False
+        with self._lock:
+            self._ticket += 1
+            self._loads, self._next, self._told = self.session.loads, None, False
+        self.session.post(Renew())
+        self._future = self.session.submit(partial(self._work, self._ticket, now))
+        return True
+
+    def taken(self, snapshot: Snapshot) -> bool:
+        """Whether the executor goes by it; what the screen shows follows."""
+        ready = self._next
+        if ready is None or ready.job is None or self.session.loads != self._loads:
+            return False
+        if ready.job.digest != snapshot.job:
+            return False
+        if ready is not self._shown:
+            self._shown = ready
+            self.session.adopt(ready)
+        return True
+
+    def trouble(self) -> str:
+        """Told once: why no next part will be begun; the executor hears what could not be proved at all."""
+        failed = self._failure()
+        if failed:
+            self.session.post(Renew(trouble=failed))
+            return failed
+        ready = self._next
+        if self._told or ready is None or ready.proof is None:
+            return ""
+        self._told = True
+        return ready.proof.errors[0] if ready.proof.errors else ""
+
+    def settled(self, timeout: float) -> None:
+        """Wait until the worker has done with it; for scripts and tests, never for the screen."""
+        if self._future is not None:
+            self._future.exception(timeout)
+
+    def _failure(self) -> str:
+        future = self._future
+        if future is None or not future.done():
+            return ""
+        self._future = None
+        error = None if future.cancelled() else future.exception()
+        return "" if error is None or isinstance(error, AbandonedError) else sentence(error)
+
+    def _work(self, ticket: int, now: Loaded) -> None:
+        assert now.job is not None
+        workshop, watch = self.session.workshop, partial(self._still, ticket)
+        job = workshop.renew_job(now.job)
+        proved = workshop.prove(job, watch)
+        fresh = replace(
+            now, job=job, proof=proved.proof, diagnostics=proved.diagnostics, phase=Phase.DRAWING, reached=0
+        )
+        self._publish(ticket, fresh)
+        self.session.post(Renew(job, proved.proof))
+        picture = workshop.draw(job, watch)
+        phase = Phase.REFUSED if proved.proof.errors else Phase.READY
+        self._publish(ticket, replace(fresh, phase=phase, picture=picture))
+
+    def _still(self, ticket: int, _reached: float = 0.0) -> None:
+        if ticket != self._ticket or self.session.loads != self._loads:
+            raise AbandonedError
+
+    def _publish(self, ticket: int, fresh: Loaded) -> None:
+        with self._lock:
+            self._still(ticket)
+            self._next = fresh
+
+
+@dataclass(slots=True)
+class Rebuilding:
+    """Offsets of both kinds, and the unit that the job before has left.
+
+    Between two programs it is read, proved and drawn again; under a running one it is proved with the new
+    offsets meanwhile, and the executor takes it up at the end of the part.
+    """
+
+    session: ProgramLoader
+    say: Callable[[str], None]
+    wanted: bool = False
+    renewing: Renewing = field(init=False)
+    _changes: int = 0  # of the books, as far as they were seen
+
+    def __post_init__(self) -> None:
+        self.renewing = Renewing(self.session)
+
+    def look(
+        self, snapshot: Snapshot, book: OffsetBook, zero: ZeroBook, post: Callable[[Command], None]
+    ) -> None:
+        """Once a frame: note what has changed, and begin as soon as that may be."""
+        trouble, before = book.poll() or zero.poll(), self._changes
+        self._changes = book.changes + zero.changes
+        if trouble:
+            self.say(f"REFUSED: {trouble}")
+        changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
+        if changed and under_way:
+            self.renewing.begin()
+        elif self.renewing.taken(snapshot) and not changed:
+            self.wanted = False
+        if changed or self._outdated(snapshot):
+            self.wanted = True
+        self._tell_trouble(snapshot)
+        if self.wanted and not under_way and not (book.busy or zero.busy):
+            self.wanted = False
+            # Active at once, for the loaded tool too.
+            post(UseOffsets(tool_offsets(book.tools), secondary_offsets(book.secondary)))
+            now = self.session.now
+            if now.path is not None:
+                self.session.load(now.path, now.block_delete)
+
+    def _tell_trouble(self, snapshot: Snapshot) -> None:
+        """While there is still time to take a change back."""
+        why = self.renewing.trouble()
+        if why and snapshot.state in UNDER_WAY:
+            self.say(tr("NO NEXT PART WITH THE CHANGED OFFSETS: {why}").format(why=why))
+
+    def _outdated(self, snapshot: Snapshot) -> bool:
+        """The job before has left another unit than this program was proved with, and it names none."""
+        now = self.session.now
+        at_rest = snapshot.state is State.IDLE and not now.busy and now.phase is not Phase.UNREADABLE
+        return at_rest and now.job is not None and bool(outdated(now.job, snapshot.modal))

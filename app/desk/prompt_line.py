@@ -1,0 +1,236 @@
+"""The prompt line: what the operator can do now, and what the desk answers to the last key.
+
+An answer stays until the next key or the next state of the machine; without one the prompt follows from one
+snapshot and the program on the desk.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.desk import interrupted_notice
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded, Phase
+from core.executor.snapshot import Alarm, Event, Snapshot, State
+from core.language.diagnostics import Severity
+
+NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
+ASK_FILE = "FILE TO BE PROCESSED"
+NONE_NAMED = "TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING"
+ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
+STOP_HELD = "A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST"
+BOTH_UP = "ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH"
+CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW"
+NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
+RESTORING = "NO START: A BACKUP IS BEING RESTORED"
+STALE = "NO START: THE PROGRAM IS BEING READ ANEW"
+GIVE_UP = "PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
+TWIST_OUT = "PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN"
+NO_MUSHROOM = "THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED"
+HOW_TO_HOLD = "PAUSE HOLDS THE FEED (SO DO H AND ESC), SCROLL LOCK IS THE E-STOP"
+MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
+INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
+UNDER_WAY = MOVING | INTERRUPTED
+
+
+def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
+    """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here."""
+    go_on = f"TO GO ON {start}; R GIVES THE PROGRAM UP"
+    standing = {
+        State.ESTOP: _estop(release),
+        State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
+        State.FAULT: alarm_of(snapshot, release),
+        State.RUN: HOW_TO_HOLD,
+        State.WAIT: HOW_TO_HOLD,
+        State.HOLDING: "COMING TO REST",
+        State.HOLD: go_on,
+        State.BLOCK_END: go_on,
+        State.PROGRAM_STOP: go_on,
+        State.HOME: "THE SLIDES ARE LOOKING FOR HOME",
+    }
+    return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
+
+
+def announced(snapshot: Snapshot) -> str:
+    """What goes before everything else: what will start with the next start; empty when nothing will."""
+    return "".join(f"{text} · " for text in snapshot.announced)
+
+
+def alarm_of(snapshot: Snapshot, release: str) -> str:
+    """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
+    if snapshot.state is State.FAULT:
+        if not snapshot.alarms:
+            return "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE"
+        return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R ACKNOWLEDGES, F7 LISTS"
+    return _estop(release) if snapshot.state is State.ESTOP else ""
+
+
+def _estop(release: str) -> str:
+    return f"E-STOP: MAKE THE MACHINE SAFE, {release}, THEN PRESS D FOR DRIVES ON"
+
+
+def reason(view: MachineStatus) -> str:
+    """Below the prompt, on every page: why the machine stands; of a hold also what to do."""
+    if view.alarms:
+        return f"CAUSE: {exactly(view.alarms[0])}"
+    if view.stop is None:
+        return ""
+    cause = f"CAUSE: {exactly(view.stop)}"
+    return cause if view.stop.code == "estop" else f"{cause}  ·  WHAT TO DO: {view.stop.remedy}"
+
+
+def exactly(alarm: Alarm) -> str:
+    """What is known of this one, and the likeliest cause."""
+    likely = alarm.causes[0] if alarm.causes else ""
+    return alarm.cause if likely in {"", alarm.cause} else f"{alarm.cause}; {likely}"
+
+
+def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
+    if loaded.busy:
+        return _progress(loaded)
+    if loaded.phase in {Phase.UNREADABLE, Phase.REFUSED}:
+        return refusal(loaded)
+    if not snapshot.program:
+        return "PRESS F2 TO CHOOSE A PROGRAM"
+    if snapshot.proof_wanted:
+        return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
+    asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
+    missing = missing_tools(loaded)
+    if missing:
+        return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
+    return asked or f"TO START {start}"
+
+
+def missing_tools(loaded: Loaded) -> list[str]:
+    """The tools that the program on the desk asks for and nobody has set."""
+    if loaded.proof is None or loaded.job is None:
+        return []
+    return [f"T{number}" for number in sorted(set(loaded.proof.tools) - loaded.job.tools_set)]
+
+
+def refusal(loaded: Loaded) -> str:
+    """Why the program on the desk will not run: the first error, and how many there are."""
+    if loaded.phase is Phase.UNREADABLE:
+        return f"{loaded.name} CANNOT BE LOADED: {loaded.trouble}; PRESS F2 FOR ANOTHER"
+    errors = loaded.errors
+    if not errors:
+        first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else "PROVING FOUND ERRORS"
+        return f"WILL NOT RUN: {first}"
+    first_error = errors[0]
+    where = f"LINE {first_error.line}: " if first_error.line else ""
+    more = f" ({len(errors) - 1} MORE)" if len(errors) > 1 else ""
+    return f"WILL NOT RUN: {where}{first_error.message}{more}"
+
+
+def remedy(loaded: Loaded, prompt: str) -> str:
+    """What to do about a program that will not run, where the prompt line says why; of one that may be
+    started, what a check has warned of."""
+    errors = loaded.errors
+    if errors:
+        return errors[0].hint if prompt == refusal(loaded) else ""
+    if not prompt.startswith("TO START"):
+        return ""
+    warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
+    first = next(warned, None)
+    return f"LINE {first.line}: {first.text} {first.hint}" if first is not None else ""
+
+
+def _progress(loaded: Loaded) -> str:
+    count = f" {loaded.reached} BLOCKS" if loaded.reached else ""
+    return f"{loaded.phase.value} {loaded.name}{count}"
+
+
+# --- What the desk answers on the prompt line: to the last key, to a refused start, to a disk that fails.
+
+
+HEARD = 100  # events that wait for the next frame; older ones are in the log
+
+
+YES = "Y"
+READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
+
+
+@dataclass(slots=True)
+class Answers:
+    """One answer at a time; it stays until the next key or the next state of the machine.
+
+    An answer may be a question: what is lost for good is done by a key of its own, and never by the key that
+    asked. ``clock`` is monotonic.
+    """
+
+    snapshot: Callable[[], Snapshot]
+    unkept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
+    clock: Callable[[], float]
+    notice: str = ""
+    asked: Callable[[], None] | None = None  # what yes does now
+    key: str = YES  # that means yes
+    _since: float = 0.0
+    _in: State | None = None
+    _refused: str = ""
+    _unkept: str = ""
+    _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
+
+    def say(self, text: str) -> None:
+        """Put an answer on the prompt line."""
+        self.notice, self.asked = text, None
+        self._in = self.snapshot().state
+
+    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+        """Ask on the prompt line; asked again it is the same question, and no answer."""
+        if self.asked is not None and self.notice == question:
+            return
+        self.say(question)
+        self.asked, self.key, self._since = yes, key, self.clock()
+
+    def read(self, at: float) -> bool:
+        """Whether a question stands, and has stood long enough at this time to have been read."""
+        return self.asked is not None and at - self._since >= READ
+
+    def yes(self, at: float) -> None:
+        """Yes was pressed ``at`` this time: do what is asked, or take a question back that was not read."""
+        asked, read = self.asked, self.read(at)
+        self.take_back()
+        if asked is not None and read:
+            asked()
+
+    def take_back(self) -> None:
+        """Nothing is said or asked any more."""
+        self.notice, self.asked = "", None
+
+    def outlived(self, snapshot: Snapshot) -> bool:
+        """Whether the answer belongs to a state that is over."""
+        return bool(self.notice) and snapshot.state is not self._in
+
+    def hear(self, event: Event) -> None:
+        """What the executor has to say; it may be called from its thread."""
+        self._heard.append(event)
+
+    def starting(self) -> None:
+        """A start is tried: the same refusal again is worth saying again."""
+        self._refused = ""
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: nothing is refused in silence, a start or whatever else the executor would not do."""
+        while self._heard:
+            event = self._heard.popleft()
+            if event.kind == "refused" and event.text != snapshot.start_refused:
+                self.say(f"REFUSED: {event.text}")
+            elif event.kind == "uncounted":
+                self.say(f"NOT COUNTED AS A PART: {event.text}")
+        if snapshot.start_refused != self._refused:
+            self._refused = snapshot.start_refused
+            if self._refused:
+                self.say(f"NO START: {self._refused}")
+        self._tell_unkept()
+
+    def _tell_unkept(self) -> None:
+        """A disk that fails in the middle of a run is told once, not found out the day after."""
+        trouble = self.unkept()
+        if trouble != self._unkept:
+            if self.notice == f"NOT KEPT: {self._unkept}":
+                self.notice = ""  # it is not so any more
+            self._unkept = trouble
+            if trouble:
+                self.say(f"NOT KEPT: {trouble}")

@@ -1,1 +1,0 @@
-"""SEARCHTO: a program goes on from any good line."""

@@ -1,0 +1,110 @@
+"""Texts in the operator's language. No Qt here: the screen says at its start who translates.
+
+Everything that is read on the screen goes through ``tr`` with its English text as a literal, so that the
+catalogues can be made from the sources; values are put in afterwards: ``tr("LINE {line}").format(line=7)``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+
+Translate = Callable[[str], str]
+
+
+class _Speaker:
+    """Whoever translates now; English needs nobody."""
+
+    translate: Translate | None = None
+
+
+def speak(translate: Translate | None) -> None:
+    """From now on texts go through ``translate``; None: they stay English."""
+    _Speaker.translate = translate
+
+
+def tr(text: str) -> str:
+    """The text in the operator's language; the English one where the catalogue has none."""
+    translate = _Speaker.translate
+    return text if translate is None else translate(text) or text
+
+
+# --- A catalogue of texts: whole sentences, and sentences with values in them. No Qt.
+
+
+Find = Callable[[str], str]  # the translation of a whole text; empty: it has none
+
+HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
+BETWEEN = "  ·  "  # parts of a title are texts of their own
+_WORD = re.compile(r"[^\W\d_]{2}")
+_DEEPEST = 3  # values in values
+_SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has
+
+
+class _Template:
+    """One sentence with holes, in both languages."""
+
+    def __init__(self, english: str, other: str) -> None:
+        pieces = HOLE.split(english)
+        self.head, self.tail = pieces[0], pieces[-1]
+        self.weight = sum(map(len, pieces))
+        self.joined = BETWEEN in english
+        self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
+        self._holes = HOLE.findall(english)
+        self._other = other
+        self._pattern: re.Pattern[str] | None = None
+        self._pieces = pieces
+
+    def values(self, text: str) -> dict[str, str] | None:
+        """What stands in the holes; None when the text was not made of this."""
+        if not (text.startswith(self.head) and text.endswith(self.tail)):
+            return None
+        if self._pattern is None:
+            self._pattern = re.compile("(.+?)".join(map(re.escape, self._pieces)), re.DOTALL)
+        found = self._pattern.fullmatch(text)
+        return dict(zip(self._holes, found.groups(), strict=True)) if found else None
+
+    def made(self, values: dict[str, str]) -> str:
+        """The other language's sentence with these values."""
+        return HOLE.sub(lambda hole: values.get(hole.group(), hole.group()), self._other)
+
+
+class Catalogue:
+    """``find`` answers whole texts, ``templates`` are the English ones with holes."""
+
+    def __init__(self, find: Find, templates: Iterable[str]) -> None:
+        self._find = find
+        found = [_Template(text, other) for text in templates if (other := find(text))]
+        told = (template for template in found if not template.slight)
+        self._templates = sorted(told, key=lambda template: -template.weight)
+        self.translate = lru_cache(8192)(self._translated)
+
+    def _translated(self, text: str) -> str:
+        return self._look_up(text, 0) or text
+
+    def _look_up(self, text: str, depth: int) -> str:
+        """Empty when nothing of it is known."""
+        if depth > _DEEPEST or not _WORD.search(text):
+            return ""
+        return self._find(text) or self._shouted(text) or self._made(text, depth) or self._joined(text, depth)
+
+    def _shouted(self, text: str) -> str:
+        """Sentences of the control that are shown in capitals."""
+        return self._find(text.lower()).upper() if text.isupper() else ""
+
+    def _joined(self, text: str, depth: int) -> str:
+        if BETWEEN not in text:
+            return ""
+        parts = [self._look_up(part, depth + 1) or part for part in text.split(BETWEEN)]
+        joined = BETWEEN.join(parts)
+        return joined if joined != text else ""
+
+    def _made(self, text: str, depth: int) -> str:
+        joined = BETWEEN in text  # its parts are texts: no hole reaches over from one into the next
+        for template in self._templates:
+            values = template.values(text) if template.joined or not joined else None
+            if values is not None:
+                known = {hole: self._look_up(v, depth + 1) or v for hole, v in values.items()}
+                return template.made(known)
+        return ""

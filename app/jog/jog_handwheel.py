@@ -1,0 +1,138 @@
+"""The handwheel as the Jog page asks for it: an axis, a step, and a lease that is renewed once a frame.
+
+By hand it is selected with a key or a finger; a station with switches of its own selects by them, and what
+was taken away comes back only when the switch was elsewhere in between, or by the key.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.desk.translation import tr
+from app.jog.held_jog import BEGINS, RENEWED, JogHold
+from app.jog.jog_speeds import CONTINUOUS, Speeds
+from core.executor.commands import Command, Wheel, WheelOff
+from core.executor.snapshot import Snapshot
+from core.machine.hardware.wheel import FACTORS, WHEEL, selector
+from core.machine.model import Machine
+
+FINE = 2  # of the steps: .001 in
+_LONG = 0  # .1 in is for keys
+_OF_FACTOR = {1: 3, 10: 2, 100: 1}  # times the smallest step
+
+Choice = tuple[str, int]  # axis and number of the step
+
+
+@dataclass(slots=True)
+class WheelHold:
+    """``choice`` is what the wheel shall move, None for nothing."""
+
+    machine: Machine
+    hold: JogHold
+    names: tuple[str, ...]  # axes that can be jogged, in their order
+    barred: Callable[[], str]  # why it moves nothing now; asked every frame
+    choice: Choice | None = None
+    _by_hand: str = ""
+    _left: Choice | None = None  # the switches stood so when it was taken away
+    _asked: float = 0.0
+    _posted: float = 0.0
+    _looked: float = 0.0
+
+    @property
+    def there(self) -> bool:
+        """Whether the machine has one."""
+        return WHEEL in self.machine.hardware.analog
+
+    @property
+    def counts(self) -> int:
+        """Of one click."""
+        return self.machine.hardware.analog[WHEEL].counts_per_click if self.there else 0
+
+    @property
+    def switched(self) -> bool:
+        """Whether switches beside it choose the axis."""
+        return any(selector(name) in self.machine.inputs for name in self.names)
+
+    @property
+    def _speeds(self) -> Speeds:
+        return self.hold.speeds
+
+    @property
+    def _post(self) -> Callable[[Command], None]:
+        return self.hold.post
+
+    def next_axis(self) -> None:
+        """The key: the next axis, behind the last one nothing."""
+        order = ("", *self.names)
+        self.choose(order[(order.index(self.choice[0] if self.choice else "") + 1) % len(order)])
+
+    def choose(self, axis: str) -> None:
+        """Select an axis by key or finger; an empty one lets the wheel go."""
+        self._left = None
+        if not self.there:
+            self.hold.say(tr("THIS MACHINE HAS NO HANDWHEEL"))
+        elif self.switched:
+            self.hold.say(tr("THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL"))
+        elif axis and (why := self.barred()):
+            self.hold.say(why)
+        else:
+            self.hold.let_go()
+            self.drop("")
+            self._by_hand = axis
+            if axis and self._speeds.step in {CONTINUOUS, _LONG}:
+                self._speeds.step = FINE
+            self.hold.clear()
+
+    def drop(self, why: str) -> None:
+        """The wheel moves nothing any more."""
+        self._by_hand = ""
+        if self.choice is not None:
+            self._left, self.choice = self.choice, None
+            self._post(WheelOff())
+            self.hold.stop(why)  # which says it again when the slide rests
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: renew what is selected, or let it go."""
+        now = self.hold.clock()
+        away, self._looked = now - self._looked, now
+        if not self.there:
+            return
+        wanted = self._wanted(snapshot)
+        if self.choice is not None and away > self.hold.lease:
+            self.drop(tr("THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF"))
+        elif self.choice is not None and (why := self.barred()):
+            self.drop(why)
+        elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
+            why = snapshot.wheel_ended.upper()  # of the control
+            self.drop(tr("THE HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
+        elif wanted != self.choice and self.choice is not None:
+            axis = self._by_hand if wanted is not None else ""
+            self.drop("")
+            self._by_hand, self._left = axis, None  # another step, or another axis at the switch
+        elif wanted is not None and not self.barred():
+            self._renew(wanted, now)
+
+    def _wanted(self, snapshot: Snapshot) -> Choice | None:
+        """What key, finger or switches select; the step of the page where no switch chooses it."""
+        axis, step = self._by_hand, self._speeds.step
+        if self.switched:
+            on = [name for name in self.names if selector(name) in snapshot.inputs]
+            axis = on[0] if len(on) == 1 else ""
+            step = FINE if step in {CONTINUOUS, _LONG} else step
+        if any(name in self.machine.inputs for name in FACTORS):
+            factors = [factor for name, factor in FACTORS.items() if name in snapshot.inputs]
+            step = _OF_FACTOR[factors[0]] if len(factors) == 1 else CONTINUOUS
+        wanted = (axis, step) if axis and step not in {CONTINUOUS, _LONG} else None
+        if wanted != self._left:
+            self._left = None
+        return wanted if self._left is None else None
+
+    def _renew(self, wanted: Choice, now: float) -> None:
+        if self.choice is None:
+            self._asked = now
+        elif now - self._posted < self.hold.lease / RENEWED:
+            return
+        self.choice, self._posted = wanted, now
+        axis, step = wanted
+        self._post(Wheel(axis, self._speeds.distance(axis, self.hold.mode, step), self.hold.lease))

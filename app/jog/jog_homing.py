@@ -1,0 +1,146 @@
+"""Homing: which axes know where they are, and a question before any of them moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+from app.desk.translation import tr
+from core.executor.commands import Command, Home
+from core.executor.snapshot import Snapshot, State
+from core.machine.model import Axis, Machine
+
+
+class Known(StrEnum):
+    """Whether an axis knows its position."""
+
+    HOMED = "HOMED"
+    LOST = "NOT HOMED"
+    LOOKING = "HOMING"
+    ABSOLUTE = "ABSOLUTE"  # its encoder knows without homing
+
+    @property
+    def words(self) -> str:
+        """For the operator."""
+        words = {
+            Known.HOMED: tr("HOMED"),
+            Known.LOST: tr("NOT HOMED"),
+            Known.LOOKING: tr("HOMING"),
+            Known.ABSOLUTE: tr("ABSOLUTE"),
+        }
+        return words[self]
+
+
+class HomeHost(Protocol):
+    """What the question needs of the desk."""
+
+    @property
+    def post(self) -> Callable[[Command], None]: ...
+
+    @property
+    def asked(self) -> str: ...
+
+    @property
+    def read(self) -> bool: ...
+
+    def say(self, text: str) -> None: ...
+
+    def ask(self, question: str, yes: Callable[[], None], key: str) -> None: ...
+
+    def clear(self) -> None: ...
+
+
+@dataclass(slots=True)
+class HomeAsk:
+    """The home key asks: Return homes all axes in their order, a letter one of them."""
+
+    machine: Machine
+    desk: HomeHost
+    _asked: bool = False
+
+    @property
+    def asking(self) -> bool:
+        """Whether the question stands, and is this one."""
+        return self._asked and self.desk.asked == "Enter"
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """What there is to home, C only where the spindle is an axis."""
+        return tuple(
+            a
+            for a in self.machine.axes
+            if a.name != "C" or self.machine.c_enabled or self.machine.kind != "lathe"
+        )
+
+    def known(self, snapshot: Snapshot) -> dict[str, Known]:
+        """How it stands with every axis."""
+        homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
+        lost = sorted((a for a in self.axes if not homed[a.name]), key=lambda axis: axis.home_order)
+        known = {a.name: Known.ABSOLUTE if a.absolute else Known.HOMED for a in self.axes}
+        known |= {axis.name: Known.LOST for axis in lost}
+        if snapshot.state is State.HOME and lost:
+            known[lost[0].name] = Known.LOOKING
+        return known
+
+    def lost(self, snapshot: Snapshot) -> list[str]:
+        """The axes that have to be homed, in their order."""
+        known = self.known(snapshot)
+        order = sorted(self.axes, key=lambda axis: axis.home_order)
+        return [axis.name for axis in order if known[axis.name] in {Known.LOST, Known.LOOKING}]
+
+    def key(self, snapshot: Snapshot, why_not: str) -> None:
+        """The home key: asks."""
+        lost = self.lost(snapshot)
+        if why_not:
+            self.desk.say(why_not)
+        elif not lost:
+            self.desk.say(tr("EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"))
+        else:
+            text = tr("HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE")
+            order = tr(", THEN ").join(lost)
+            question = text.format(first=order, letters=tr(" OR ").join(sorted(lost)))
+            self.desk.ask(_stands(snapshot) + question, lambda: self._go(""), "Enter")
+            self._asked = True
+
+    def answer(self, key: str, snapshot: Snapshot) -> bool:
+        """The letter of an axis while it is asked; any other key takes the question back."""
+        if not self.asking:
+            return False
+        name, read = key.upper(), self.desk.read
+        self.give_up()
+        if name in {axis.name for axis in self.axes}:
+            if name not in self.lost(snapshot):
+                self.desk.say(tr("{axis} KNOWS ITS POSITION").format(axis=name))
+            elif read:
+                self._go(name)
+            return True
+        return False
+
+    def one(self, name: str, snapshot: Snapshot, why_not: str) -> None:
+        """A finger on one axis: the question first, then that axis."""
+        if self.asking and not why_not:
+            self.answer(name, snapshot)
+        else:
+            self.key(snapshot, why_not)
+
+    def _go(self, axis: str) -> None:
+        self._asked = False
+        self.desk.clear()
+        self.desk.post(Home(axis))
+
+    def give_up(self) -> bool:
+        """Take the question back; False when none is asked."""
+        was, self._asked = self.asking, False
+        if was:
+            self.desk.clear()
+        return was
+
+
+def _stands(snapshot: Snapshot) -> str:
+    """What goes before the question while a tool may stand in a part."""
+    found = snapshot.interrupted
+    if found is None:
+        return ""
+    return tr("T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. ").format(tool=found.tool)

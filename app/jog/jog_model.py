@@ -1,0 +1,282 @@
+"""The model of the Jog page: what its keys do, and what may be done now."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from app.desk import prompt_line
+from app.desk.desk import Desk
+from app.desk.prompt_line import STOP_HELD
+from app.desk.translation import tr
+from app.jog.held_jog import JogHold
+from app.jog.jog_handwheel import WheelHold
+from app.jog.jog_homing import HomeAsk
+from app.jog.jog_speeds import CONTINUOUS, Direction, Speeds, directions_of
+from app.jog.tool_setting import TOOL, ToolSetting
+from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES
+from core.executor.commands import JogStop
+from core.executor.snapshot import Snapshot, State
+from core.machine.model import Machine
+
+# --- Which step and which speed a hand move has: any change ends what is held.
+
+
+@dataclass(slots=True)
+class Choices:
+    """Of the Jog page; ``armed``: the next finger that holds goes rapid."""
+
+    speeds: Speeds = field(init=False)
+    hold: JogHold = field(init=False)
+    armed: bool = field(init=False, default=False)
+
+    def next_step(self) -> None:
+        """F2: another increment ends what is held."""
+        self._another_step()
+        self.speeds.next_step()
+
+    def choose_step(self, step: int) -> None:
+        """A finger on one of the steps."""
+        self._another_step()
+        self.speeds.step, self.armed = step, False
+
+    def next_speed(self) -> None:
+        """F3: another speed ends what is held."""
+        self._another_speed()
+        self.speeds.next_speed()
+
+    def choose_speed(self, speed: int) -> None:
+        """A finger on one of the speeds."""
+        self._another_speed()
+        self.speeds.speed, self.armed = speed, False
+
+    def arm(self) -> None:
+        """A finger on RAPID: the next hold goes rapid, and only that one."""
+        self._another_speed()
+        self.armed = not self.armed
+
+    def finger(self, source: str, axis: str, sign: int) -> None:
+        """A finger or the mouse goes down on a direction."""
+        rapid, self.armed = self.armed, False
+        self.hold.press(source, axis, sign, rapid=rapid)
+
+    def _another_step(self) -> None:
+        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
+
+    def _another_speed(self) -> None:
+        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
+
+
+# --- What the Jog page tells on the prompt line.
+
+
+def why_no_jog(state: State) -> str:
+    """Why nothing is moved by hand in this state; empty when it may be."""
+    words = {
+        State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
+        State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
+        State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
+        State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+    }
+    if state in prompt_line.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
+        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
+    return words.get(state, "")
+
+
+def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
+    """What may be done now. ``lost`` axes are not homed, ``wheel`` is the axis of the handwheel."""
+    why = why_no_jog(state)
+    if why:
+        return why
+    if lost:
+        return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
+            axes=tr(" AND ").join(sorted(lost))
+        )
+    if wheel:
+        return tr("THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS").format(axis=wheel)
+    if step != CONTINUOUS:
+        return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
+    return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
+
+
+LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
+
+# Letters that ask something of the chosen tool, while nothing is asked.
+LETTERS = {
+    "t": TOOL,
+    "x": TOUCH_X,
+    "z": TOUCH_Z,
+    "n": "nose_radius",
+    "q": "quadrant",
+    "w": "wear_x",
+    "k": "remark",
+}
+
+
+@dataclass(slots=True)
+class JogModel(Choices):
+    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
+
+    desk: Desk
+    machine: Machine
+    wheel: WheelHold = field(init=False)
+    home: HomeAsk = field(init=False)
+    tool: ToolSetting = field(init=False)
+    directions: tuple[Direction, ...] = ()
+
+    def __post_init__(self) -> None:
+        desk = self.desk
+        self.speeds = Speeds(self.machine)
+        self.directions = directions_of(self.machine)
+        self.hold = JogHold(
+            self.speeds,
+            min(self.machine.timing.lease, LEASE),
+            desk.post,
+            desk.say,
+            desk.clear,
+            self._now,
+            self.barred,
+        )
+        names = tuple(dict.fromkeys(each.axis for each in self.directions))
+        names = tuple(sorted(names, key=_order(self.machine)))
+        self.wheel = WheelHold(self.machine, self.hold, names, self._wheel_barred)
+        self.home = HomeAsk(self.machine, desk)
+        self.tool = ToolSetting(desk, desk.book)
+
+    def _now(self) -> float:
+        return self.desk.hands.clock()
+
+    def barred(self) -> str:
+        """Why nothing is moved by hand now; empty when it may be."""
+        state = self.desk.snapshot().state
+        if self.desk.stop_held():
+            return tr(STOP_HELD)
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
+        if self.home.give_up():
+            return tr("HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG")
+        return why_no_jog(state)
+
+    def _wheel_barred(self) -> str:
+        """As ``barred``, and takes nothing back."""
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: THE HANDWHEEL IS OFF")
+        return why_no_jog(self.desk.snapshot().state)
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame."""
+        self.hold.look(snapshot)
+        self.wheel.look(snapshot)
+        self.tool.look(snapshot)
+
+    def prompt(self, snapshot: Snapshot) -> str:
+        """The page's own words on the prompt line."""
+        if self.tool.asked:
+            return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
+        wheel = self.wheel.choice[0] if self.wheel.choice else ""
+        return jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def ask(self, what: str) -> None:
+        """A question of the tool; what is held ends."""
+        self.hold.other_key()
+        if self.machine.kind == "mill" and what in TOUCHES:
+            # A touched position is no length: a mill's tool would be taken for metres too short or too long.
+            self.desk.say(tr("ON A MILL THE OFFSET IS THE LENGTH OF THE TOOL: MEASURE IT, AND TYPE IT ON F8"))
+            return
+        self.tool.ask(what)
+
+    def choose_master(self) -> None:
+        """The chosen tool becomes the master; what is held ends."""
+        self.hold.other_key()
+        self.tool.master()
+
+    @property
+    def wheel_drawn(self) -> bool:
+        """Whether the screen's own wheel moves something now: its station is the screen's."""
+        return self.wheel.choice is not None and self.desk.hands.station is not None
+
+    def turn_wheel(self, clicks: int) -> None:
+        """The wheel on the screen is turned."""
+        if self.wheel_drawn and self.desk.hands.station is not None:
+            self.desk.hands.station.turn_handwheel(clicks * self.wheel.counts)
+
+    def home_key(self) -> None:
+        """Home asks; home again homes all in their order."""
+        self.hold.let_go()
+        self.wheel.drop("")
+        self.home.key(self.desk.snapshot(), self._no_homing())
+
+    def home_one(self, axis: str) -> None:
+        """A finger on one axis asks; again homes it."""
+        self.hold.let_go()
+        self.wheel.drop("")
+        self.home.one(axis, self.desk.snapshot(), self._no_homing())
+
+    def _no_homing(self) -> str:
+        if self.tool.asked:
+            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST")
+        state = self.desk.snapshot().state
+        return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
+
+    def typed(self, key: str) -> bool:
+        """A typed key; False leaves it to the window."""
+        if self.tool.asked:
+            return self.tool.typed(key)
+        if self.home.answer(key, self.desk.snapshot()):
+            return True
+        if key in {"m", "M"}:
+            self.tool.master()
+        elif key in {"v", "V"}:
+            self.wheel.next_axis()
+        elif key.lower() in LETTERS:
+            self.ask(LETTERS[key.lower()])
+        else:
+            return False
+        return True
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is this page's."""
+        return self.tool.takes(key) or (not self.tool.asked and key.lower() in {*LETTERS, "m", "v"})
+
+    def escape(self) -> bool:
+        """Esc ends a hold, takes a question or an entry back; False when the page may be left."""
+        if self.hold.held is not None:
+            self.hold.let_go()
+            return True
+        if self.wheel.choice is not None:
+            self.wheel.drop(tr("THE HANDWHEEL IS OFF"))
+            return True
+        return self.home.give_up() or self.tool.escape()
+
+    @property
+    def active(self) -> bool:
+        """Whether something is held, or the handwheel selected."""
+        return self.hold.held is not None or self.wheel.choice is not None
+
+    def let_go(self) -> None:
+        """Hands off: the keyboard, the window or the page is gone."""
+        self.hold.let_go(tr("THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
+        self.wheel.drop(tr("THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE"))
+        self.armed = False
+        self._stop_step()
+
+    def _stop_step(self) -> None:
+        if self.desk.snapshot().state is State.JOG:
+            self.desk.post(JogStop())
+
+    def leave(self) -> None:
+        """The page goes: nothing stays held, asked or half entered."""
+        self.hold.let_go()
+        self.wheel.drop("")
+        self._stop_step()
+        self.home.give_up()
+        self.armed = False
+        self.tool.forget()
+        self.desk.clear()
+
+
+def _order(machine: Machine) -> Callable[[str], int]:
+    """As the machine file has its axes."""
+    return [axis.name for axis in machine.axes].index

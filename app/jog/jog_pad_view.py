@@ -1,0 +1,350 @@
+"""Targets to hold: four directions and C; steps, speeds, homing. A slide moves while a finger stays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPainter, QPolygonF, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.jog.jog_homing import Known
+from app.jog.jog_model import JogModel
+from app.jog.jog_speeds import CONTINUOUS, Direction, rapid_word, speed_words, step_words
+from app.offsets.offset_values import Mode
+from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.panel import Control, FingerPanel
+from core.executor.snapshot import Snapshot
+
+# --- What is drawn on the targets of the Jog page: the arrow of a direction, and the middle of the cross.
+
+
+def draw_arrow(painter: QPainter, look: Look, box: QRectF, to: tuple[int, int], colour: str) -> None:
+    """At the side of its target to which it points."""
+    size = 0.16 * min(box.width(), box.height())
+    centre = box.center() + QPointF(to[0] * 0.30 * box.width(), to[1] * 0.28 * box.height())
+    forward, side = QPointF(to[0] * size, to[1] * size), QPointF(to[1] * size, to[0] * size)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(look.colour(colour))
+    painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
+
+
+def draw_middle(painter: QPainter, look: Look, box: QRectF, words: tuple[str, str, str]) -> None:
+    """What an arrow does now: its kind, the figure, the unit."""
+    kind, figure, unit = words
+    high, edge = 2.2 * look.u, 0.1 * box.height()
+    painter.setPen(look.colour("soft"))
+    painter.setFont(look.font(1.6, bold=True))
+    put(painter, QRectF(box.x(), box.y() + edge, box.width(), high), CENTRE, kind)
+    put(painter, QRectF(box.x(), box.bottom() - edge - high, box.width(), high), CENTRE, unit)
+    painter.setPen(look.colour("text"))
+    painter.setFont(look.fit(figure, 3.2, box.width() - look.u, bold=True))
+    put(painter, box, CENTRE, figure)
+
+
+# --- A row of words to touch, one of them chosen.
+
+
+NAME = 8.4  # units: width of the row's name
+SHORT = 4  # letters: a longer word gets a wider tile
+
+
+@dataclass(frozen=True, slots=True)
+class Tiles:
+    """``name`` and the key that goes through the row; ``warn`` and ``alarmed`` colour what stands out."""
+
+    name: tuple[str, str]
+    words: tuple[str, ...]
+    presses: Sequence[Callable[[], None]]
+    chosen: int = -1
+    warn: bool = False
+    alarmed: frozenset[int] = frozenset()
+
+
+def draw_tiles(
+    painter: QPainter, look: Look, row: QRectF, tiles: Tiles
+) -> list[tuple[QRectF, Callable[[], None]]]:
+    """Draw the row; where each of its tiles stands and what it does."""
+    u, left = look.u, row.x()
+    if tiles.name[0]:
+        left += NAME * u
+        _name(painter, look, QRectF(row.x(), row.y(), (NAME - 0.6) * u, row.height()), tiles.name)
+    shares = [1.0 + 0.11 * max(0, len(word) - SHORT) for word in tiles.words]
+    part = (row.right() - left + 0.6 * u) / sum(shares)
+    boxes = []
+    for number, (word, share) in enumerate(zip(tiles.words, shares, strict=True)):
+        box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
+        left += share * part
+        _tile(painter, look, box, word, tiles, number)
+        boxes.append(box)
+    return list(zip(boxes, tiles.presses, strict=True))
+
+
+def _name(painter: QPainter, look: Look, box: QRectF, name: tuple[str, str]) -> None:
+    half = box.height() / 2
+    painter.setPen(look.colour("soft"))
+    painter.setFont(look.fit(name[0], 1.5, box.width(), bold=True))
+    put(painter, QRectF(box.x(), box.y(), box.width(), half), LEFT, name[0])
+    painter.setPen(look.colour("accent"))
+    painter.setFont(look.font(1.6, bold=True))
+    put(painter, QRectF(box.x(), box.y() + half, box.width(), half), LEFT, name[1])
+
+
+def _tile(painter: QPainter, look: Look, box: QRectF, word: str, tiles: Tiles, number: int) -> None:
+    """Filled when it is chosen, and in the colour of a warning when that has to be seen."""
+    ink, ground, line = "text", "key", "frame"
+    if number in tiles.alarmed:
+        ink = line = "alarm"
+    if number == tiles.chosen:
+        ground = line = "pause" if tiles.warn else "lit"
+        ink = "on_state" if tiles.warn else "on_lit"
+    painter.setPen(look.pen(line, 0.16))
+    painter.setBrush(look.colour(ground))
+    painter.drawRect(box)
+    painter.setPen(look.colour(ink))
+    painter.setFont(look.fit(word, 2.1, box.width() - 0.8 * look.u, bold=True))
+    put(painter, box, CENTRE, word)
+
+
+# --- A handwheel that is drawn: a finger goes round it, or the mouse's wheel turns it.
+
+
+CLICK = 3.6  # degrees: a hundred clicks a turn
+_NOTCH = 120  # of the mouse's wheel, as Qt has it
+_SPOKES = 24
+
+
+class Dial:
+    """``turned`` hears of whole clicks, clockwise positive."""
+
+    def __init__(self, turned: Callable[[int], None]) -> None:
+        self._turned = turned
+        self._angle = 0.0  # as it is drawn, degrees
+        self._at = 0.0  # of the finger
+        self._rest = 0.0  # degrees that are no click yet
+
+    def control(self, box: QRectF) -> Control:
+        """What a finger does on it."""
+
+        def bearing(at: QPointF) -> float:
+            away = at - box.center()
+            return math.degrees(math.atan2(away.y(), away.x()))
+
+        def down(at: QPointF) -> None:
+            self._at, self._rest = bearing(at), 0.0
+
+        def along(at: QPointF) -> None:
+            here = bearing(at)
+            self._turn((here - self._at + 180.0) % 360.0 - 180.0)
+            self._at = here
+
+        return Control(box, down, along)
+
+    def notches(self, delta: int) -> None:
+        """The mouse's wheel, by Qt's figure; away from the hand is clockwise."""
+        self._turn(CLICK * delta / _NOTCH)
+
+    def draw(self, painter: QPainter, look: Look, box: QRectF, click: str) -> None:
+        """The rim with its marks where it stands, and how far a click goes."""
+        size = 0.5 * min(box.width(), box.height()) - 0.4 * look.u
+        painter.setPen(look.pen("accent", 0.24))
+        painter.drawEllipse(box.center(), size, size)
+        for spoke in range(_SPOKES):
+            angle = math.radians(self._angle + 360.0 * spoke / _SPOKES)
+            out = QPointF(math.cos(angle), math.sin(angle))
+            inner = 0.72 if spoke == 0 else 0.88
+            painter.drawLine(box.center() + out * (inner * size), box.center() + out * size)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(click, 2.4, 1.2 * size, bold=True))
+        put(painter, box, CENTRE, click)
+
+    def _turn(self, degrees: float) -> None:
+        self._rest += degrees
+        clicks = int(self._rest / CLICK)  # towards 0
+        if clicks:
+            self._rest -= clicks * CLICK
+            self._angle += clicks * CLICK
+            self._turned(clicks)
+
+
+ROW = 5.6  # units: a row of tiles
+
+
+class JogPad(FingerPanel):
+    """Draws the model; every target is as large as the room allows."""
+
+    def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._model = model
+        self._dial = Dial(model.turn_wheel)
+        self._shown: object = None
+        self._known: dict[str, Known] = {}
+        self._state = ""
+
+    def show_jog(self, snapshot: Snapshot) -> None:
+        """What is chosen, what is held, what knows its position."""
+        model = self._model
+        self._known = model.home.known(snapshot)
+        self._state = snapshot.state.value
+        held = model.hold.held
+        shown = (
+            (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
+            (held.axis, held.velocity) if held else None,
+            model.wheel.choice,
+            (tuple(self._known.items()), model.home.asking, self._state),
+        )
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def draw(self, painter: QPainter) -> None:
+        self.controls.clear()
+        self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
+        u, room = (
+            self.look.u,
+            self.inside().adjusted(-0.4 * self.look.u, 0, 0.4 * self.look.u, 0.3 * self.look.u),
+        )
+        high = ROW * u
+        self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
+        self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
+        rows = 2
+        if self._model.wheel.there:
+            self._wheel(painter, QRectF(room.x(), room.y() + 2 * high, room.width(), high - 0.6 * u))
+            rows = 3
+        foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
+        self._homing(painter, foot)
+        top = room.y() + rows * high
+        self._cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
+
+    def _steps(self, painter: QPainter, row: QRectF) -> None:
+        model = self._model
+        unit = tr("STEP MM") if model.hold.mode.metric else tr("STEP IN")
+        words = (tr("CONT"), *step_words(model.hold.mode))
+        chosen = model.speeds.step - CONTINUOUS
+        presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
+        self._tiles(painter, row, Tiles((unit, "F2"), words, presses, chosen))
+
+    def _speeds(self, painter: QPainter, row: QRectF) -> None:
+        model, mode = self._model, self._model.hold.mode
+        unit = tr("MM/MIN") if mode.metric else tr("IN/MIN")
+        rapid = f"{tr('RAPID')} {rapid_word(model.machine, mode)}"
+        words = (*speed_words(mode), rapid)
+        chosen = len(words) - 1 if model.armed else model.speeds.speed
+        presses: list[Callable[[], None]] = [
+            *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
+            model.arm,
+        ]
+        self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
+
+    def _wheel(self, painter: QPainter, row: QRectF) -> None:
+        """Which axis the handwheel moves."""
+        wheel = self._model.wheel
+        axis = wheel.choice[0] if wheel.choice else ""
+        presses = [partial(wheel.choose, name) for name in ("", *wheel.names)]
+        chosen = ("", *wheel.names).index(axis)
+        words = (tr("OFF"), *wheel.names)
+        self._tiles(painter, row, Tiles((tr("WHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """The mouse's wheel turns the one that is drawn."""
+        if self._model.wheel_drawn:
+            self._dial.notches(event.angleDelta().y())
+            self.update()
+        event.accept()
+
+    def _homing(self, painter: QPainter, row: QRectF) -> None:
+        model = self._model
+        words = [tr("HOME")]
+        presses: list[Callable[[], None]] = [model.home_key]
+        for axis in model.home.axes:
+            words.append(f"{axis.name} {self._known[axis.name].words}" if self._known else axis.name)
+            presses.append(partial(model.home_one, axis.name))
+        lost = frozenset(
+            i for i, known in enumerate(self._known.values(), 1) if known in {Known.LOST, Known.LOOKING}
+        )
+        chosen = 0 if model.home.asking else -1
+        self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, alarmed=lost))
+
+    def _tiles(self, painter: QPainter, row: QRectF, tiles: Tiles) -> None:
+        for box, press in draw_tiles(painter, self.look, row, tiles):
+            self.controls.append(Control(box, self._presser(press)))
+
+    def _presser(self, press: Callable[[], None]) -> Callable[[QPointF], None]:
+        return lambda _at: press()
+
+    def _cross(self, painter: QPainter, room: QRectF) -> None:
+        u = self.look.u
+        directions = self._model.directions
+        columns = 1 + max(2, *(each.column for each in directions))
+        wide, high = room.width() / columns, room.height() / 3
+        for each in directions:
+            x, y = room.x() + each.column * wide, room.y() + each.row * high
+            self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
+        middle = QRectF(room.x() + wide, room.y() + high, wide - 0.8 * u, high - 0.6 * u)
+        self._middle(painter, middle)
+
+    def _target(self, painter: QPainter, box: QRectF, way: Direction) -> None:
+        look, u, held = self.look, self.look.u, self._model.hold.held
+        axis, sign, arrow = way.axis, way.sign, way.arrow
+        moving = held is not None and held.axis == axis and held.velocity * sign > 0
+        painter.setPen(look.pen("run" if moving else "accent", 0.24))
+        painter.setBrush(look.colour("run" if moving else "key"))
+        painter.drawRect(box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u))
+        ink = look.colour("on_state" if moving else "text")
+        if arrow != (0, 0):
+            draw_arrow(painter, look, box, arrow, "on_state" if moving else "accent")
+        painter.setPen(ink)
+        painter.setFont(look.font(3.4, bold=True))
+        offset = QRectF(box)
+        if arrow[0]:
+            offset.translate(-arrow[0] * 0.16 * box.width(), 0)
+        if arrow[1]:
+            offset.translate(0, -arrow[1] * 0.16 * box.height())
+        put(painter, offset, CENTRE, f"{axis}{'+' if sign > 0 else '−'}")
+        painter.setPen(look.colour("on_state" if moving else "soft"))
+        painter.setFont(look.font(1.5, bold=True))
+        put(painter, box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height()), LEFT, way.label)
+        self.controls.append(self._holder(box, axis, sign))
+
+    def _holder(self, box: QRectF, axis: str, sign: int) -> Control:
+        """Held from the touch until the finger comes up, or leaves the target."""
+        hold = self._model.hold
+        source = f"finger {axis}{sign}"
+
+        def along(at: QPointF) -> None:
+            if not box.contains(at):
+                hold.release(source)
+
+        return Control(
+            box, lambda _at: self._model.finger(source, axis, sign), along, lambda: hold.release(source)
+        )
+
+    def _middle(self, painter: QPainter, box: QRectF) -> None:
+        """What an arrow does now, in figures."""
+        look, model = self.look, self._model
+        mode: Mode = model.hold.mode
+        step = model.speeds.step
+        words = (
+            (tr("STEP"), step_words(mode)[step]) if step != CONTINUOUS else (tr("HELD"), self._speed(mode))
+        )
+        if model.wheel.choice is not None:
+            axis, step = model.wheel.choice
+            words = (tr("WHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
+        if model.wheel_drawn:
+            self._dial.draw(painter, look, box, words[1])
+            self.controls.append(self._dial.control(box))
+            return
+        unit = tr("mm") if mode.metric else tr("in")
+        draw_middle(painter, look, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
+
+    def _speed(self, mode: Mode) -> str:
+        model = self._model
+        held = model.hold.held
+        rapid = held.rapid if held else model.armed
+        return rapid_word(model.machine, mode) if rapid else speed_words(mode)[model.speeds.speed]

@@ -1,0 +1,205 @@
+"""The Jog page: held moves at the left, tool setting at the right, the question under it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.jog import tool_setting
+from app.jog.jog_model import JogModel
+from app.jog.jog_pad_view import JogPad
+from app.jog.tool_setting_view import ToolPanel
+from app.jog.touch_off import TOUCH_X, TOUCH_Z
+from app.screen import page_table
+from app.screen.entry_panel import Asked, AskedPanel, KeyPad
+from app.screen.page_base import Doings, Host, Page
+from core.executor.snapshot import Snapshot
+from core.machine.model import Machine
+
+Key = Qt.Key
+CHORDS = (
+    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+)
+WIDE, ASKED = 0.46, 12.0  # share of the pad, height of the question in units
+
+
+class JogPage(Page):
+    """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
+
+    NAME = page_table.JOG
+    LABELS = (
+        "MENU",
+        "STEP",
+        "SPEED",
+        "READOUT",
+        "TOUCH X",
+        "TOUCH Z",
+        "ALARMS",
+        "TOOLS",
+        "SECCMP",
+        "UNDO",
+    )
+
+    def __init__(self, host: Host, machine: Machine, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = JogModel(host.desk, machine)
+        self._arrows = {
+            Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in self.model.directions
+        }
+        self.pad = JogPad(self.look, self.model, self)
+        self.numbers = KeyPad(self.look, self._touched, own=("L", tr("ALONE")), parent=self)
+        self.tool = ToolPanel(self.look, self.model, self)
+        self.asked = AskedPanel(self.look, self)
+        self._was_active = False  # the window, before anything was held
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def key_down(self, event: QKeyEvent) -> bool:
+        """The arrows are this page's; any other key ends what is held and then means what it means."""
+        key, model = Key(event.key()), self.model
+        if key not in self._arrows:
+            if not event.isAutoRepeat():
+                model.hold.other_key()
+            return self._home(event)
+        if event.isAutoRepeat():
+            model.hold.repeated(key.name)
+        elif event.modifiers() & CHORDS:
+            model.hold.other_key()
+        elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
+            model.hold.other_key()
+            self.desk.say(tr("NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING"))
+        else:
+            axis, sign = self._arrows[key]
+            rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            model.hold.press(key.name, axis, sign, rapid=rapid)
+        return True
+
+    def _home(self, event: QKeyEvent) -> bool:
+        if event.key() != Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORDS:
+            return False
+        self.model.home_key()
+        return True
+
+    def key_up(self, event: QKeyEvent) -> None:
+        """An arrow comes up, or the Shift of a rapid. Releases that a repeating key makes are none."""
+        if event.isAutoRepeat():
+            return
+        key = Key(event.key())
+        if key in self._arrows:
+            self.model.hold.release(key.name)
+        elif key == Key.Key_Shift:
+            self.model.hold.shift_released()
+
+    def pressed(self) -> None:
+        """Whoever reaches for something else does not look at the slide."""
+        self.model.hold.other_key()
+
+    def let_go(self) -> None:
+        """The keyboard or the window is gone."""
+        self.pad.let_go()
+        self.model.let_go()
+
+    def doings(self) -> Doings:
+        """Steps, speeds, readout, touching off, undo."""
+        model = self.model
+        return {
+            "F2": model.next_step,
+            "F3": model.next_speed,
+            "F4": self.desk.next_readout,
+            "F5": lambda: model.ask(TOUCH_X),
+            "F6": lambda: model.ask(TOUCH_Z),
+            "F8": lambda: self._go(page_table.TOOLS),
+            "F9": lambda: self._go(page_table.SECCMP),
+            "F10": model.tool.undo,
+        }
+
+    def _go(self, name: str) -> None:
+        self.host.go(name)
+
+    def typed(self, key: str) -> bool:
+        """An entry, the answer to the home key, or a letter that asks something of the tool."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """What is text here, or a letter of this page."""
+        return self.model.takes(key)
+
+    def has_field(self) -> bool:
+        """A question about the tool."""
+        return bool(self.model.tool.asked)
+
+    def _touched(self, key: str) -> None:
+        if key == "Esc":
+            self.host.press(key)
+        else:
+            self.typed(key)
+
+    # --- as every page -------------------------------------------------------------------------------
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt(self.desk.snapshot())
+
+    def opened(self) -> None:
+        """What was changed on another page is no news here."""
+        self.model.tool.ledger.opened()
+
+    def leave(self) -> bool:
+        """Nothing stays held or half entered."""
+        self.pad.let_go()
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """Esc takes back what is open; then it holds the machine, as everywhere."""
+        return self.model.escape()
+
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+        """Renew what is held, show what is so."""
+        if not self._has_keyboard():
+            self.let_go_if_held()
+        self.model.look(snapshot)
+        tool = self.model.tool
+        entering = bool(tool.asked)
+        self.pad.setVisible(not entering)
+        self.numbers.setVisible(entering)
+        self.pad.show_jog(snapshot)
+        self.tool.show_tool(snapshot)
+        foot = tool_setting.note(tool) or (
+            tr("Return enters it, Esc leaves it as it was")
+            if entering
+            else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
+        )
+        self.asked.show_asked(
+            Asked("", tool_setting.question(tool), tool.text, tool_setting.old_to_new(tool), foot)
+        )
+
+    def _has_keyboard(self) -> bool:
+        """Whether keys still come here: no dialog, no menu, no other window in front.
+
+        A screen without a window manager never becomes active; there only the loss of it counts.
+        """
+        active = self.window().isActiveWindow()
+        if not self.model.active:
+            self._was_active = active
+        covered = QApplication.activeModalWidget() or QApplication.activePopupWidget()
+        return covered is None and (active or not self._was_active)
+
+    def let_go_if_held(self) -> None:
+        """Something lies in front that would take the release."""
+        if self.model.active:
+            self.let_go()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Pad at the left; tool over question at the right."""
+        u, gap = self.look.u, max(4, round(0.7 * self.look.u))
+        left = round(WIDE * self.width())
+        for part in (self.pad, self.numbers):
+            part.setGeometry(0, 0, left, self.height())
+        high, wide = round(ASKED * u), self.width() - left - gap
+        self.tool.setGeometry(left + gap, 0, wide, self.height() - high - gap)
+        self.asked.setGeometry(left + gap, self.height() - high, wide, high)

@@ -1,0 +1,296 @@
+"""Tool setting: a tool is chosen, touched off, and its other fields are asked one by one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from app.desk.arithmetic import LONGEST, EntryError, value_of
+from app.desk.desk import Desk
+from app.desk.translation import tr
+from app.jog import touch_off
+from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
+from app.offsets import offset_changes
+from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_history import Ledger
+from app.offsets.offset_values import TOOL_FIELDS, Mode, marked, not_set, shown_value, value_typed, word
+from app.offsets.secondary_dialogue import CHARACTERS
+from app.offsets.tool_cells import ToolCells
+from core.executor.snapshot import Snapshot
+from core.store.fields import Sort
+from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
+
+# --- Tool setting in words: what is asked, what the answer would make of the tool, where its tip stands.
+
+
+TOOL = "tool"  # asked: its number
+Pair = tuple[float, float]
+
+
+class Setting(Protocol):
+    """What these words need of the tool setting."""
+
+    number: int
+    asked: str
+    text: str
+
+    @property
+    def ledger(self) -> Ledger: ...
+
+    @property
+    def cells(self) -> ToolCells: ...
+
+    @property
+    def touching(self) -> TouchOff: ...
+
+    @property
+    def book(self) -> OffsetBook: ...
+
+    @property
+    def row(self) -> ToolRow | None: ...
+
+    @property
+    def masters(self) -> bool: ...
+
+
+def question(setting: Setting) -> str:
+    """What is asked now; empty when nothing is."""
+    name = f"T{setting.number}"
+    if setting.asked == TOOL:
+        return tr("TOOL NUMBER?")
+    if setting.asked == TOUCH_X:
+        return tr("{tool} MEASURED DIAMETER?").format(tool=name)
+    if setting.asked == TOUCH_Z:
+        return tr("{tool} Z POSITION OF THE FACE?").format(tool=name)
+    return f"{name}  {word(setting.asked)}?" if setting.asked else ""
+
+
+def note(setting: Setting) -> str:
+    """What has to be known before the answer is entered."""
+    number, new = setting.number, setting.cells.new
+    if setting.masters and setting.touching.alone:
+        return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=number)
+    if setting.masters:
+        return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(number=number)
+    if new.number and new.number == number:
+        text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
+        return text.format(number=number, axis=new.missing.upper())
+    return ""
+
+
+def old_to_new(setting: Setting) -> str:
+    """What the answer would make of the tool, or else the last change."""
+    if not setting.asked or setting.asked == TOOL:
+        return setting.ledger.last_told
+    mode, name, row = setting.ledger.mode, TOUCHES.get(setting.asked, setting.asked), setting.row
+    touched, mark = setting.asked in TOUCHES, marked(name, mode)
+    title = f"{word(name)} {mark}" if mark else word(name)
+    was = shown_value(name, getattr(row, name), mode) if row else not_set()
+    try:
+        value = (
+            setting.touching.place(setting.text, mode) if touched else value_typed(name, setting.text, mode)
+        )
+        ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
+        return f"{title}  {was}  →  {shown_value(name, value, mode)}{ends}"
+    except EntryError:
+        return f"{title}  {was}  →  …"  # half a sum is no mistake yet
+
+
+def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
+    """The wear of the touched axis is in the new geometry and begins again at nought."""
+    if row is None or not getattr(row, name):
+        return ""
+    return (
+        f"   {word(name)}  {shown_value(name, getattr(row, name), mode)}  →  {shown_value(name, 0.0, mode)}"
+    )
+
+
+def tip(setting: Setting, snapshot: Snapshot) -> Pair | None:
+    """Where the tip of the chosen tool stands from part zero, mm; None when it was never set."""
+    if setting.row is None:
+        return None
+    x, z = setting.row.offset
+    return snapshot.tip[0] - x, snapshot.tip[1] - z
+
+
+def from_master(setting: Setting) -> Pair | None:
+    """How far this tip stands from that of the master, mm; None without two such tools."""
+    master = setting.book.tools.get(setting.book.master)
+    if setting.row is None or master is None:
+        return None
+    (x, z), (mx, mz) = setting.row.offset, master.offset
+    return x - mx, z - mz
+
+
+_AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
+
+
+@dataclass(slots=True)
+class ToolSetting:
+    """What is asked of the chosen tool, and what is typed."""
+
+    desk: Desk
+    book: OffsetBook
+    ledger: Ledger = field(init=False)
+    cells: ToolCells = field(init=False)
+    touching: TouchOff = field(default_factory=TouchOff)
+    number: int = 0
+    asked: str = ""  # a touch, "tool", a field of a tool, or nothing
+    text: str = ""
+    _active: int = -1  # the tool that was loaded at the last look
+
+    def __post_init__(self) -> None:
+        self.ledger = Ledger(self.desk, self.book, Kind.TOOL)
+        self.cells = ToolCells(self.ledger)
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def row(self) -> ToolRow | None:
+        """The chosen tool; None when it was never set."""
+        return self.book.tools.get(self.number)
+
+    @property
+    def masters(self) -> bool:
+        """Whether the master is being touched."""
+        return self.asked in TOUCHES and self.row is not None and self.row.master
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Follow the loaded tool until another is chosen; an entry in another unit is given up."""
+        before = self.ledger.mode
+        self.ledger.look(snapshot)
+        if self.ledger.mode != before and self.asked:
+            self.close()
+            self.desk.say(
+                tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
+            )
+        if snapshot.modal.tool != self._active:
+            self._active = snapshot.modal.tool
+            if self._active and not self.asked:
+                self._choose(self._active)
+
+    def _choose(self, number: int) -> None:
+        if number != self.number:
+            self.number = number
+            self.cells.new.drop()
+
+    # --- questions -----------------------------------------------------------------------------------
+
+    def ask(self, what: str) -> None:
+        """Open a question; says why not."""
+        snapshot = self.desk.snapshot()
+        why = "" if what == TOOL else self._barred(what, snapshot)
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear()
+        self.asked, self.text = what, ""
+        if what == "remark" and self.row is not None:
+            self.text = self.row.remark
+        if what in TOUCHES:
+            self.touching.open(what, snapshot)
+
+    def _barred(self, what: str, snapshot: Snapshot) -> str:
+        why = self.book.locked or offset_changes.refusal(
+            snapshot, correction=what in offset_changes.CORRECTIONS
+        )
+        if why or not self.number:
+            return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
+        if what in TOUCHES:
+            return touch_off.refusal(what, snapshot)
+        if self.row is None:
+            return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=self.number)
+        return ""
+
+    def close(self) -> None:
+        """Nothing is asked any more."""
+        self.asked, self.text = "", ""
+
+    def forget(self) -> None:
+        """Neither is anything half touched."""
+        self.close()
+        self.cells.new.drop()
+
+    def takes(self, key: str) -> bool:
+        """Whether a character goes to the entry."""
+        return self.asked == "remark" or (bool(self.asked) and key in CHARACTERS)
+
+    def typed(self, key: str) -> bool:
+        """A key while something is asked; False when it means nothing in an entry."""
+        if key == "Enter":
+            self._enter()
+        elif key == "Back":
+            self.text = self.text[:-1]
+        elif key == "Delete":
+            self.text = ""
+        elif len(key) == 1 and self.takes(key):
+            if len(self.text) < (REMARK_LONGEST if self.asked == "remark" else LONGEST):
+                self.text += key
+        elif key in {"l", "L"} and self.masters:
+            self.touching.alone = not self.touching.alone
+        else:
+            return False
+        return True
+
+    def _enter(self) -> None:
+        try:
+            why = self._answer()
+        except EntryError as error:
+            why = tr("REFUSED: {why}").format(why=error)
+        if why:
+            self.desk.say(why)
+
+    def _answer(self) -> str:
+        """Do what was answered; the answer is why not. Raises EntryError for a text that is no value."""
+        if self.asked == TOOL:
+            return self._tool()
+        snapshot = self.desk.snapshot()
+        why = self._barred(self.asked, snapshot)
+        if why:
+            return why
+        return self._touched(snapshot) if self.asked in TOUCHES else self._field()
+
+    def _tool(self) -> str:
+        value = value_of(self.text)
+        if value not in OFFSETS:
+            raise EntryError(tr("T{number:g} does not exist; tools are T1…32").format(number=value))
+        self._choose(int(value))
+        self.close()
+        return ""
+
+    def _touched(self, snapshot: Snapshot) -> str:
+        if self.touching.moved(snapshot):
+            return tr("THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN")
+        why = self.touching.save(self.number, self.text, self.ledger, self.cells.new)
+        if not why:
+            self.close()
+        return why or note(self)
+
+    def _field(self) -> str:
+        name, text = self.asked, self.text
+        keeps = not text.strip() and TOOL_FIELDS[name].sort is not Sort.TEXT
+        why = "" if keeps else self.cells.save(self.number, name, text)
+        if not why:
+            self.close()
+            self.asked = _AFTER.get(name, "")
+        return why
+
+    def master(self) -> None:
+        """The chosen tool becomes the master; being it already, none is."""
+        why = self._barred("master", self.desk.snapshot())
+        self.ledger.answer(why or self.cells.master(self.number))
+
+    def undo(self) -> None:
+        """Take the last change of the tools back."""
+        self.close()
+        self.ledger.undo(self.book.locked or offset_changes.refusal(self.desk.snapshot(), correction=False))
+
+    def escape(self) -> bool:
+        """Close the question, forget half a tool; False when there was nothing."""
+        was = bool(self.asked or self.cells.new.number)
+        if was and self.number:
+            self.desk.say(tr("T{number} IS AS IT WAS").format(number=self.number))
+        self.forget()
+        return was

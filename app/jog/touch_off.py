@@ -1,0 +1,90 @@
+"""Touching off: where the slide stood when the tip touched, and where part zero is by what is typed.
+
+Touch X: the diameter that was cut or touched is measured and typed; machine X less half of it is where the
+tip stands on part zero. Touch Z: the position of the face that the tip touches, 0 for part zero itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.desk.arithmetic import EntryError, value_of
+from app.desk.translation import tr
+from app.offsets.offset_history import Ledger
+from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
+from app.offsets.tool_cells import NewTool
+from core.executor.snapshot import Snapshot, State
+from core.store.toolset import Touch
+
+TOUCH_X, TOUCH_Z = "touch x", "touch z"
+TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}
+MOVED = 0.005  # mm: more than this since the question was opened is no longer where the tip touched
+
+
+def refusal(what: str, snapshot: Snapshot) -> str:
+    """Why nothing is touched off now; empty when it may be."""
+    axis = TOUCHES[what].upper()
+    if not snapshot.homed[snapshot.axes.index(axis)]:
+        return tr("{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET").format(axis=axis)
+    if snapshot.state not in {State.IDLE, State.DISABLED}:
+        return tr("TOUCH OFF WITH THE MACHINE AT REST AND READY")
+    return ""
+
+
+def slide(what: str, snapshot: Snapshot) -> float:
+    """Machine position of the touched axis, mm."""
+    return snapshot.tip["xz".index(TOUCHES[what])]
+
+
+@dataclass(slots=True)
+class TouchOff:
+    """One touch of one axis; ``at`` is the machine position when the question was opened, mm."""
+
+    what: str = ""
+    at: float = 0.0
+    alone: bool = False  # of the master: the others stay
+
+    @property
+    def name(self) -> str:
+        """The field of a tool that it sets."""
+        return TOUCHES[self.what]
+
+    def open(self, what: str, snapshot: Snapshot) -> None:
+        """The tip touches now."""
+        self.what, self.at, self.alone = what, slide(what, snapshot), False
+
+    def place(self, text: str, mode: Mode) -> float:
+        """Where the tip stands on part zero, machine mm and X a radius. Raises EntryError."""
+        typed = value_of(text) * (0.5 if self.what == TOUCH_X else 1.0)
+        place = self.at - to_mm(typed, mode.metric)
+        if not TOOL_FIELDS[self.name].takes(place):
+            raise EntryError(tr("{axis} would be out of range").format(axis=word(self.name)))
+        return place
+
+    def save(self, number: int, text: str, ledger: Ledger, new: NewTool) -> str:
+        """Save what was touched; the answer is why not. X and Z of a new tool are saved together.
+
+        Raises EntryError for a text that is no value.
+        """
+        place, book = self.place(text, ledger.mode), ledger.book
+        if number in book.tools:
+            x, z = (place, None) if self.name == "x" else (None, place)
+            return book.touch_off(number, Touch(x, z, self.alone), self._reason(text, ledger.mode))
+        values = new.add(number, self.name, place)
+        if len(values) < 2:
+            return ""
+        x, z = (float(values[name]) for name in ("x", "z"))
+        why = book.touch_off(number, Touch(x, z), tr("touched off, new tool"))
+        if not why:
+            new.drop()
+        return why
+
+    def moved(self, snapshot: Snapshot) -> bool:
+        """Whether the slide has left the place of the touch."""
+        return abs(slide(self.what, snapshot) - self.at) > MOVED
+
+    def _reason(self, text: str, mode: Mode) -> str:
+        """What the history says of it."""
+        unit = "MM " if mode.metric else ""
+        what = tr("touched Ø") if self.what == TOUCH_X else tr("touched Z")
+        return f"{unit}{what} {text.strip()}{tr(', alone') if self.alone else ''}"

@@ -1,0 +1,1 @@
+"""MDI: one line at a time, proved before it may run."""

@@ -1,0 +1,307 @@
+"""MDI without Qt: a line is typed, proved on a worker, made ready, and started by the palms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from app.desk import prompt_line
+from app.desk.latest import AbandonedError, Watch
+from app.desk.persistence import NoPersistence, Persistence
+from app.desk.program_loading import Proved
+from app.desk.translation import tr
+from core.executor.commands import Command, Prepare, SpindleStop
+from core.executor.job import Job
+from core.executor.snapshot import CYCLE, Snapshot, Starts, State
+from core.language.diagnostics import Diagnostic, Severity
+from core.store.errors import StoreError
+
+# --- What MDI says of a line besides what proving says, and what the prompt line asks for next.
+
+
+def prompt(start: str, *, busy: bool, wrong: bool, ready: bool) -> str:
+    """What can be done at rest; ``start`` names what starts a cycle here."""
+    if busy:
+        return tr("PROVING THE LINE")
+    if wrong:
+        return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
+    if ready:
+        return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
+    return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
+
+
+def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
+    """An error for each tool that the line calls and nobody has set."""
+    missing = sorted(set(proved.proof.tools) - job.tools_set)
+    text = "Tool {number} was never set."
+    return tuple(
+        Diagnostic(1, 0, Severity.ERROR, "tool-never-set", text.format(number=number), "Set it with F8.")
+        for number in missing
+    )
+
+
+# --- The line that is being typed, and the lines typed before it.
+
+
+KEY = "mdi"
+LONGEST = 120  # characters of a line
+KEPT = 100  # lines
+
+
+@dataclass(slots=True)
+class Typing:
+    """One line with a cursor; arrows up and down go through the history, as in every shell."""
+
+    keep: Persistence = field(default_factory=NoPersistence)
+    text: str = ""
+    at: int = 0  # the cursor stands before this character
+    history: list[str] = field(default_factory=list)  # oldest first
+    back: int = 0  # how far up the history the text comes from, 0: it is being typed
+    _draft: str = ""
+
+    def __post_init__(self) -> None:
+        self.reload()
+
+    def reload(self) -> None:
+        """Read the history that is kept; what is no list of lines is forgotten."""
+        try:
+            kept = self.keep.setting(KEY)
+        except StoreError:
+            kept = None
+        lines = kept if isinstance(kept, list) else []
+        self.history = [line for line in lines if isinstance(line, str)][-KEPT:]
+
+    def type(self, key: str) -> bool:
+        """A character or an editing key; False when it means nothing here."""
+        match key:
+            case "Back":
+                self._cut(self.at - 1)
+            case "Delete":
+                self._cut(self.at)
+            case "Left" | "Right":
+                self.at = max(0, min(len(self.text), self.at + (1 if key == "Right" else -1)))
+            case "Up" | "Down":
+                self.recall(self.back + (1 if key == "Up" else -1))
+            case _ if len(key) == 1 and key.isprintable():
+                if len(self.text) < LONGEST:
+                    self.put(self.text[: self.at] + key + self.text[self.at :], self.at + 1)
+            case _:
+                return False
+        return True
+
+    def put(self, text: str, at: int | None = None) -> None:
+        """Another text, the cursor there or at its end."""
+        self.text = text
+        self.at = len(text) if at is None else at
+
+    def recall(self, back: int) -> None:
+        """Take up the line that stands so far up the history; 0: what was being typed."""
+        if not 0 <= back <= len(self.history):
+            return
+        if not self.back:
+            self._draft = self.text
+        self.back = back
+        self.put(self.history[-back] if back else self._draft)
+
+    def done(self) -> None:
+        """The line has been started: it goes into the history, and an empty one begins."""
+        if self.text.strip() and (not self.history or self.history[-1] != self.text):
+            self.history = [*self.history, self.text][-KEPT:]
+            with suppress(StoreError):  # the desk says by itself that nothing is kept
+                self.keep.keep_setting(KEY, self.history)
+        self.put("")
+        self.back, self._draft = 0, ""
+
+    def _cut(self, index: int) -> None:
+        if 0 <= index < len(self.text):
+            self.put(self.text[:index] + self.text[index + 1 :], index)
+
+
+ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
+"""From a line and the machine as it stands to its job and its proof; called on the worker."""
+
+
+@dataclass(slots=True)
+class MdiModel:
+    """The model behind the MDI page. ``say`` answers on the prompt line."""
+
+    prove: ProveLine
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    say: Callable[[str], None]
+    clear: Callable[[], None]
+    typing: Typing = field(default_factory=Typing)
+    open: bool = False
+    found: tuple[Diagnostic, ...] = ()  # what proving had to say of the line
+    ready: Job | None = None  # proved and prepared
+    _asked: Future[tuple[Job, Proved]] | None = None
+    _ticket: int = 0
+    _begun: int = 0  # lines that the executor has begun, as far as they were seen
+    _pool: ThreadPoolExecutor = field(
+        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="loading-mdi")
+    )
+
+    # --- page ----------------------------------------------------------------------------------------
+
+    def opens(self) -> bool:
+        """Whether MDI may be opened now; says why not."""
+        if self.snapshot().state in CYCLE:
+            self.say(tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI"))
+            return False
+        return True
+
+    def opened(self) -> None:
+        """From now on Cycle Start begins lines, and no program."""
+        self.open = True
+        self.typing.reload()
+        self._unready()
+
+    def leave(self) -> bool:
+        """Whether it may be left; the spindle stays on, and Cycle Start begins programs again."""
+        if not self.open:
+            return True
+        if self.snapshot().state in CYCLE:
+            self.say(tr("A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R"))
+            return False
+        self._withdraw()
+        self.open = False
+        self.post(Prepare(Starts.PROGRAM))
+        return True
+
+    def close(self) -> None:
+        """End the worker."""
+        self._ticket += 1
+        self._pool.shutdown(wait=True, cancel_futures=True)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def takes(self, key: str) -> bool:
+        """Whether a character is text now: the line has the whole keyboard, or none of it."""
+        return len(key) == 1 and self.has_keyboard
+
+    @property
+    def has_keyboard(self) -> bool:
+        """Whether the line takes what is typed: also with the drives off, but not while one is under way."""
+        return self.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
+
+    def typed(self, key: str) -> bool:
+        """A key that was pressed; False leaves it to the window."""
+        if not self.has_keyboard:
+            return False
+        if key == "Enter":
+            self.enter()
+            return True
+        before = self.typing.text
+        taken = self.typing.type(key)
+        if self.typing.text != before:
+            self.clear()
+            self._unready()
+        return taken
+
+    def enter(self) -> None:
+        """Have the line proved, from the state and the place of now."""
+        snapshot = self.snapshot()
+        self.clear()
+        if snapshot.state is not State.IDLE:
+            self.say(tr("THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET"))
+            return
+        if not self.typing.text.strip():
+            self.say(tr("TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK"))
+            return
+        self._unready()
+        self._ticket += 1
+        watch = self._watch(self._ticket)
+        self._asked = self._pool.submit(self.prove, self.typing.text, snapshot, watch)
+
+    def recall(self, back: int) -> None:
+        """Take up the line that stands so far up the history."""
+        self.typing.recall(back)
+        self.clear()
+        self._unready()
+
+    def escape(self) -> bool:
+        """Take a ready line back, then what is typed; False when there was neither."""
+        begun = self.ready or self.typing.text or self._asked
+        if self.snapshot().state in prompt_line.UNDER_WAY or not begun:
+            return False
+        if self.ready is None and self._asked is None:
+            self.typing.put("")
+        self._unready()
+        return True
+
+    def stop_spindle(self) -> None:
+        """Stop the spindle that an M03 has left on."""
+        self.clear()
+        self.post(SpindleStop())
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Take up what the worker has found; a line that was started goes into the history."""
+        begun, self._begun = snapshot.lines > self._begun, snapshot.lines
+        if self.ready is not None and begun:
+            self.ready, self.found = None, ()
+            self.typing.done()
+        asked = self._asked
+        if asked is not None and asked.done():
+            self._asked = None
+            self._take_up(asked)
+
+    @property
+    def busy(self) -> bool:
+        """Whether the proof of a line is still to come."""
+        return self._asked is not None
+
+    @property
+    def errors(self) -> tuple[Diagnostic, ...]:
+        """What keeps the line from running."""
+        return tuple(each for each in self.found if each.severity is Severity.ERROR)
+
+    def prompt(self, snapshot: Snapshot, start: str) -> str:
+        """What can be done now; ``start`` names what starts a cycle here."""
+        if snapshot.state is State.DISABLED:
+            return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
+        if snapshot.state is not State.IDLE:
+            return ""
+        return prompt(start, busy=self.busy, wrong=bool(self.errors), ready=self.ready is not None)
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        if self.snapshot().state is State.IDLE and self.ready is None:
+            return tr("NO LINE IS READY: TYPE ONE AND PRESS ENTER")
+        return ""
+
+    def settle(self, timeout: float) -> None:
+        """Wait for the proof; for scripts and tests, never for the screen."""
+        if self._asked is not None:
+            wait([self._asked], timeout)
+        self.look(self.snapshot())
+
+    def _take_up(self, asked: Future[tuple[Job, Proved]]) -> None:
+        error = asked.exception()
+        if error is not None:
+            if not isinstance(error, AbandonedError):
+                self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=error))
+            return
+        job, proved = asked.result()
+        self.found = (*proved.diagnostics, *never_set(job, proved))
+        if not self.errors:
+            self.ready = job
+            self.post(Prepare(Starts.LINE, job, proved.proof))
+
+    def _unready(self) -> None:
+        self._withdraw()
+        self.post(Prepare(Starts.LINE))
+
+    def _withdraw(self) -> None:
+        self._ticket += 1
+        self._asked, self.ready, self.found = None, None, ()
+
+    def _watch(self, ticket: int) -> Watch:
+        def watch(_count: float) -> None:
+            if ticket != self._ticket:
+                raise AbandonedError
+
+        return watch

@@ -1,0 +1,272 @@
+"""F4 MDI: one line at a time, proved before it may run, with what is in force beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF
+from PySide6.QtGui import QFontMetricsF, QPainter, QPolygonF, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.modal_rows import ModalRow, rows_of
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.mdi.mdi_model import MdiModel
+from app.screen import page_table
+from app.screen.letter_keys import LINES, LetterPad
+from app.screen.look import LEFT, Look, put, put_raw
+from app.screen.page_base import Doings, Host, Page
+from app.screen.panel import Panel, Press
+from core.executor.snapshot import CYCLE, Snapshot, Starts
+from core.interpreter.checkpoint import Checkpoint
+from core.language.diagnostics import Diagnostic, Severity
+
+# --- The line that is typed: large, with its cursor, and under it what is wrong, marked where it is.
+
+
+Shown = tuple[str, int, tuple[Diagnostic, ...], bool]
+
+
+class LinePanel(Panel):
+    """Draws from what it was shown last, and only when that has changed. A finger on it asks for letters."""
+
+    def __init__(self, look: Look, touched: Press, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._touched = touched
+        self.text, self.at, self.ready = "", 0, False
+        self.found: tuple[Diagnostic, ...] = ()
+        self._shown: Shown | None = None
+
+    def show_line(self, text: str, at: int, found: tuple[Diagnostic, ...], ready: bool) -> None:
+        """The text, its cursor, the findings of its proof, and whether it would start now."""
+        shown = (text, at, found, ready)
+        if shown != self._shown:
+            self._shown = shown
+            self.text, self.at, self.found, self.ready = shown
+            self.update()
+
+    @property
+    def message(self) -> str:
+        """The first finding: an error before a warning."""
+        return f"{self._first.message} {self._first.hint}".strip() if self._first else ""
+
+    @property
+    def _first(self) -> Diagnostic | None:
+        errors = (each for each in self.found if each.severity is Severity.ERROR)
+        return next(errors, self.found[0] if self.found else None)
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        title = tr("LINE  ·  READY, CYCLE START RUNS IT") if self.ready else tr("LINE")
+        self.frame(painter, title, "lit" if self.ready else "frame", 0.3 if self.ready else 0.16)
+        room = self.inside()
+        self.place(self.area(), self._touched)
+        font = look.fit(self.text, 4.4, room.width() - 2 * u, bold=True)
+        metrics = QFontMetricsF(font)
+        row = QRectF(room.x(), room.y(), room.width(), 5.6 * u)
+        painter.setFont(font)
+        painter.setPen(look.colour("text"))
+        put_raw(painter, row, LEFT, self.text)
+        at = row.x() + metrics.horizontalAdvance(self.text[: self.at])
+        painter.fillRect(QRectF(at, row.center().y() - 2.2 * u, 0.35 * u, 4.4 * u), look.colour("accent"))
+        if self._first is not None:
+            self._finding(painter, room, metrics, self._first)
+
+    def _finding(self, painter: QPainter, room: QRectF, metrics: QFontMetricsF, found: Diagnostic) -> None:
+        look, u = self.look, self.look.u
+        bad = found.severity is Severity.ERROR
+        colour = look.colour("alarm" if bad else "accent")
+        if found.column > 0:
+            at = room.x() + metrics.horizontalAdvance(self.text[: found.column - 1]) + 0.9 * u
+            top = room.y() + 5.4 * u
+            tip = QPolygonF(
+                [QPointF(at, top), QPointF(at - u, top + 1.6 * u), QPointF(at + u, top + 1.6 * u)]
+            )
+            painter.setPen(colour)
+            painter.setBrush(colour)
+            painter.drawPolygon(tip)
+        painter.setPen(colour)
+        lines = (found.message, found.hint)
+        for number, (text, size) in enumerate(zip(lines, (2.3, 1.9), strict=True)):
+            painter.setFont(look.fit(text, size, room.width(), bold=number == 0))
+            box = QRectF(room.x(), room.y() + (7.2 + 2.9 * number) * u, room.width(), 2.9 * u)
+            put(painter, box, LEFT, text)
+            painter.setPen(look.colour("soft"))
+
+
+# --- The lines typed before, newest at the bottom as they were typed; a finger takes one up again.
+
+
+ROW = 3.4  # units
+
+
+class HistoryPanel(Panel):
+    """``back`` is how far up the line stands that was taken up, 0: none."""
+
+    def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._choose = choose
+        self.lines: tuple[str, ...] = ()
+        self.back = 0
+
+    def show_history(self, lines: Sequence[str], back: int) -> None:
+        """All of them, oldest first."""
+        shown = (tuple(lines), back)
+        if shown != (self.lines, self.back):
+            self.lines, self.back = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        self.frame(painter, tr("HISTORY  ·  ARROW UP AND DOWN"))
+        look, u, room = self.look, self.look.u, self.inside()
+        rows = max(1, int(room.height() / (ROW * u)))
+        bottom = max(rows, len(self.lines) - max(0, self.back - rows))
+        for place, number in enumerate(range(max(0, bottom - rows), min(bottom, len(self.lines)))):
+            back = len(self.lines) - number
+            row = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
+            if back == self.back:
+                painter.fillRect(row, look.colour("here"))
+            painter.setFont(look.font(2.2, bold=back == self.back))
+            painter.setPen(look.colour("text"))
+            put_raw(painter, row.adjusted(0.8 * u, 0, -0.8 * u, 0), LEFT, self.lines[number])
+            self.place(row, partial(self._choose, back))
+        if not self.lines:
+            painter.setFont(look.font(2.0))
+            painter.setPen(look.colour("soft"))
+            empty = QRectF(room.x(), room.y(), room.width(), 3 * u)
+            put(painter, empty, LEFT, tr("No line was run yet."))
+
+
+# --- What is in force, one row for each group of codes.
+
+
+SHARE = 0.4  # of a row for its label
+
+
+class InForcePanel(Panel):
+    """All rows at once, as large as the room lets them be."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.rows: tuple[ModalRow, ...] = ()
+
+    def show_rows(self, rows: tuple[ModalRow, ...]) -> None:
+        """The state of this instant."""
+        if rows != self.rows:
+            self.rows = rows
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        self.frame(painter, tr("IN FORCE"))
+        look, u, room = self.look, self.look.u, self.inside()
+        high = min(2.7 * u, room.height() / max(1, len(self.rows)))
+        size = min(1.9, high / u * 0.78)
+        left = SHARE * room.width()
+        for number, row in enumerate(self.rows):
+            box = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(row.label, size, left - u))
+            put(painter, QRectF(box.x(), box.y(), left - u, high), LEFT, row.label)
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.fit(row.value, size, room.width() - left, bold=True))
+            put(painter, box.adjusted(left, 0, 0, 0), LEFT, row.value)
+
+
+LINE, STATE = 15.6, 46.0  # units: height of the line, width of what is in force
+
+
+class MdiPage(Page):
+    """The model decides, this only shows it and hands the keys on."""
+
+    NAME = page_table.MDI
+    LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "")
+    STARTS = True
+
+    def __init__(self, host: Host, model: MdiModel, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.line = LinePanel(self.look, self._other_hand, self)
+        self.history = HistoryPanel(self.look, self._recall, self)
+        self.letters = LetterPad(self.look, self._touched, self, LINES)
+        self.inforce = InForcePanel(self.look, self)
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        return {
+            "F2": lambda: self._go(page_table.AUTOMATIC),
+            "F4": self.desk.next_readout,
+            "F5": self.desk.enable,
+            "F6": self.desk.reset,
+            "F8": self.model.stop_spindle,
+            "F9": lambda: self._go(page_table.SECCMP),
+        }
+
+    def _go(self, name: str) -> None:
+        self.host.go(name)
+
+    def _recall(self, back: int) -> None:
+        if self.model.has_keyboard:
+            self.model.recall(back)
+
+    def _other_hand(self) -> None:
+        """A finger on the line: letters to touch in the place of the history, or the history again."""
+        self.letters.setVisible(self.letters.isHidden())
+        self.letters.raise_()
+
+    def _touched(self, key: str) -> None:
+        self.typed(key)
+
+    def typed(self, key: str) -> bool:
+        """At rest, text; while a line is under way the letters are the keys they are everywhere."""
+        return self.model.typed(key)
+
+    def takes(self, key: str) -> bool:
+        """As the model says."""
+        return self.model.takes(key)
+
+    def has_field(self) -> bool:
+        """The line, while none is under way."""
+        return self.model.has_keyboard
+
+    def prompt(self) -> str:
+        """From the model."""
+        return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
+
+    def opens(self) -> bool:
+        """Not while a program is under way."""
+        return self.model.opens()
+
+    def opened(self) -> None:
+        """Cycle Start now means lines."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Not while a line is under way."""
+        return self.model.leave()
+
+    def escape(self) -> bool:
+        """Take back a ready line, then the text."""
+        return self.model.escape()
+
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+        """The line, what was found, and the state of this instant."""
+        model, typing = self.model, self.model.typing
+        model.look(snapshot)
+        running = snapshot.state in CYCLE and snapshot.starts is Starts.LINE
+        text = snapshot.block_text if running and not typing.text else typing.text
+        self.line.show_line(text, len(text) if running else typing.at, model.found, model.ready is not None)
+        self.history.show_history(typing.history, typing.back)
+        angle = snapshot.demand[2] - snapshot.modal.offset_c
+        self.inforce.show_rows(rows_of(Checkpoint(snapshot.modal, c=angle)))
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The line over the history, what is in force at their right."""
+        u = self.look.u
+        gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
+        wide = self.width() - state - gap
+        self.line.setGeometry(0, 0, wide, high)
+        for part in (self.history, self.letters):
+            part.setGeometry(0, high + gap, wide, self.height() - high - gap)
+        self.inforce.setGeometry(wide + gap, 0, state, self.height())

@@ -1,0 +1,250 @@
+"""Points of a trail that are worth measuring from: ends, middles of arcs, crossings; and what lies nearest.
+
+No answer here takes longer than a look at every point once, so that a key may ask among a million.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from app.desk import formats
+from app.desk.translation import tr
+from app.path.polyline import SAME, Bounds, Floats, Polyline, Stroke
+
+# --- Points that one measures from, and the words of measuring.
+
+
+class PointKind(IntEnum):
+    """What a point is; of two in one place the first is told."""
+
+    END = 0
+    CENTRE = 1
+    CROSSING = 2
+    FREE = 3  # anywhere
+
+
+class Point(NamedTuple):
+    """A point of a trail."""
+
+    z: float
+    x: float
+    kind: PointKind = PointKind.FREE
+
+
+def kind_words(kind: PointKind) -> str:
+    """What the cursor stands on."""
+    return {
+        PointKind.END: tr("END"),
+        PointKind.CENTRE: tr("CENTRE"),
+        PointKind.CROSSING: tr("CROSSING"),
+        PointKind.FREE: tr("FREE"),
+    }[kind]
+
+
+def measuring_words() -> str:
+    """The prompt line while one measures."""
+    return tr("ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK")
+
+
+MOST_CROSSED = 300  # stretches in sight up to which crossings are looked for
+APART = 1e-6  # mm: nearer points are one
+WIDE = 1.2  # how far aside of an arrow key's direction a point may lie, of its distance along it
+
+
+class Features:
+    """Of one trail; crossings are those in sight, looked for when another part is looked at."""
+
+    def __init__(self, trail: Polyline) -> None:
+        self._trail = trail
+        self._ends = _ends(trail)
+        self._box: Bounds | None = None
+        self._crossings = np.zeros((0, 2))
+
+    def look(self, box: Bounds) -> None:
+        """This part is in sight: (least z, greatest z, least x, greatest x)."""
+        if box != self._box:
+            self._box, self._crossings = box, crossings(self._trail, box)
+
+    def nearest(self, z: float, x: float) -> Point | None:
+        """The point nearest to a place."""
+        best: tuple[float, Point] | None = None
+        for kind, table in self._tables():
+            if len(table):
+                off = (table[:, 0] - z) ** 2 + (table[:, 1] - x) ** 2
+                at = int(np.argmin(off))
+                if best is None or off[at] < best[0] - APART**2:
+                    best = float(off[at]), Point(float(table[at, 0]), float(table[at, 1]), kind)
+        return best[1] if best else None
+
+    def towards(self, z: float, x: float, way: tuple[int, int]) -> Point | None:
+        """The next point in a direction, (1, 0) for Z+ and (0, 1) for X+: near, and not far aside of it."""
+        best: tuple[float, Point] | None = None
+        for kind, table in self._tables():
+            dz, dx = table[:, 0] - z, table[:, 1] - x
+            along, aside = dz * way[0] + dx * way[1], np.abs(dz * way[1] + dx * way[0])
+            fits = np.flatnonzero((along > APART) & (aside <= WIDE * along))
+            if len(fits):
+                cost = along[fits] + aside[fits]
+                at = int(np.argmin(cost))
+                if best is None or cost[at] < best[0] - APART:
+                    there = fits[at]
+                    best = float(cost[at]), Point(float(table[there, 0]), float(table[there, 1]), kind)
+        return best[1] if best else None
+
+    def following(self, z: float, x: float, steps: int) -> Point | None:
+        """The end that comes so many steps after this one along the path, going on at the other end."""
+        ends = self._ends
+        if not len(ends):
+            return None
+        at = int(np.argmin((ends[:, 0] - z) ** 2 + (ends[:, 1] - x) ** 2))
+        for _ in range(len(ends)):
+            at = (at + steps) % len(ends)
+            if abs(ends[at, 0] - z) > APART or abs(ends[at, 1] - x) > APART:
+                break
+        return Point(float(ends[at, 0]), float(ends[at, 1]), PointKind.END)
+
+    def _tables(self) -> tuple[tuple[PointKind, Floats], ...]:
+        return (
+            (PointKind.END, self._ends),
+            (PointKind.CENTRE, self._trail.centres),
+            (PointKind.CROSSING, self._crossings),
+        )
+
+
+def _ends(trail: Polyline) -> Floats:
+    """Ends of blocks and starts after jumps (n, 2), along the path."""
+    told = trail.stroke == Stroke.JUMP
+    told[trail.first[1:][np.diff(trail.first) > 0] - 1] = True
+    index = np.flatnonzero(told)
+    return np.column_stack((trail.z[index], trail.x[index]))
+
+
+def crossings(trail: Polyline, box: Bounds) -> Floats:
+    """Where stretches within a box cross each other (n, 2); none where there are too many of them."""
+    z0, x0, z1, x1 = trail.z[:-1], trail.x[:-1], trail.z[1:], trail.x[1:]
+    seen = trail.stroke[1:] != Stroke.JUMP
+    seen &= (np.maximum(z0, z1) >= box[0]) & (np.minimum(z0, z1) <= box[1])
+    seen &= (np.maximum(x0, x1) >= box[2]) & (np.minimum(x0, x1) <= box[3])
+    index = np.flatnonzero(seen)
+    if len(index) > MOST_CROSSED:
+        return np.zeros((0, 2))
+    a, b = np.triu_indices(len(index), 2)
+    a, b = index[a], index[b]
+    ax, az, bx, bz = x1[a] - x0[a], z1[a] - z0[a], x1[b] - x0[b], z1[b] - z0[b]
+    cross = az * bx - ax * bz
+    dz, dx = z0[b] - z0[a], x0[b] - x0[a]
+    safe = np.where(np.abs(cross) > 1e-12, cross, np.inf)
+    s, t = (dz * bx - dx * bz) / safe, (dz * ax - dx * az) / safe
+    met = (np.abs(cross) > 1e-12) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+    return np.column_stack((z0[a] + s * az, x0[a] + s * ax))[met]
+
+
+def point_at(trail: Polyline, z: float, x: float, within: float) -> int | None:
+    """The point that ends the stretch nearest to a place, no farther than ``within`` mm; None: none is."""
+    z0, x0, z1, x1 = trail.z[:-1], trail.x[:-1], trail.z[1:], trail.x[1:]
+    near = trail.stroke[1:] != Stroke.JUMP
+    near &= (np.maximum(z0, z1) >= z - within) & (np.minimum(z0, z1) <= z + within)
+    near &= (np.maximum(x0, x1) >= x - within) & (np.minimum(x0, x1) <= x + within)
+    index = np.flatnonzero(near)
+    if not len(index):
+        return None
+    z0, x0, dz, dx = z0[index], x0[index], (z1 - z0)[index], (x1 - x0)[index]
+    size = np.maximum(dz * dz + dx * dx, 1e-18)
+    share = np.clip(((z - z0) * dz + (x - x0) * dx) / size, 0.0, 1.0)
+    off = np.hypot(z0 + share * dz - z, x0 + share * dx - x)
+    at = int(np.argmin(off))
+    return int(index[at]) + 1 if off[at] <= within else None
+
+
+# --- What lies between two points of a picture, in the words and units of the program.
+
+
+Row = tuple[str, str]
+
+
+def between_on_path(start: Point, end: Point, metric: bool) -> list[Row]:
+    """Seen from above: X as diameter and as radius, Z, distance, and the angle to the axis, 0…90 degrees."""
+    dz, dx = end.z - start.z, end.x - start.x
+    return [
+        ("ΔX Ø", formats.length(2 * dx, metric)),
+        ("ΔX R", formats.length(dx, metric)),
+        ("ΔZ", formats.length(dz, metric)),
+        *_straight(dz, dx, metric, tr("TO Z")),
+    ]
+
+
+def between_on_face(start: Point, end: Point, metric: bool) -> list[Row]:
+    """On the face of the part, in its own X and Y; Y is up."""
+    dx, dy = end.z - start.z, start.x - end.x
+    return [
+        ("ΔX", formats.length(dx, metric)),
+        ("ΔY", formats.length(dy, metric)),
+        *_straight(dx, dy, metric, tr("TO X")),
+    ]
+
+
+def between_on_side(start: Point, end: Point, metric: bool, scale: float) -> list[Row]:
+    """On the side unrolled; ``scale`` are mm round the part to a degree of C."""
+    dz, way = end.z - start.z, start.x - end.x
+    return [
+        ("ΔZ", formats.length(dz, metric)),
+        ("ΔC", f"{formats.angle(way / scale)}°"),
+        (tr("ROUND"), formats.length(way, metric)),
+        *_straight(dz, way, metric, tr("TO Z")),
+    ]
+
+
+def place_on_path(spot: Point, metric: bool) -> list[Row]:
+    """Where a point is: X as a diameter, Z."""
+    return [("X Ø", formats.length(2 * spot.x, metric)), ("Z", formats.length(spot.z, metric))]
+
+
+def place_on_face(spot: Point, metric: bool) -> list[Row]:
+    """X and Y of the part, and its distance from the axis."""
+    radius = math.hypot(spot.z, spot.x)
+    return [
+        ("X", formats.length(spot.z, metric)),
+        ("Y", formats.length(-spot.x, metric)),
+        ("R", formats.length(radius, metric)),
+    ]
+
+
+def place_on_side(spot: Point, metric: bool, scale: float) -> list[Row]:
+    """Z, and C in degrees."""
+    return [("Z", formats.length(spot.z, metric)), ("C", f"{formats.angle(-spot.x / scale)}°")]
+
+
+def _straight(right: float, across: float, metric: bool, to: str) -> list[Row]:
+    angle = math.degrees(math.atan2(abs(across), abs(right)))
+    return [
+        (tr("DISTANCE"), formats.length(math.hypot(right, across), metric)),
+        (tr("ANGLE {axis}").format(axis=to), f"{formats.angle(angle)}°"),
+    ]
+
+
+# --- Where two pictures of one program differ most: a thousandth is not seen at any usual scale.
+
+
+class Apart(NamedTuple):
+    """The greatest way between a point that is cut and the same point of the other picture; mm, there."""
+
+    distance: float
+    z: float
+    x: float
+
+
+def farthest(before: Polyline, after: Polyline) -> Apart | None:
+    """Point by point; None where the pictures are not of the same points: then no point has a partner."""
+    if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
+        return None
+    cut = np.flatnonzero(after.stroke >= Stroke.TURN)
+    if not len(cut):
+        return None
+    way = np.hypot(after.z[cut] - before.z[cut], after.x[cut] - before.x[cut])
+    at = int(np.argmax(way))
+    distance = float(way[at]) if way[at] > SAME else 0.0
+    return Apart(distance, float(after.z[cut[at]]), float(after.x[cut[at]]))

@@ -1,0 +1,323 @@
+"""Everything that a path view shows, from back to front."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
+
+from app.desk import formats
+from app.desk.translation import tr
+from app.path.measuring import Apart
+from app.path.path_aspects import Aspect, DrawnLeg
+from app.path.path_layers_view import Frame, Ink, scale_length
+from app.path.polyline import Polyline
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Press
+
+if TYPE_CHECKING:
+    from app.path.path_pane_view import Pane
+    from app.path.path_view import PathView
+
+# --- What lies over the panes: buttons, what the lines mean, a scale in each pane.
+
+
+BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
+LOW = 5.0  # units: from one to the next at least
+
+
+class Button(NamedTuple):
+    """``lit`` while what it switches is on."""
+
+    sign: str
+    press: Press
+    lit: bool = False
+
+
+LegendEntry = tuple[str, QPen]
+
+
+def draw_buttons(
+    painter: QPainter,
+    look: Look,
+    room: QRectF,
+    buttons: Sequence[Button],
+    place: Callable[[QRectF, Press], None],
+) -> None:
+    """A column at the right; in a low pane they are lower, and as many as there is room for."""
+    wide, high, step = (k * look.u for k in BUTTON)
+    close = max(LOW * look.u, (room.height() - 3.2 * look.u) / max(1, len(buttons)))
+    high, step = high - max(0.0, step - close), min(step, close)
+    for number, (sign, press, lit) in enumerate(buttons):
+        box = QRectF(room.right() - wide - look.u, room.y() + 0.8 * look.u + number * step, wide, high)
+        if box.bottom() > room.bottom() - 2.4 * look.u:
+            return
+        painter.fillRect(box, look.colour("lit" if lit else "key"))
+        painter.setPen(look.colour("on_lit" if lit else "text"))
+        painter.setFont(look.fit(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * look.u, bold=True))
+        put(painter, box, CENTRE, sign)
+        place(box, press)
+
+
+def run_legend(look: Look) -> list[LegendEntry]:
+    """Of a program that runs or will."""
+    todo, done = Ink.TODO.pens(look), Ink.DONE.pens(look)
+    return [(tr("done"), done[2]), (tr("to come"), todo[2]), (tr("rapid"), todo[1])]
+
+
+def compared_legend(look: Look) -> list[LegendEntry]:
+    """Of a program before and after a change."""
+    return [(tr("before"), Ink.BEFORE.pens(look)[2]), (tr("after"), Ink.AFTER.pens(look)[2])]
+
+
+def draw_legend(painter: QPainter, look: Look, room: QRectF, entries: Sequence[LegendEntry]) -> None:
+    """A row at the lower left."""
+    u = look.u
+    x, y = room.x() + 1.2 * u, room.bottom() - 2.2 * u
+    painter.setFont(look.font(1.5))
+    metrics = QFontMetricsF(painter.font())
+    for word, pen in entries:
+        wide = metrics.horizontalAdvance(word) + 0.4 * u
+        if x + 3.6 * u + wide > room.right() - 0.2 * room.width() - 6 * u:
+            return
+        painter.setPen(pen)
+        painter.drawLine(QPointF(x, y + u), QPointF(x + 3 * u, y + u))
+        painter.setPen(look.colour("soft"))
+        put(painter, QRectF(x + 3.6 * u, y, wide, 2 * u), LEFT, word)
+        x += 5.0 * u + wide
+
+
+def draw_scale(painter: QPainter, look: Look, room: QRectF, frame: Frame, metric: bool) -> None:
+    """A round length at the lower right of a pane, in the unit in force."""
+    u = look.u
+    mm, text = scale_length(min(14 * u, 0.2 * room.width()) / frame.scale, metric)
+    wide = mm * frame.scale
+    right, y = room.right() - 1.4 * u, room.bottom() - 1.0 * u
+    painter.setPen(look.pen("soft", 0.16))
+    for a, b in (((-wide, 0.0), (0.0, 0.0)), ((-wide, -0.7), (-wide, 0.0)), ((0.0, -0.7), (0.0, 0.0))):
+        painter.drawLine(QPointF(right + a[0], y + a[1] * u), QPointF(right + b[0], y + b[1] * u))
+    painter.setFont(look.font(1.5))
+    painter.setPen(look.colour("soft"))
+    put(painter, QRectF(right - wide - 12 * u, y - 1.2 * u, 11.2 * u, 2 * u), RIGHT, text)
+
+
+def draw_border(painter: QPainter, look: Look, room: QRectF) -> None:
+    """Between a pane and the one at its left."""
+    painter.setPen(look.pen("frame", 0.12))
+    painter.drawLine(room.topLeft(), room.bottomLeft())
+
+
+def draw_words(painter: QPainter, look: Look, room: QRectF, words: str) -> None:
+    """At the upper left of a pane: what it is, or what is to be said of it."""
+    u = look.u
+    painter.setPen(look.colour("soft"))
+    painter.setFont(look.fit(words, 1.6, room.width() - 2 * u, bold=True))
+    put(painter, QRectF(room.x() + 1.2 * u, room.y() + 0.9 * u, room.width() - 2 * u, 2 * u), LEFT, words)
+
+
+def draw_nothing(painter: QPainter, look: Look, room: QRectF, why: str) -> None:
+    """Where there is no path."""
+    painter.setPen(look.colour("soft"))
+    painter.setFont(look.fit(why, 2.0, room.width()))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    put(painter, room, CENTRE, why)
+
+
+# --- The way back into a program, drawn over the path: legs in their order, rapids dashed, feeds solid.
+
+
+def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[DrawnLeg]) -> None:
+    """All legs from where the tool stands now; the painter's origin is the corner of the pane."""
+    u = look.u
+    spots = [pane.spot(leg.z, leg.x) for leg in legs]
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for leg, (start, end) in zip(legs[1:], pairwise(spots), strict=True):
+        pen = look.pen("lit", 0.34)
+        pen.setStyle(Qt.PenStyle.DashLine if leg.rapid else Qt.PenStyle.SolidLine)
+        painter.setPen(pen)
+        painter.drawLine(start, end)
+        _arrow(painter, look, start, end)
+    painter.setPen(look.pen("lit", 0.34))
+    painter.setBrush(look.colour("panel"))
+    for spot in spots[:1]:
+        painter.drawEllipse(spot, 0.8 * u, 0.8 * u)
+    for leg, (start, end) in zip(legs[1:], pairwise(spots), strict=True):
+        _label(painter, look, (start + end) / 2, leg.label)
+
+
+def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:
+    """A head at the end of a leg that is long enough to have one."""
+    way, u = end - start, look.u
+    length = math.hypot(way.x(), way.y())
+    if length < 2.5 * u:
+        return
+    along = way / length
+    across = QPointF(-along.y(), along.x())
+    back = end - along * 1.6 * u
+    painter.save()
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(look.colour("lit"))
+    painter.drawPolygon(QPolygonF([end, back + across * 0.7 * u, back - across * 0.7 * u]))
+    painter.restore()
+
+
+def _label(painter: QPainter, look: Look, at: QPointF, text: str) -> None:
+    if not text:
+        return
+    u = look.u
+    painter.setFont(look.font(1.6, bold=True))
+    wide = QFontMetricsF(painter.font()).horizontalAdvance(text) + 1.2 * u
+    box = QRectF(at.x() - wide / 2, at.y() - 1.2 * u, wide, 2.4 * u)
+    painter.fillRect(box, look.colour("lit"))
+    painter.setPen(look.colour("on_lit"))
+    put(painter, box, CENTRE, text)
+
+
+def draw_view(painter: QPainter, view: PathView) -> None:
+    """Panes, title, buttons, legend; a sentence where there is nothing."""
+    look = view.look
+    if not view.panes:
+        why = tr("The path is shown when a program is loaded.")
+        draw_nothing(painter, look, view.inside(), why)
+        return
+    for pane in view.panes:
+        _pane(painter, view, pane)
+    if view.ruler is not None:  # beside what is measured, where there is another pane
+        beside = next((pane for pane in view.panes if pane is not view.ruler.pane), view.ruler.pane)
+        view.ruler.draw_figures(painter, beside.room, view.in_mm)
+    _title(painter, view)
+    draw_buttons(painter, look, view.room(), _buttons(view), view.place)
+    legend = compared_legend(look) if view.comparing else run_legend(look)
+    draw_legend(painter, look, view.panes[0].room, legend)
+    apart = view.panes[0].apart
+    if apart is not None:
+        draw_words(painter, look, view.panes[0].room, _apart_words(apart, view.in_mm))
+
+
+def _pane(painter: QPainter, view: PathView, pane: Pane) -> None:
+    painter.save()
+    painter.setClipRect(pane.room)
+    painter.translate(pane.room.topLeft())
+    pane.draw(painter)
+    if view.legs and pane.aspect is Aspect.PATH:
+        draw_approach(painter, view.look, pane, view.legs)
+    if view.ruler is not None and view.ruler.pane is pane:
+        view.ruler.draw(painter)
+    painter.restore()
+    if pane.frame is not None:
+        draw_scale(painter, view.look, pane.room, pane.frame, view.in_mm)
+    if pane.aspect is not Aspect.PATH:
+        draw_words(painter, view.look, pane.room, _name_of(pane, view.in_mm))
+        if pane is not view.panes[0]:
+            draw_border(painter, view.look, pane.room)
+
+
+def _apart_words(apart: Apart, in_mm: bool) -> str:
+    if not apart.distance:
+        return tr("NOTHING THAT IS CUT HAS CHANGED")
+    length = formats.length(apart.distance, in_mm)
+    return tr("AT MOST {length} {unit} APART  ·  AT THE CIRCLE").format(
+        length=length, unit="mm" if in_mm else "in"
+    )
+
+
+def _name_of(pane: Pane, in_mm: bool) -> str:
+    if pane.aspect is Aspect.FACE:
+        return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
+    diameter = formats.length(pane.trail.round * 360.0 / math.pi, in_mm)
+    return tr("SIDE  ·  UNROLLED AT Ø {diameter}").format(diameter=diameter)
+
+
+def _buttons(view: PathView) -> list[Button]:
+    button = Button
+    found = [
+        button("+", lambda: view.zoom(1)),
+        button("−", lambda: view.zoom(-1)),
+        button(tr("FIT"), view.fit),
+        button(tr("MEAS"), view.measure, view.ruler is not None),
+    ]
+    if view.several:
+        found.append(button(tr("VIEW"), view.next_view))
+    return found
+
+
+def _title(painter: QPainter, view: PathView) -> None:
+    """The panes have covered the lower half of it."""
+    look, u = view.look, view.look.u
+    wide = view.width() - 4 * u
+    painter.setFont(look.fit(view.title, 1.7, wide, bold=True))
+    painter.setPen(look.colour("soft"))
+    put(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), LEFT, view.title)
+
+
+# --- What stands still in a pane: centre lines, the circle of the part with C round it, lines along the side.
+
+
+QUARTERS = (0, 90, 180, 270)
+TIGHT = 9.0  # units: C lines of the side stand no nearer to each other
+
+
+def draw_scenery(painter: QPainter, look: Look, aspect: Aspect, frame: Frame, trail: Polyline) -> None:
+    """Under everything that moves; the painter's origin is the corner of the pane."""
+    if aspect is Aspect.PATH:
+        _cross(painter, look, frame)
+    elif aspect is Aspect.FACE:
+        _cross(painter, look, frame)
+        _ring(painter, look, frame, trail)
+    else:
+        _degrees(painter, look, frame, trail)
+
+
+def _pen(look: Look, dashes: list[float]) -> QPen:
+    pen = look.pen("centre", 0.12)
+    pen.setDashPattern(dashes)
+    return pen
+
+
+def _cross(painter: QPainter, look: Look, frame: Frame) -> None:
+    painter.setPen(_pen(look, [14, 4, 2, 4]))
+    row = round(float(frame.down(0.0))) + 0.5
+    painter.drawLine(QPointF(0, row), QPointF(frame.width, row))
+    column = round(float(frame.across(0.0))) + 0.5
+    painter.setPen(_pen(look, [2, 6]))
+    painter.drawLine(QPointF(column, 0), QPointF(column, frame.height))
+
+
+def _ring(painter: QPainter, look: Look, frame: Frame, trail: Polyline) -> None:
+    """The circle that holds all cuts, and where on it the tool is at C 0, 90, 180 and 270."""
+    u = look.u
+    reach = trail.bounds[1]
+    middle = QPointF(float(frame.across(0.0)), float(frame.down(0.0)))
+    radius = reach * frame.scale + 0.9 * u
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(_pen(look, [3, 4]))
+    painter.drawEllipse(middle, radius, radius)
+    painter.setFont(look.font(1.5))
+    painter.setPen(look.colour("soft"))
+    for degrees in QUARTERS:
+        at = math.radians(degrees)
+        place = middle + QPointF(math.cos(at), math.sin(at)) * (radius + 1.7 * u)
+        put(painter, QRectF(place.x() - 3 * u, place.y() - u, 6 * u, 2 * u), CENTRE, f"C{degrees}")
+
+
+def _degrees(painter: QPainter, look: Look, frame: Frame, trail: Polyline) -> None:
+    """Lines along Z at even angles, with their C; whole turns are as strong as a centre line."""
+    u, scale = look.u, trail.round
+    step = next((s for s in (15, 30, 45, 90, 180, 360) if s * scale * frame.scale >= TIGHT * u), 360)
+    top, bottom = (frame.x - frame.height / 2 / frame.scale, frame.x + frame.height / 2 / frame.scale)
+    painter.setFont(look.font(1.5))
+    for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
+        degrees = number * step
+        row = round(float(frame.down(-degrees * scale))) + 0.5
+        painter.setPen(_pen(look, [14, 4, 2, 4] if degrees % 360 == 0 else [2, 6]))
+        painter.drawLine(QPointF(0, row), QPointF(frame.width, row))
+        painter.setPen(look.colour("soft"))
+        text = f"C{formats.fixed(degrees, 0)}"
+        put(painter, QRectF(0.8 * u, row - 2.0 * u, 8 * u, 2 * u), LEFT, text)
+    column = round(float(frame.across(0.0))) + 0.5
+    painter.setPen(_pen(look, [2, 6]))
+    painter.drawLine(QPointF(column, 0), QPointF(column, frame.height))

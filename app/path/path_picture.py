@@ -1,0 +1,214 @@
+"""The path of a program as polylines, made once from its elementary blocks on a worker thread.
+
+Coordinates are the part's: machine position less the offset of the active tool, so that work shifts (G10)
+and presets (G92) stand where they are cut. mm, X a radius.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from app.path.face_and_side import TurnedSketch, way_of
+from app.path.polyline import SAME, Floats, Polyline, PolylineBuilder, Stroke, arc_pieces, bounds_of
+from app.working_plane.plane_scene import Scene, SceneSketch
+from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.virtual_mill import Face
+from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
+
+if TYPE_CHECKING:
+    from core.geometry.virtual_mill import PlaneMove, Spot
+
+WATCHED = 2000  # blocks between two looks at whether the work is still wanted
+
+Timed = tuple[Block, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture(Polyline):
+    """The path seen from above, X+ downwards; ``face`` and ``side`` are what is cut there with C locked.
+
+    ``ends`` (blocks + 1,) seconds of program time with 0 in front, ``chord`` (blocks,) mm from start to end
+    of a block. ``line`` (blocks,) is the source line that each block is of. ``metric``: the program ends in
+    G71.
+    """
+
+    ends: npt.NDArray[np.float64]
+    chord: npt.NDArray[np.float64]
+    line: npt.NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    face: Polyline | None = None
+    side: Polyline | None = None
+    metric: bool = False
+    scene: Scene | None = None  # of a mill
+
+    def block_of_line(self, line: int) -> int:
+        """The block that ends the first pass through a source line, or through the nearest one before that
+        makes any; 0 when there is none. Numbers count from 1."""
+        before = self.line[self.line <= line]
+        if not len(before):
+            return 0
+        there = np.flatnonzero(self.line == before.max())
+        apart = np.flatnonzero(np.diff(there) > 1)
+        return int(there[apart[0]] if len(apart) else there[-1]) + 1
+
+    def blocks_of_line(self, line: int) -> list[tuple[int, int]]:
+        """All blocks of a source line, as ranges of numbers from 1 with the last one in them."""
+        there = np.flatnonzero(self.line == line) + 1
+        parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
+        return [(int(part[0]), int(part[-1])) for part in parts]
+
+    def line_of_block(self, block: int) -> int:
+        """The source line of a block, both from 1; 0 for no block."""
+        return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
+
+    def time_left(self, block: int, to_go: float) -> float:
+        """Program seconds left when block number ``block`` has ``to_go`` mm before it, at full override."""
+        total = float(self.ends[-1])
+        if not 1 <= block <= self.blocks:
+            return total
+        start, end = float(self.ends[block - 1]), float(self.ends[block])
+        chord = float(self.chord[block - 1])
+        share = min(1.0, to_go / chord) if chord > SAME else 1.0
+        return total - end + (end - start) * share
+
+
+class Sketch:
+    """Collects blocks into a picture."""
+
+    def __init__(self) -> None:
+        self._pencil = PolylineBuilder()
+        self._turned: TurnedSketch | None = None
+        self._metric = False
+        self._scene = SceneSketch()
+        self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
+
+    def add(self, block: Block, end: float) -> None:
+        """Append one block that ends ``end`` seconds into the program."""
+        if block.swivel is not None:
+            self._scene.add(block, block.swivel)  # what a lathe's picture would show of it means nothing
+        elif block.moves:
+            if block.modal.c_locked:
+                self._locked(block)
+            elif block.kind is not Kind.ROTATE:
+                self._move(block, _stroke(block))
+        self._pencil.end_block()
+        if self._turned is not None:
+            self._turned.end_block()
+        self._ends.append(end)
+        self._line.append(block.line)
+        self._metric = block.modal.metric
+        self._chord.append(_chord(block) if block.moves else 0.0)
+
+    def add_series(self, series: Series, ends: Floats) -> None:
+        """Append straight moves that end ``ends`` (m,) seconds into the program."""
+        like = series.pattern
+        if self._turned is not None or like.modal.c_locked:
+            for block, end in zip(series, ends.tolist(), strict=True):
+                self.add(block, end)
+            return
+        dx, dz = like.offset_x - like.modal.tool_x, like.offset_z - like.modal.tool_z
+        self._pencil.start(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
+        self._pencil.row(series.z + dz, series.x + dx, _stroke(like))
+        self._ends.frombytes(ends.tobytes())
+        self._line.frombytes(series.line.tobytes())
+        self._chord.frombytes(np.hypot(series.x - series.x0, series.z - series.z0).tobytes())
+        self._metric = like.modal.metric
+
+    def picture(self) -> Picture:
+        """The picture of what was added."""
+        z, x, stroke, first = self._pencil.arrays()
+        face, side = self._turned.trails() if self._turned is not None else (None, None)
+        return Picture(
+            z=z,
+            x=x,
+            stroke=stroke,
+            first=first,
+            ends=np.array(self._ends),
+            chord=np.array(self._chord),
+            bounds=bounds_of(z, x, stroke),
+            centres=np.array(self._pencil.centres).reshape(-1, 2),
+            line=np.array(self._line, dtype=np.int64),
+            face=face,
+            side=side,
+            metric=self._metric,
+            scene=self._scene.scene(),
+        )
+
+    def _locked(self, block: Block) -> None:
+        if self._turned is None:
+            self._turned = TurnedSketch(len(self._line))
+        stroke, way = _stroke(block), way_of(block)
+        self._turned.add(block, stroke, way)
+        if block.plane is not None:
+            self._mill(block, block.plane, way, stroke)
+        elif block.kind is not Kind.ROTATE:
+            self._move(block, stroke)
+
+    def _move(self, block: Block, stroke: Stroke) -> None:
+        dx = block.offset_x - block.modal.tool_x
+        dz = block.offset_z - block.modal.tool_z
+        self._pencil.start(block.z0 + dz, block.x0 + dx)
+        if block.kind is Kind.ARC:
+            self._arc(block, dx, dz, stroke)
+        self._pencil.to(block.z + dz, block.x + dx, stroke)
+
+    def _arc(self, block: Block, dx: float, dz: float, stroke: Stroke) -> None:
+        start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
+        pieces = arc_pieces(radius, sweep)
+        cz, cx = block.cz + dz, block.cx + dx
+        self._pencil.centres.extend((cz, cx))
+        for k in range(1, pieces):
+            at = start + sweep * k / pieces
+            self._pencil.to(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
+
+    def _mill(self, block: Block, plane: PlaneMove, way: list[Spot], stroke: Stroke) -> None:
+        """What the slides do while the mill goes its way in a plane."""
+        modal = block.modal
+        dx = block.offset_x - modal.tool_x + modal.secondary_x
+        dz = block.offset_z - modal.tool_z + modal.secondary_z
+        for number, (x, y, z) in enumerate((plane.start, *way)):
+            if isinstance(plane.frame, Face):
+                h = plane.frame.h
+                at = (z + dz, dx - math.sqrt(max(x * x + y * y - h * h, 0.0)))
+            else:
+                at = (plane.frame.z0 - x + dz, dx - z)
+            if number:
+                self._pencil.to(*at, stroke)
+            else:
+                self._pencil.start(*at)
+
+
+def sketched(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
+    """The picture of all blocks; ``watch`` is told the count now and then and may raise to give up."""
+    sketch, count, told = Sketch(), 0, 0
+    for each in blocks:
+        if isinstance(each, TimedSeries):
+            sketch.add_series(each.series, each.t1)
+            count += len(each.series)
+        else:
+            sketch.add(each[0], each[2])
+            count += 1
+        if count - told >= WATCHED:
+            told = count
+            watch(count)
+    return sketch.picture()
+
+
+def _chord(block: Block) -> float:
+    """From start to end in the machine's first two axes, of which the way left is told, mm."""
+    if block.travel is not None:
+        return math.dist(block.travel.start[:2], block.travel.end[:2])
+    return math.hypot(block.x - block.x0, block.z - block.z0)
+
+
+def _stroke(block: Block) -> Stroke:
+    if block.kind is Kind.RAPID:
+        return Stroke.RAPID
+    return Stroke.TURN if block.modal.spindle else Stroke.MILL

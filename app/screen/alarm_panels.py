@@ -1,0 +1,194 @@
+"""What lies over the path view: the message of a stop, an alarm, or the log of alarms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.alarm_log import Stop
+from app.desk.machine_status import Tone
+from app.desk.prompt_line import exactly
+from app.desk.translation import tr
+from app.screen.look import CENTRE, LEFT, Look, draw_sign, put, put_raw
+from app.screen.panel import Panel
+from core.alarms import CATALOGUE, Reaction
+from core.executor.snapshot import Alarm
+
+WRAP = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+WORDS = int(Qt.TextFlag.TextWordWrap.value)
+_HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8  # units: an entry, its column of times, the row of keys
+
+
+class Notice(Panel):
+    """Alarms with causes, remedy and line, the first one large; or the message of M00/M01."""
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.message = ""
+        self._go_on = ""
+        self._alarms: tuple[Alarm, ...] = ()
+        self.hide()
+
+    def show_notice(self, message: str, go_on: str, alarms: tuple[Alarm, ...] = ()) -> None:
+        """An alarm goes before a message; with neither the notice is gone."""
+        if (message, go_on, alarms) == (self.message, self._go_on, self._alarms):
+            return
+        self.message, self._go_on, self._alarms = message, go_on, alarms
+        self.setVisible(bool(message or alarms))
+        self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        if self._alarms:
+            self._draw_alarm(painter, *self._alarms)
+        else:
+            self._draw_message(painter)
+
+    def _head(self, painter: QPainter, tone: Tone, text: str) -> QRectF:
+        look, u = self.look, self.look.u
+        painter.fillRect(self.area(), look.colour(tone.value))
+        painter.fillRect(self.area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), look.colour("panel"))
+        head = QRectF(0, 0, self.width(), 5.6 * u)
+        painter.fillRect(head, look.colour(tone.value))
+        ink = look.colour("on_state")
+        draw_sign(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, ink)
+        painter.setPen(ink)
+        painter.setFont(look.fit(text, 2.6, self.width() - 8 * u, bold=True))
+        put(painter, head.adjusted(5.6 * u, 0, -u, 0), LEFT, text)
+        return self.area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
+
+    def _draw_message(self, painter: QPainter) -> None:
+        room = self._head(painter, Tone.PAUSE, "PROGRAM STOP")
+        u = self.look.u
+        foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
+        room.setBottom(foot.top() - 0.6 * u)
+        self._wrapped(painter, room, self.message, 6.0, "text")
+        painter.setPen(self.look.colour("accent"))
+        painter.setFont(self.look.fit(self._go_on, 2.2, foot.width(), bold=True))
+        put(painter, foot, LEFT, self._go_on)
+
+    def _draw_alarm(self, painter: QPainter, alarm: Alarm, *more: Alarm) -> None:
+        """What came first is the cause of what came behind it more often than not."""
+        parts = [f"ALARM {alarm.number}: {alarm.text}", *([f"LINE {alarm.line}"] if alarm.line else [])]
+        room = self._head(painter, Tone.ALARM, "  ·  ".join(parts))
+        if more:
+            room = self._draw_more(painter, room, more)
+        high = room.height()
+        causes = "\n".join(tr(each) for each in dict.fromkeys((alarm.cause, *alarm.causes)))
+        for label, text, y, part in (
+            ("CAUSE, THE LIKELIEST FIRST", causes, 0.0, 0.62),
+            ("WHAT TO DO", tr(alarm.remedy), 0.64, 0.36),
+        ):
+            box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
+            self._labelled(painter, box, label, text)
+
+    def _draw_more(self, painter: QPainter, room: QRectF, more: tuple[Alarm, ...]) -> QRectF:
+        """The others in one line at the foot; the room that is left."""
+        look, u = self.look, self.look.u
+        foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
+        text = "ALSO: " + "  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
+        painter.setPen(look.colour("alarm"))
+        painter.setFont(look.fit(text, 1.9, foot.width(), bold=True))
+        put(painter, foot, LEFT, text)
+        return room.adjusted(0, 0, 0, -3.0 * u)
+
+    def _labelled(self, painter: QPainter, room: QRectF, label: str, text: str) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(1.6, bold=True))
+        put(painter, QRectF(room.x(), room.y(), room.width(), 2.0 * u), LEFT, label)
+        self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3, "text")
+
+    def _wrapped(self, painter: QPainter, room: QRectF, text: str, size: float, colour: str) -> None:
+        """Text in words, from ``size`` down as far as needed so that all of it is there."""
+        painter.setPen(self.look.colour(colour))
+        while True:
+            painter.setFont(self.look.font(size, bold=True))
+            flags = int(WRAP.value) | WORDS
+            needed = painter.boundingRect(room, flags, text)
+            if size <= 1.4 or (needed.height() <= room.height() and needed.width() <= room.width()):
+                break
+            size *= 0.9
+        painter.drawText(room, flags, text)
+
+
+class AlarmList(Panel):
+    """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
+
+    title = "ALARMS AND STOPS  ·  ESC CLOSES  ·  PAGE DOWN: OLDER"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.entries: tuple[Stop, ...] = ()
+        self._top = 0
+        self.hide()
+
+    def show_entries(self, entries: Sequence[Stop]) -> None:
+        """The log as it stands."""
+        if entries is not self.entries:
+            self.entries = tuple(entries)
+            self._top = 0
+            self.update()
+
+    @property
+    def rows(self) -> int:
+        """Entries that there is room for."""
+        return max(1, int((self.inside().height() - _FOOT * self.look.u) / (_HIGH * self.look.u)))
+
+    def look_at(self, by: int) -> None:
+        """Older ones, or newer ones."""
+        self._top = max(0, min(self._top + by, len(self.entries) - self.rows))
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """As the arrow keys."""
+        self.look_at(-1 if event.angleDelta().y() > 0 else 1)
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        room = self.inside()
+        if not self.entries:
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.font(2.0))
+            put(painter, QRectF(room.x(), room.y(), room.width(), 3 * u), LEFT, "No alarm and no stop yet.")
+            return
+        for number, entry in enumerate(self.entries[self._top : self._top + self.rows]):
+            y = room.y() + number * _HIGH * u
+            self._entry(painter, QRectF(room.x(), y, room.width(), _HIGH * u), entry)
+        self._pages(painter, QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u))
+
+    def _entry(self, painter: QPainter, row: QRectF, entry: Stop) -> None:
+        look, u, alarm = self.look, self.look.u, entry.alarm
+        grave = CATALOGUE[alarm.code].reaction in {Reaction.OFF, Reaction.STOP} or alarm.code == "estop"
+        left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
+        painter.fillRect(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), look.colour("frame"))
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.fit(entry.at, 1.8, (_WHEN - 1) * u))
+        put_raw(painter, QRectF(row.x(), row.y(), _WHEN * u, 2.4 * u), LEFT, entry.at)
+        if alarm.line:
+            painter.setFont(look.font(1.8))
+            put(painter, QRectF(row.x(), row.y() + 2.3 * u, _WHEN * u, 2.1 * u), LEFT, f"line {alarm.line}")
+        painter.setPen(look.colour("alarm" if grave else "text"))
+        painter.setFont(look.font(2.0, bold=True))
+        put(painter, QRectF(left, row.y(), wide, 2.4 * u), LEFT, f"{alarm.number}  ·  {alarm.text}")
+        for y, ink, text in ((2.3, "text", exactly(alarm)), (4.3, "soft", alarm.remedy)):
+            painter.setPen(look.colour(ink))
+            painter.setFont(look.fit(text, 1.8, wide))
+            put(painter, QRectF(left, row.y() + y * u, wide, 2.1 * u), LEFT, text)
+
+    def _pages(self, painter: QPainter, foot: QRectF) -> None:
+        """Two places for a finger, where there is more than fits."""
+        look, u = self.look, self.look.u
+        for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
+            possible = self._top > 0 if by < 0 else self._top + self.rows < len(self.entries)
+            if not possible:
+                continue
+            box = QRectF(foot.right() - (2 - number) * 17 * u, foot.y(), 16 * u, foot.height())
+            painter.fillRect(box, look.colour("key"))
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.font(2.0, bold=True))
+            put(painter, box, CENTRE, label)
+            self.place(box, partial(self.look_at, by))

@@ -1,1 +1,0 @@
-"""The Jog page: targets to hold, tool setting, homing."""

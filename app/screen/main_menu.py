@@ -1,0 +1,90 @@
+"""F1, the main menu: one large target for each page, with the key that opens it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.screen import page_table
+from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.page_base import Doings, Host, Page
+from app.screen.page_table import ENTRIES, Entry
+from app.screen.panel import Panel
+
+_LABEL_OF = {entry.key: entry.label for entry in ENTRIES}
+COLUMNS = 2
+
+
+class MenuPage(Page):
+    """Opens pages."""
+
+    NAME = page_table.MENU
+    LABELS = tuple(
+        {"F1": "MENU", "F7": "ALARMS", **_LABEL_OF}.get(f"F{number}", "") for number in range(1, 11)
+    )
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.list = _Tiles(self.look, host.press, self)
+
+    def doings(self) -> Doings:
+        """The function keys of the entries."""
+        return {entry.key: partial(self._open, entry.name) for entry in ENTRIES}
+
+    def _open(self, name: str) -> None:
+        self.desk.clear()  # an answer to the key before has been read
+        self.host.go(name)
+
+    def prompt(self) -> str:
+        """How to choose."""
+        return "PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC"
+
+    def escape(self) -> bool:
+        """Back to the Automatic page."""
+        self.host.go(page_table.AUTOMATIC)
+        return True
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The tiles fill the page."""
+        self.list.setGeometry(self.rect())
+
+
+class _Tiles(Panel):
+    """The entries in two columns."""
+
+    title = page_table.MENU
+
+    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._press = press
+
+    def draw(self, painter: QPainter) -> None:
+        u, room = self.look.u, self.inside()
+        rows = -(-len(ENTRIES) // COLUMNS)
+        wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
+        for number, entry in enumerate(ENTRIES):
+            column, row = divmod(number, rows)
+            box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, high - u)
+            self._tile(painter, box, entry)
+            self.place(box, partial(self._press, entry.key))
+
+    def _tile(self, painter: QPainter, box: QRectF, entry: Entry) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.pen("accent", 0.2))
+        painter.setBrush(look.colour("key"))
+        painter.drawRect(box)
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(3.4, bold=True))
+        put(painter, QRectF(box.x() + u, box.y(), 8 * u, box.height()), CENTRE, entry.key)
+        text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
+        half = text.height() / 2
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(entry.name, 3.0, text.width(), bold=True))
+        put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, entry.name)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.fit(entry.use, 1.9, text.width()))
+        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, entry.use)

@@ -1,0 +1,311 @@
+"""The main window: takes the keys, polls the snapshot once a frame, and lets go of everything it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QEvent, Qt, QTimer
+from PySide6.QtGui import (
+    QCloseEvent,
+    QInputEvent,
+    QKeyEvent,
+    QPointerEvent,
+    QResizeEvent,
+    QShowEvent,
+)
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.desk.desk import BY_SCREEN, Desk
+from app.desk.prompt_line import MOVING, UNDER_WAY
+from app.desk.translation import tr
+from app.screen.event_times import EventTimes
+from app.screen.keyboard import Keyboard, key_of, letter_of
+from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
+from app.screen.language import speak_in, spoken
+from app.screen.look import Look, dress
+from app.screen.page_table import AUTOMATIC
+from app.screen.panel import FingerPanel
+from app.screen.theme import PALETTES
+from app.screen.window_frame import Frame
+from app.screen.window_layout import LEAST
+
+FRAME_MS = 16  # at most 60 pictures a second
+
+
+def _nobody() -> None:
+    """Nobody has to be told."""
+
+
+class MainWindow(QWidget):
+    """One page at a time; without a desk yet it shows that it is starting."""
+
+    def __init__(self, look: Look, closed: Callable[[], None] = _nobody) -> None:
+        super().__init__()
+        self._closed = closed
+        self._meant = False  # to leave, whatever is lost by it
+        self.look = look
+        self.frame: Frame | None = None
+        self._keys: dict[str, Callable[[], None]] = {}
+        self.times = EventTimes()
+        self.keyboard = Keyboard(self, self.times)
+        self._page = ""  # that has the keyboard
+        self._timer = QTimer(self)
+        self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.timeout.connect(self._tick)
+        self.setWindowTitle("TurnDesk")
+        self.setMinimumSize(*LEAST)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+
+    def open_desk(self, desk: Desk) -> None:
+        """Put the desk on the screen and begin to poll it."""
+        self.frame = Frame(self.look, desk, self.press, self)
+        self._keys = self._table(desk)
+        desk.stop_held = self.keyboard.stop_held
+        desk.hands.ago = lambda: self.times.clock() - self.keyboard.now
+        self.frame.setGeometry(self.rect())
+        self.refresh()
+        self.frame.show()
+        self.setFocus()
+        self._timer.start(FRAME_MS)
+
+    def _tick(self) -> None:
+        self.times.frame()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Once a frame."""
+        if self.frame is not None:
+            self._look_at_hands(self.frame)
+            self.frame.refresh()
+            self._wear(self.frame)
+
+    def _look_at_hands(self, frame: Frame) -> None:
+        """What is held is held really, and for this page; a release that was lost is made up for."""
+        if self._page != frame.page.NAME:
+            self._page = frame.page.NAME
+            self.keyboard.away()
+        self.keyboard.look()
+        if QApplication.mouseButtons() is not Qt.MouseButton.NoButton and not self.keyboard.button_held():
+            for panel in frame.findChildren(FingerPanel):
+                panel.mouse_is_up()
+
+    def press(self, key: str) -> None:
+        """Do what a key does; fingers on the screen come here too."""
+        frame = self.frame
+        action = (frame.doings().get(key) if frame else None) or self._keys.get(key)
+        if action is not None:
+            if frame is not None:
+                frame.page.pressed()
+            action()
+            self.refresh()
+        elif frame is not None and key.startswith("F") and key[1:].isdecimal():
+            frame.desk.say(tr("{key} HAS NO FUNCTION ON THIS PAGE").format(key=key))
+            self.refresh()
+
+    def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
+        return {
+            "S": partial(desk.switch, "single_block"),
+            "O": partial(desk.switch, "optional_stop"),
+            "C": partial(desk.switch, "cycle_repeat"),
+            "P": partial(desk.switch, "no_count"),
+            "/": desk.block_delete,
+            "H": desk.feed_hold,
+            "R": desk.reset,
+            "D": desk.enable,
+            "E": desk.estop,
+            "U": desk.twist_out,
+            ANSWER: desk.answer,
+            "A": desk.turn_spindle_switch,
+            ",": partial(desk.hands.turn_spindle_pot, -1),
+            ".": partial(desk.hands.turn_spindle_pot, 1),
+            "+": partial(desk.override, 1),
+            "-": partial(desk.override, -1),
+            "T": self.other_theme,
+            "Y": desk.yes,
+            "Esc": self._escape,
+        }
+
+    def other_theme(self) -> None:
+        """Dark to light and back, for a shop with the doors open."""
+        if self.frame is not None:
+            self.frame.desk.choose_setting("theme", self.frame.desk.settings.following("theme"))
+
+    def _wear(self, frame: Frame) -> None:
+        """The colours and the language that are chosen now."""
+        settings = frame.desk.settings.now
+        if settings.language != spoken():
+            speak_in(settings.language)
+            frame.dress()
+        if settings.theme != self.look.palette.name:
+            self.look.repaint(PALETTES[settings.theme])
+            dress(self.look.palette)
+            frame.dress()
+
+    def _escape(self) -> None:
+        """One step back: in the page, then a question or the feed, and from the last step to Automatic."""
+        frame = self.frame
+        if frame is not None and not (frame.escape() or frame.desk.escape()):
+            frame.go(AUTOMATIC)
+
+    def put_away(self) -> None:
+        """Stop polling and go, without asking; for scripts that only look."""
+        self._timer.stop()
+        self.hide()
+        self.deleteLater()
+
+    # --- what the keyboard does at once --------------------------------------------------------------
+
+    def hold(self, by: str = "") -> None:
+        """Feed hold, whatever page, field or question has the keyboard; ``by`` which key, for the log."""
+        if self.frame is not None:
+            self.frame.page.pressed()
+            self.frame.desk.feed_hold(by or BY_SCREEN)
+            self.refresh()
+
+    def estop(self) -> None:
+        """E-stop, likewise."""
+        if self.frame is not None:
+            self.frame.page.pressed()
+            self.frame.desk.estop()
+            self.refresh()
+
+    def moving(self) -> bool:
+        """Whether something moves."""
+        return self.frame is not None and self.frame.desk.snapshot().state in MOVING
+
+    def is_text(self, key: str) -> bool:
+        """Whether a character goes to an entry now."""
+        return self.frame is not None and self.frame.is_text(key)
+
+    def forgotten(self, seconds: float) -> None:
+        """What was pressed while the screen stood still does nothing."""
+        if self.frame is not None:
+            text = tr("THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN")
+            self.frame.desk.say(text.format(seconds=f"{seconds:.1f}"))
+
+    def stops_at(self, event: QInputEvent) -> bool:
+        """Whether a press is on something that stops the machine."""
+        dock = self.frame.dock if self.frame is not None else None
+        if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
+            return False
+        places = (dock.mapFromGlobal(point.globalPosition()) for point in event.points())
+        return any(dock.stops_at(place) for place in places)
+
+    # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def showEvent(self, _event: QShowEvent) -> None:
+        """There is a window now whose keys can be watched."""
+        window = self.windowHandle()
+        if window is not None:
+            self.keyboard.watch(window)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """A key goes down. A key that repeats by being held counts once, where once is what is meant."""
+        frame = self.frame
+        if frame is None or self._answered(frame, event):
+            return
+        if frame.page.key_down(event):
+            self.refresh()
+            return
+        if not event.isAutoRepeat() and event.key() in PALMS and not frame.automatic.files.isVisible():
+            self._palm(PALMS[Qt.Key(event.key())], down=True)
+            return
+        if self._typed(frame, event) or self._kept_from(frame, event):
+            return
+        name = name_of(key_of(event), event.modifiers())
+        if name and (name in REPEATING or not event.isAutoRepeat()):
+            self.press(name)
+
+    def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
+        if frame.desk.asked not in {letter_of(event), typed_of(event)} - {""}:
+            return False
+        if not event.isAutoRepeat() and self.keyboard.alone(event):
+            self.press(ANSWER)
+        return True
+
+    def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether an entry has the keyboard and does not take a character: it is no other key then."""
+        text = event.text()
+        stops = text == " " or letter_of(event) in STOPPING
+        if not text.isprintable() or not text or stops or not frame.has_field():
+            return False
+        if not event.isAutoRepeat():
+            frame.desk.say(tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text))
+            self.refresh()
+        return True
+
+    def _typed(self, frame: Frame, event: QKeyEvent) -> bool:
+        """Whether the page has taken the key as text."""
+        key = typed_of(event)
+        if not key or (event.isAutoRepeat() and key not in TYPED_AGAIN) or not frame.page.typed(key):
+            return False
+        self.refresh()
+        return True
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """A palm, or what a page holds, is let go."""
+        if self.frame is not None:
+            self.frame.page.key_up(event)
+        if not event.isAutoRepeat() and event.key() in PALMS:
+            self._palm(PALMS[Qt.Key(event.key())], down=False)
+
+    def _palm(self, side: str, *, down: bool) -> None:
+        if self.frame is not None:
+            desk = self.frame.desk
+            if desk.two_hand:
+                desk.hands.palm(side, down)
+            elif down and side == "right":
+                desk.start_button()
+            self.refresh()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Losing the keyboard lets every held button go: the release would be somebody else's to see."""
+        if event.type() == QEvent.Type.ActivationChange:
+            if self.isActiveWindow():
+                self.keyboard.back()
+            else:
+                self.let_go()
+        super().changeEvent(event)
+
+    def let_go(self) -> None:
+        """Hands off everything that is held."""
+        self.keyboard.away()
+        if self.frame is not None:
+            if self.frame.dock is not None:
+                self.frame.dock.let_go()
+            self.frame.desk.hands.let_go()
+            self.frame.page.let_go()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """The frame fills the window."""
+        if self.frame is not None:
+            self.frame.setGeometry(self.rect())
+
+    def _may_close(self, frame: Frame) -> bool:
+        return self._meant or frame.desk.may_close(self._close)
+
+    def _close(self) -> None:
+        """Although something is lost by it."""
+        self._meant = True
+        self.close()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Not while a program is under way."""
+        frame = self.frame
+        if frame is not None and frame.desk.snapshot().state in UNDER_WAY:
+            frame.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
+            self.refresh()
+            event.ignore()
+            return
+        if frame is not None and not (
+            frame.page.leave() and (self._meant or frame.desk.may_close(self._close))
+        ):
+            self.refresh()
+            event.ignore()
+            return
+        self._timer.stop()
+        self.let_go()
+        event.accept()
+        self._closed()

@@ -1,0 +1,138 @@
+"""What a page of the main window is, and where another one is plugged in.
+
+A page is a ``Page`` (a QWidget) that fills the room between the always visible parts: title, position, feed,
+spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug one in, add a line to
+``MAKERS`` in ``app.screen.page_table``: its name there, and what makes it of a ``Host``. It is made when
+it is first opened. What a page gives:
+
+``NAME``      its name in ``app.screen.page_table``; the title line shows it.
+``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
+``labels()``  the same, where they change with what the page is doing.
+``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
+``doings()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own keys; H,
+              E, D, R, A and the pots work on every page, as does F1.
+``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
+``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
+``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
+``typed(k)``  takes a key before it means anything else: one character, or ``Enter Back Delete Tab Up Down``,
+              ``Page up``, ``Page down``; True when it was taken. A stock widget
+              that has the focus takes its keys by itself.
+``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
+``has_field()`` whether an entry has the keyboard: characters that it does not take mean nothing then.
+``asks()``    a question of its own: it goes before anything else on the prompt line.
+``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
+``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
+``opened()``  it has come up; it may take the focus (the window has it otherwise).
+``leave()``   it is about to go, or the window is about to close; False keeps it (it then says why by
+              ``desk.say``).
+``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
+              where it has neither the Automatic page comes up.
+``refresh``   once a frame while it is shown: snapshot, view and loaded program of the same instant.
+``dress()``   the colours have changed; painted parts are updated by the frame anyway.
+
+``host.go(name)`` opens another page, ``host.press(key)`` does what a key does (for fingers), and
+``host.desk`` is the model. Geometry: the frame sets it; lay out in ``resizeEvent``, in units of ``look.u``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.desk import Desk
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.screen.look import Look
+from core.executor.snapshot import Snapshot
+
+Doings = Mapping[str, Callable[[], None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """What the frame gives to its pages."""
+
+    look: Look
+    desk: Desk
+    press: Callable[[str], None]
+    go: Callable[[str], bool]
+    clear_away: Callable[[], None]  # close the log that lies over the page
+
+
+class Page(QWidget):
+    """A page that does nothing yet; see the module for what each part means."""
+
+    NAME: ClassVar[str]
+    LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
+    STARTS: ClassVar[bool] = False
+
+    def __init__(self, host: Host, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.host, self.look, self.desk = host, host.look, host.desk
+        self.hide()
+
+    def labels(self) -> tuple[str, ...]:
+        """The labels of this moment; asked for once a frame."""
+        return self.LABELS
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        return {}
+
+    def key_down(self, _event: QKeyEvent) -> bool:
+        """Take a key as it goes down; False lets it mean what it means elsewhere."""
+        return False
+
+    def key_up(self, _event: QKeyEvent) -> None:
+        """A key comes up."""
+
+    def pressed(self) -> None:
+        """A key or a finger is about to do something else, here or beside the page."""
+
+    def let_go(self) -> None:
+        """The keyboard has gone elsewhere."""
+
+    def typed(self, _key: str) -> bool:
+        """Take a typed key; False leaves it to the window."""
+        return False
+
+    def takes(self, _key: str) -> bool:
+        """Whether a character is text here."""
+        return False
+
+    def has_field(self) -> bool:
+        """Whether an entry of the page has the keyboard."""
+        return False
+
+    def asks(self) -> str:
+        """A question of the page's own, which nothing hides; empty without one."""
+        return ""
+
+    def prompt(self) -> str:
+        """Empty: the desk's standing prompt."""
+        return ""
+
+    def opens(self) -> bool:
+        """Whether it may come up now."""
+        return True
+
+    def opened(self) -> None:
+        """It is in front now."""
+
+    def leave(self) -> bool:
+        """Whether it may go."""
+        return True
+
+    def escape(self) -> bool:
+        """Whether Esc has closed something here."""
+        return False
+
+    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """Show this instant."""
+
+    def dress(self) -> None:
+        """Other colours are in force."""

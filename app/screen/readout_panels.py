@@ -1,0 +1,413 @@
+"""Position, feed, spindle, tool, parts and times: large on the Automatic page, in low rows elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk import formats
+from app.desk.formats import percent
+from app.desk.machine_status import MachineStatus, Tone
+from app.desk.readouts import AxisFigures, FeedFigures, PositionFigures, SpindleFigures
+from app.desk.translation import tr
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, draw_sign, put, put_raw
+from app.screen.panel import Panel
+
+FIGURES = 9  # −12.34567
+LATHE_ROWS = 3
+ROOMY = 6.3  # units of height that figures of the full size need
+
+
+class PositionPanel(Panel):
+    """The readout. X is marked by a filled Ø or a hollow R, so that one is never taken for the other."""
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self._view: PositionFigures | None = None
+
+    @property
+    def readout(self) -> str:
+        """What the large figures are."""
+        return self._view.readout.value if self._view else ""
+
+    def show_position(self, view: PositionFigures) -> None:
+        """All figures at once: they belong to one instant and one unit."""
+        if view != self._view:
+            self._view = view
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        view = self._view
+        if view is None:
+            self.frame(painter, "POSITION")
+            return
+        u = self.look.u
+        self.frame(painter, f"{view.readout.value}  ·  {view.unit}  ·  {view.x_words}")
+        self._heading(painter, view)
+        room = QRectF(0, 3.0 * u, self.width(), self.height() - 3.6 * u)
+        high = min(room.height() / len(view.axes), 10.5 * u)
+        top = room.center().y() - high * len(view.axes) / 2
+        for row, axis in enumerate(view.axes):
+            self._row(painter, QRectF(0, top + row * high, room.width(), high), axis)
+            if row:
+                line = QRectF(1.2 * u, top + row * high, room.width() - 2.4 * u, max(1.0, 0.08 * u))
+                painter.fillRect(line, self.look.colour("key"))
+
+    def _heading(self, painter: QPainter, view: PositionFigures) -> None:
+        look, u = self.look, self.look.u
+        painter.setFont(look.font(1.5, bold=True))
+        painter.setPen(look.colour("soft"))
+        put(painter, QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u), RIGHT, view.beside.value)
+
+    def _row(self, painter: QPainter, row: QRectF, axis: AxisFigures) -> None:
+        look, u = self.look, self.look.u
+        share = self._share(row)
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(5.6 * share, bold=True))
+        put(painter, QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), LEFT, axis.name)
+        if axis.mark:
+            self._mark(painter, QRectF(7.2 * u, row.center().y() - 2.8 * u, 5.2 * u, 5.6 * u), axis.mark)
+        painter.setPen(look.colour("text" if axis.homed else "soft"))
+        painter.setFont(look.font(7.0 * share, bold=True))
+        put(painter, QRectF(12.6 * u, row.y(), 39.0 * u, row.height()), RIGHT, axis.value)
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.font(2.7 * max(share, 0.8)))
+        put(painter, QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height()), RIGHT, axis.beside)
+        if not axis.homed:
+            painter.setPen(look.colour("alarm"))
+            painter.setFont(look.font(1.5, bold=True))
+            at = QRectF(52.4 * u, row.y() + 0.6 * u, self.width() - 54.0 * u, 2.0 * u)
+            put(painter, at, RIGHT, "NOT HOMED")
+
+    def _share(self, row: QRectF) -> float:
+        """Of the full size: five axes of a mill leave less room than three of a lathe."""
+        few = self._view is None or len(self._view.axes) <= LATHE_ROWS
+        return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
+
+    def _mark(self, painter: QPainter, box: QRectF, mark: str) -> None:
+        look, u = self.look, self.look.u
+        filled = mark == "Ø"
+        painter.setPen(look.pen("mark", 0.4))
+        painter.setBrush(look.colour("mark") if filled else Qt.BrushStyle.NoBrush)
+        painter.drawRect(box.adjusted(0.2 * u, 0.2 * u, -0.2 * u, -0.2 * u))
+        painter.setPen(look.colour("on_mark" if filled else "mark"))
+        painter.setFont(look.font(4.6, bold=True))
+        put(painter, box, CENTRE, mark)
+
+
+# --- Feed, spindle, tool and times: small instruments of one shape.
+
+
+class Gauge(Panel):
+    """Draws from one frozen value; another value redraws it."""
+
+    def __init__(self, look: Look, title: str, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.title = title
+        self.value: object = None
+
+    def show_value(self, value: object) -> None:
+        """Show this; the same value again costs a comparison."""
+        if value != self.value:
+            self.value = value
+            self.update()
+
+    def row(self, y: float, high: float) -> QRectF:
+        """A row inside the frame; units."""
+        u = self.look.u
+        return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, high * u)
+
+    def label(self, painter: QPainter, at: QRectF, text: str, flags: Qt.AlignmentFlag = LEFT) -> None:
+        """A small word that names a figure."""
+        painter.setPen(self.look.colour("soft"))
+        painter.setFont(self.look.fit(text, 1.6, at.width(), bold=True))
+        put(painter, at, flags, text)
+
+    def figure(
+        self, painter: QPainter, at: QRectF, text: str, size: float, flags: Qt.AlignmentFlag = RIGHT
+    ) -> None:
+        """A figure."""
+        painter.setPen(self.look.colour("text"))
+        painter.setFont(self.look.fit(text, size, at.width(), bold=True))
+        put(painter, at, flags, text)
+
+    def bar(self, painter: QPainter, at: QRectF, fraction: float, most: float) -> None:
+        """An override: a bar with its figure; anything but 100 % stands out."""
+        look, u = self.look, self.look.u
+        plain = abs(fraction - 1.0) < 0.005
+        figure = QRectF(at.right() - 9 * u, at.y(), 9 * u, at.height())
+        track = QRectF(at.x(), at.center().y() - 0.6 * u, at.width() - 9.6 * u, 1.2 * u)
+        painter.fillRect(track, look.colour("key"))
+        share = max(0.0, min(1.0, fraction / most))
+        filled = QRectF(track.x(), track.y(), track.width() * share, track.height())
+        painter.fillRect(filled, look.colour("accent" if plain else "pause"))
+        full = track.x() + track.width() / most
+        painter.fillRect(QRectF(full - 0.1 * u, track.y() - 0.4 * u, 0.2 * u, 2.0 * u), look.colour("text"))
+        painter.setPen(look.colour("text" if plain else "pause"))
+        painter.setFont(look.font(2.1, bold=True))
+        put(painter, figure, RIGHT, formats.percent(fraction))
+
+
+class FeedGauge(Gauge):
+    """Programmed feed large, actual feed and override below."""
+
+    def draw(self, painter: QPainter) -> None:
+        view = self.value
+        if not isinstance(view, FeedFigures):
+            return
+        top = self.row(2.3, 4.8)
+        unit = QRectF(top.right() - 7.6 * self.look.u, top.y(), 7.6 * self.look.u, top.height())
+        self.figure(painter, top.adjusted(0, 0, -8.2 * self.look.u, 0), view.value, 4.2)
+        self.label(painter, unit.adjusted(0, 1.0 * self.look.u, 0, 1.0 * self.look.u), view.unit)
+        actual = self.row(7.4, 2.8)
+        self.label(painter, actual, "ACTUAL")
+        self.figure(painter, actual.adjusted(7 * self.look.u, 0, -8.2 * self.look.u, 0), view.actual, 2.5)
+        self.label(painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.actual_unit)
+        self.bar(painter, self.row(11.2, 2.8), view.override, 1.5)
+
+
+class SpindleGauge(Gauge):
+    """Commanded and actual rpm, surface speed, override and its switch."""
+
+    def draw(self, painter: QPainter) -> None:
+        view = self.value
+        if not isinstance(view, SpindleFigures):
+            return
+        u = self.look.u
+        top = self.row(2.3, 4.8)
+        self.label(painter, QRectF(top.x(), top.y() - u, 11.6 * u, top.height()), view.direction)
+        self._switch(painter, QRectF(top.x(), top.y() + 2.8 * u, 9.2 * u, 2.0 * u), view)
+        unit = QRectF(top.right() - 5.0 * u, top.y() + u, 5.0 * u, top.height())
+        self.figure(painter, top.adjusted(12 * u, 0, -5.6 * u, 0), view.rpm, 4.2)
+        self.label(painter, unit, "rpm")
+        actual = self.row(7.4, 2.8)
+        half = actual.width() * 0.50
+        self.label(painter, actual, "ACTUAL")
+        self.figure(
+            painter, QRectF(actual.x() + 7 * u, actual.y(), half - 7 * u, actual.height()), view.actual, 2.5
+        )
+        surface = QRectF(actual.x() + half + 1.6 * u, actual.y(), half - 1.6 * u, actual.height())
+        self.label(painter, surface, view.surface_label)
+        self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
+        self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
+
+    def _switch(self, painter: QPainter, box: QRectF, view: SpindleFigures) -> None:
+        look = self.look
+        painter.fillRect(box, look.colour("key" if view.auto else "alarm"))
+        painter.setPen(look.colour("text" if view.auto else "on_state"))
+        text = "AUTO" if view.auto else "SWITCH OFF"
+        painter.setFont(look.fit(text, 1.5, box.width() - 0.4 * look.u, bold=True))
+        put(painter, box, CENTRE, text)
+
+
+class ToolGauge(Gauge):
+    """Active tool and secondary offset."""
+
+    def draw(self, painter: QPainter) -> None:
+        if not isinstance(self.value, tuple):
+            return
+        tool, secondary = self.value
+        room = self.inside()
+        half = room.width() / 2
+        left = QRectF(room.x(), room.y(), half, room.height())
+        for at, text in ((left, tool), (left.translated(half, 0), secondary)):
+            self.figure(painter, at, text, 4.6, CENTRE)
+
+
+class TimesGauge(Gauge):
+    """Part count, time of this cycle, time left."""
+
+    def draw(self, painter: QPainter) -> None:
+        if not isinstance(self.value, tuple):
+            return
+        room = self.inside()
+        column = room.width() / len(self.value)
+        longest = max((text for _name, text in self.value), key=len)
+        font = self.look.fit(longest, 2.6, column - 0.6 * self.look.u, bold=True)
+        for number, (name, text) in enumerate(self.value):
+            at = QRectF(room.x() + number * column, room.y(), column - 0.6 * self.look.u, room.height())
+            self.label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, CENTRE)
+            painter.setFont(font)
+            painter.setPen(self.look.colour("text"))
+            put(painter, at.adjusted(0, room.height() * 0.36, 0, 0), CENTRE, text)
+
+
+# --- Position, feed, spindle and tool in one low row, above every page that has them not large.
+
+
+LATHE_COLUMNS = 3  # X, Z and C; a mill has more
+
+
+class HeadLine(Panel):
+    """Everything of one snapshot; X keeps its filled Ø or hollow R."""
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.view: MachineStatus | None = None
+        self._shown: object = None
+
+    def show_view(self, view: MachineStatus) -> None:
+        """Redraw when one of its figures has changed."""
+        self.view = view
+        shown = (view.position, view.feed, view.spindle, view.tool, view.secondary)
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        view = self.view
+        if view is None:
+            return
+        position = view.position
+        self.frame(painter, f"{position.readout.value}  ·  {position.unit}  ·  {position.x_words}")
+        u, room = (
+            self.look.u,
+            self.area().adjusted(
+                1.2 * self.look.u, 2.2 * self.look.u, -1.2 * self.look.u, -0.6 * self.look.u
+            ),
+        )
+        columns = max(LATHE_COLUMNS, len(position.axes))
+        share = (0.58 if columns == LATHE_COLUMNS else 0.7) * room.width() / columns
+        for number, axis in enumerate(position.axes):
+            at = QRectF(room.x() + number * share, room.y(), share - 1.4 * u, room.height())
+            self._axis(painter, at, axis)
+        taken = columns * share
+        rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
+        self._figures(painter, rest, view)
+
+    def _axis(self, painter: QPainter, at: QRectF, axis: AxisFigures) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.8, bold=True))
+        put(painter, QRectF(at.x(), at.y(), 3 * u, at.height()), LEFT, axis.name)
+        if axis.mark:
+            box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
+            painter.setPen(look.pen("mark", 0.25))
+            painter.setBrush(look.colour("mark") if axis.mark == "Ø" else Qt.BrushStyle.NoBrush)
+            painter.drawRect(box)
+            painter.setPen(look.colour("on_mark" if axis.mark == "Ø" else "mark"))
+            painter.setFont(look.font(2.4, bold=True))
+            put(painter, box, CENTRE, axis.mark)
+        painter.setPen(look.colour("text" if axis.homed else "alarm"))
+        room = at.adjusted((6.4 if axis.mark else 3.2) * u, 0, 0, 0)
+        painter.setFont(look.fit(axis.value, 3.4, room.width(), bold=True))
+        put(painter, room, RIGHT, axis.value)
+
+    def _figures(self, painter: QPainter, room: QRectF, view: MachineStatus) -> None:
+        look, u = self.look, self.look.u
+        feed, spindle = view.feed, view.spindle
+        cells = (
+            (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.42),
+            (
+                f"SPINDLE {percent(spindle.override)}",
+                f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
+                0.36,
+            ),
+            ("TOOL", f"{view.tool} {view.secondary}", 0.22),
+        )
+        x = room.x() + 1.6 * u
+        for label, figure, share in cells:
+            wide = share * (room.width() - 1.6 * u)
+            painter.setPen(look.colour("soft"))
+            painter.setFont(look.fit(label, 1.5, wide - u, bold=True))
+            put(painter, QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), LEFT, label)
+            painter.setPen(look.colour("text"))
+            painter.setFont(look.fit(figure, 2.3, wide - u, bold=True))
+            put(painter, QRectF(x, room.y() + 1.5 * u, wide - u, room.height() - 1.7 * u), LEFT, figure)
+            x += wide
+
+
+# --- What of the run stays in sight on pages other than Automatic: comment, line and block, parts, times.
+
+
+Times = Sequence[tuple[str, str]]
+COMMENT, BLOCK = 0.38, 0.24  # shares of the width; parts and times have the rest
+
+
+class RunLine(Panel):
+    """One low row at the lower left, where the Automatic page has its comment."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.comment, self.block, self.message = "", "", ""
+        self.times: Times = ()
+        self.stop = ""  # number and words of what stopped the machine
+        self._tone = ""
+
+    def show_run(self, view: MachineStatus, times: Times) -> None:
+        """Redraw when something of it has changed."""
+        block = f"L{view.line}  {view.block_text}" if view.line else ""
+        shown = (view.comment, block, view.message, times, stop_words(view), view.tone.value)
+        if shown != (self.comment, self.block, self.message, self.times, self.stop, self._tone):
+            self.comment, self.block, self.message, self.times, self.stop, self._tone = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        u, wide, high = self.look.u, float(self.width()), float(self.height())
+        if self.stop:
+            self._alarm(painter)
+            return
+        comment = QRectF(1.4 * u, 0, COMMENT * wide - 2 * u, high)
+        block = QRectF(COMMENT * wide, 0, BLOCK * wide - u, high)
+        if self.message:
+            self._stop(painter, comment.united(block))
+        else:
+            self._text(painter, comment, "accent", self.comment)
+            self._text(painter, block, "text", self.block)
+        self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
+
+    def _alarm(self, painter: QPainter) -> None:
+        """Over all of it: nothing runs, and this has to be read from where the machine is."""
+        look, u = self.look, self.look.u
+        painter.fillRect(self.area(), look.colour(self._tone))
+        ink = look.colour("on_state")
+        draw_sign(painter, QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u), Tone(self._tone), ink)
+        painter.setPen(ink)
+        room = self.area().adjusted(4.4 * u, 0, -u, 0)
+        painter.setFont(look.fit(self.stop, 2.5, room.width(), bold=True))
+        put(painter, room, LEFT, self.stop)
+
+    def _text(self, painter: QPainter, box: QRectF, ink: str, text: str) -> None:
+        painter.setPen(self.look.colour(ink))
+        painter.setFont(self.look.fit(text, 2.0, box.width(), bold=ink == "text"))
+        put_raw(painter, box, LEFT, text)
+
+    def _stop(self, painter: QPainter, box: QRectF) -> None:
+        """What the operator must do now: filled, over comment and block, as long as an M00 or M01 lasts."""
+        painter.fillRect(box.adjusted(-1.4 * self.look.u, 0, 0, 0), self.look.colour("pause"))
+        painter.setPen(self.look.colour("on_state"))
+        painter.setFont(self.look.fit(self.message, 2.4, box.width(), bold=True))
+        put_raw(painter, box, LEFT, self.message)
+
+    def _times(self, painter: QPainter, room: QRectF) -> None:
+        """Name and figure beside each other, each in a column of its own."""
+        u, share = self.look.u, room.width() / max(1, len(self.times))
+        for number, (name, figure) in enumerate(self.times):
+            box = QRectF(room.x() + number * share, 0, share - 0.8 * u, room.height())
+            half = 0.46 * box.width()
+            painter.setPen(self.look.colour("soft"))
+            painter.setFont(self.look.fit(tr(name), 1.5, half, bold=True))
+            put(painter, QRectF(box.x(), 0, half, box.height()), RIGHT, name)
+            painter.setPen(self.look.colour("text"))
+            painter.setFont(self.look.fit(figure, 2.0, box.width() - half - u, bold=True))
+            put_raw(
+                painter, QRectF(box.x() + half + u, 0, box.width() - half - u, box.height()), LEFT, figure
+            )
+
+
+def stop_words(view: MachineStatus) -> str:
+    """Number and words of the alarm that came first, of the E-stop, or of a hold that nobody pressed."""
+    first = view.alarms[0] if view.alarms else view.stop
+    if first is None:
+        return ""
+    parts = [f"ALARM {first.number}: {first.text}" if view.alarms else f"STOP {first.number}: {first.text}"]
+    if first.line:
+        parts.append(f"LINE {first.line}")
+    if len(view.alarms) > 1:
+        parts.append(f"AND {len(view.alarms) - 1} MORE")
+    return "  ·  ".join(parts)

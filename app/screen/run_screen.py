@@ -1,0 +1,128 @@
+"""The operator screen as a program: the window first, then the machine behind it, then a program."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+from collections.abc import Callable
+from types import TracebackType
+
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
+
+from app.desk.desk import Desk
+from app.screen.look import Look, dress, load_fonts
+from app.screen.main_window import MainWindow
+from app.screen.theme import PALETTES
+
+BuildDesk = Callable[[], Desk]
+_log = logging.getLogger(__name__)
+ENDING = (signal.SIGINT, signal.SIGTERM)  # the machine is stopped and the threads are ended, as by closing
+START_SIZE = (1280, 720)
+
+
+def run_screen(
+    machine: str | None = None,
+    program: str | None = None,
+    offsets: str | None = None,
+    theme: str = "dark",
+    build: BuildDesk | None = None,
+) -> int:
+    """Show the screen until it is closed; the exit status.
+
+    ``machine`` is a machine file, ``program`` a file to load at the start, ``offsets`` an offsets file that
+    takes the place of the store's offsets, ``build`` makes the desk (default:
+    the composed one). What building raises is raised here, after the window is gone.
+    """
+    app = _application(theme)
+    app.setQuitOnLastWindowClosed(False)  # it posts a quit that would outlive this loop
+    window = MainWindow(Look(PALETTES[theme]), app.quit)
+    window.resize(*START_SIZE)
+    screen = app.primaryScreen()
+    if screen is not None and screen.availableGeometry().width() < 2 * START_SIZE[0]:
+        window.showMaximized()
+    else:
+        window.show()
+    start = _Start(window, build or (lambda: _composed(machine, offsets)), program)
+    before, sys.excepthook = sys.excepthook, start.mistake
+    # Not quit: a window may refuse to close while a program is under way, a computer going down cannot wait.
+    handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in ENDING]
+    QTimer.singleShot(0, start.run)
+    status = app.exec()
+    sys.excepthook = before
+    for number, handler in handlers:
+        signal.signal(number, handler)
+    window.hide()
+    window.deleteLater()
+    start.close()
+    return status
+
+
+class _Start:
+    """What comes after the first picture of the window."""
+
+    def __init__(self, window: MainWindow, build: BuildDesk, program: str | None) -> None:
+        self._window, self._build, self._program = window, build, program
+        self._desk: Desk | None = None
+        self._trouble: Exception | None = None
+
+    def run(self) -> None:
+        """Build the desk and open it; what goes wrong ends the program and is raised by ``close``."""
+        with _Carry(self._failed):
+            desk = self._desk = self._build()
+            self._window.open_desk(desk)
+            desk.begin_with(self._program)
+
+    def _failed(self, error: Exception) -> None:
+        """Nothing may be raised into Qt's loop: it is carried past its end."""
+        self._trouble = error
+        QApplication.exit(1)
+
+    def mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
+        _log.error("the screen has failed", exc_info=(kind, error, trace))
+        if self._desk is not None:
+            self._desk.say(f"A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: {kind.__name__}: {error}")
+
+    def close(self) -> None:
+        """Stop the machine, end the threads, tell what went wrong."""
+        if self._desk is not None:
+            self._desk.close()
+        if self._trouble is not None:
+            raise self._trouble
+
+
+class _Carry:
+    """A ``with`` block whose failure is handed on instead of being raised where nobody could catch it."""
+
+    def __init__(self, failed: Callable[[Exception], None]) -> None:
+        self._failed = failed
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        if isinstance(error, Exception):
+            self._failed(error)
+            return True
+        return False
+
+
+def _composed(machine: str | None, offsets: str | None) -> Desk:
+    from app.compose.offsets import chosen_offsets
+    from app.compose.screen import build_desk
+    from app.compose.zero_offsets import chosen_zero
+
+    return build_desk(machine, chosen_offsets(offsets), chosen_zero(offsets))
+
+
+def _application(theme: str) -> QApplication:
+    present = QApplication.instance()
+    app = present if isinstance(present, QApplication) else QApplication(sys.argv[:1])
+    app.setApplicationName("TurnDesk")
+    load_fonts()
+    dress(PALETTES[theme])
+    return app

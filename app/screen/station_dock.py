@@ -1,0 +1,245 @@
+"""The operator station of the simulated machine: what stands beside a real lathe, under fingers and keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QFontMetricsF, QPainter, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk import formats
+from app.desk.desk import Desk
+from app.desk.operator_station import OVERRIDE_MOST
+from app.desk.translation import tr
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
+from app.screen.panel import Control, FingerPanel
+from core.executor.snapshot import Snapshot
+
+DRAWN_FOR = 71.6  # units of height; a taller dock gives every row its share
+
+
+class StationDock(FingerPanel):
+    """E-stop, spindle switch, two pots, feed hold and the palms."""
+
+    title = "OPERATOR STATION"
+
+    def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self._desk = desk
+        self._shown: tuple[object, ...] = ()
+        self._auto = True
+        self._twisting = False
+
+    def show_station(self, snapshot: Snapshot) -> None:
+        """Where its switches and buttons stand."""
+        desk = self._desk
+        self._auto = snapshot.spindle_auto
+        palms = frozenset(desk.hands.palms.down)
+        shown = (desk.hands.estop_pressed, self._auto, desk.hands.spindle_pot, desk.hands.feed_pot, palms)
+        if shown != self._shown:
+            self._shown = shown
+            self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Over a pot the wheel turns it."""
+        steps = 1 if event.angleDelta().y() > 0 else -1
+        if self._feed_box().contains(event.position()):
+            self._desk.override(steps)
+        elif self._spindle_box().contains(event.position()):
+            self._desk.hands.turn_spindle_pot(steps)
+
+    def _row(self, y: float, high: float) -> QRectF:
+        u = self.look.u
+        scale = self.height() / DRAWN_FOR
+        return QRectF(1.4 * u, y * scale, self.width() - 2.8 * u, high * scale)
+
+    def _spindle_box(self) -> QRectF:
+        return self._row(31.4, 5.4)
+
+    def _feed_box(self) -> QRectF:
+        return self._row(40.4, 5.4)
+
+    def draw(self, painter: QPainter) -> None:
+        self.controls.clear()
+        desk = self._desk
+        self._mushroom(painter)
+        self._switch(painter)
+        self._label(
+            painter, self._row(28.6, 2.6), "SPINDLE SPEED", formats.percent(desk.hands.spindle_pot), "text"
+        )
+        self._pot(painter, self._spindle_box(), (",", "."), desk.hands.spindle_pot, 1.0)
+        self._label(painter, self._row(37.6, 2.6), "FEED RATE", formats.percent(desk.hands.feed_pot), "text")
+        self._pot(painter, self._feed_box(), ("−", "+"), desk.hands.feed_pot, OVERRIDE_MOST)
+        self._hold(painter)
+        self._start(painter)
+
+    def _label(self, painter: QPainter, at: QRectF, text: str, right: str, colour: str) -> None:
+        painter.setFont(self.look.font(1.6, bold=True))
+        painter.setPen(self.look.colour("soft"))
+        put(painter, at, LEFT, text)
+        painter.setPen(self.look.colour(colour))
+        painter.setFont(self.look.font(2.0, bold=True))
+        put(painter, at, RIGHT, right)
+
+    def _mushroom(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        box, pressed = self._row(2.6, 15.0), self._desk.hands.estop_pressed
+        painter.fillRect(box, look.colour("estop_plate"))
+        side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
+        head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(look.colour("estop_rim"))
+        painter.drawEllipse(head)
+        inset = (2.0 if pressed else 0.8) * u
+        painter.setBrush(look.colour("estop"))
+        painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
+        painter.setPen(look.colour("estop_ink"))
+        for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "SCR LOCK", 1.6, 1.6)):
+            painter.setFont(look.fit(text, size, head.width() - 2.4 * u, bold=True))
+            put(painter, head.translated(0, down * u), CENTRE, text)
+        self.controls.append(Control(head, self._struck, always=True))
+        out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
+        out.setRight(box.right() - 0.6 * u)
+        self._release(painter, out, pressed)
+
+    def _release(self, painter: QPainter, box: QRectF, pressed: bool) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.pen("estop_ground", 0.14))
+        painter.setBrush(look.colour("estop_ground") if pressed else Qt.BrushStyle.NoBrush)
+        painter.drawRect(box)
+        painter.setPen(look.colour("estop_plate" if pressed else "estop_ground"))
+        high = box.height() / 3
+        for number, word in enumerate(("TWIST", "OUT", "U")):
+            painter.setFont(look.fit(word, 1.7, box.width() - 0.6 * u, bold=True))
+            put(painter, QRectF(box.x(), box.y() + number * high, box.width(), high), CENTRE, word)
+        self.controls.append(Control(box, self._twist_begins, None, self._twist_ends))
+
+    def _struck(self, _at: QPointF) -> None:
+        self._twisting = False
+        self._desk.estop()
+
+    def _twist_begins(self, _at: QPointF) -> None:
+        self._twisting = self.fingers == 1
+
+    def _twist_ends(self) -> None:
+        """One finger alone, down and up: a hand that slaps the plate touches both and frees nothing."""
+        if self._twisting and not self.fingers:
+            self._desk.hands.estop(pressed=False)
+
+    def _switch(self, painter: QPainter) -> None:
+        look = self.look
+        self._label(painter, self._row(18.6, 2.6), "SPINDLE SWITCH", "A", "accent")
+        box = self._row(21.4, 5.6)
+        half = box.width() / 2
+        for number, word in enumerate(("OFF", "AUTO")):
+            on = self._auto is (word == "AUTO")
+            at = QRectF(box.x() + number * half, box.y(), half, box.height())
+            painter.setPen(look.pen("frame", 0.14))
+            painter.setBrush(look.colour("lit" if on else "panel"))
+            painter.drawRect(at)
+            painter.setPen(look.colour("on_lit" if on else "soft"))
+            painter.setFont(look.font(2.2, bold=True))
+            put(painter, at, CENTRE, word)
+            self.controls.append(Control(at, self._switcher(word == "AUTO")))
+
+    def _switcher(self, auto: bool) -> Callable[[QPointF], None]:
+        return lambda _at: self._desk.hands.set_spindle_auto(auto)
+
+    def _pot(self, painter: QPainter, box: QRectF, keys: tuple[str, str], value: float, most: float) -> None:
+        look, u = self.look, self.look.u
+        turn = self._desk.override if most > 1 else self._desk.hands.turn_spindle_pot
+        less = QRectF(box.x(), box.y(), 4.6 * u, box.height())
+        more = QRectF(box.right() - 4.6 * u, box.y(), 4.6 * u, box.height())
+        for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
+            painter.fillRect(at, look.colour("key"))
+            painter.setPen(look.colour("accent"))
+            painter.setFont(look.font(2.8, bold=True))
+            put(painter, at, CENTRE, key)
+            self.controls.append(Control(at, self._turner(turn, steps)))
+        track = box.adjusted(5.2 * u, 0, -5.2 * u, 0)
+        painter.setPen(look.pen("frame", 0.14))
+        painter.setBrush(look.colour("panel"))
+        painter.drawRect(track)
+        self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), value / most)
+        setter = self._desk.hands.set_feed_pot if most > 1 else self._desk.hands.set_spindle_pot
+
+        def slide(at: QPointF) -> None:
+            setter(round((at.x() - track.x()) / track.width() * most * 20) / 20)
+
+        self.controls.append(Control(track, slide, slide))
+
+    def _turner(self, turn: Callable[[int], None], steps: int) -> Callable[[QPointF], None]:
+        return lambda _at: turn(steps)
+
+    def _slider(self, painter: QPainter, inner: QRectF, share: float) -> None:
+        look, u = self.look, self.look.u
+        filled = inner.width() * max(0.0, min(1.0, share))
+        painter.fillRect(QRectF(inner.x(), inner.y(), filled, inner.height()), look.colour("here"))
+        x = min(max(inner.x() + filled - 0.5 * u, inner.x()), inner.right() - u)
+        painter.fillRect(QRectF(x, inner.y(), u, inner.height()), look.colour("accent"))
+
+    def _hold(self, painter: QPainter) -> None:
+        look, u, desk = self.look, self.look.u, self._desk
+        box = self._row(47.4, 7.0)
+        painter.setPen(look.pen("pause", 0.3))
+        painter.setBrush(look.colour("panel"))
+        painter.drawRect(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u))
+        inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
+        painter.setPen(look.colour("text"))
+        font = look.font(2.3, bold=True)
+        painter.setFont(font)
+        room = inner.adjusted(0, 0, -3.0 * u, 0)
+        words = tr("FEED HOLD")
+        wide = QFontMetricsF(font).horizontalAdvance(words) > room.width()
+        lines = words.split(" ", 1) if wide else [words]
+        high = min(room.height() / len(lines), 3.0 * u)
+        top = room.center().y() - high * len(lines) / 2
+        for number, line in enumerate(lines):
+            put(painter, QRectF(room.x(), top + number * high, room.width(), high), LEFT, line)
+        painter.setPen(look.colour("accent"))
+        painter.setFont(look.font(2.2, bold=True))
+        put(painter, QRectF(inner.x(), inner.y(), inner.width(), inner.height() / 2), RIGHT, "H")
+        painter.setFont(look.font(1.5, bold=True))
+        half = inner.height() / 2
+        put(painter, QRectF(inner.x(), inner.y() + half, inner.width(), half), RIGHT, "PAUSE")
+        press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
+        self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
+
+    def _start(self, painter: QPainter) -> None:
+        look, desk = self.look, self._desk
+        head = self._row(55.4, 2.6)
+        painter.setPen(look.colour("soft"))
+        text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
+        painter.setFont(look.fit(text, 1.6, head.width(), bold=True))
+        put(painter, head, LEFT, text)
+        box = self._row(58.2, 12.4)
+        if not desk.two_hand:
+            self._palm(painter, box, "F12", down=False)
+            self.controls.append(Control(box, lambda _at: desk.start_button()))
+            return
+        half = box.width() / 2
+        for number, (side, key) in enumerate((("left", "F11"), ("right", "F12"))):
+            at = QRectF(box.x() + number * half, box.y(), half, box.height())
+            self._palm(painter, at, key, side in desk.hands.palms.down)
+            self.controls.append(self._palm_control(at, side))
+
+    def _palm_control(self, at: QRectF, side: str) -> Control:
+        press, release = (partial(self._desk.hands.palm, side, down) for down in (True, False))
+        return Control(at, lambda _at: press(), None, release)
+
+    def _palm(self, painter: QPainter, box: QRectF, key: str, down: bool) -> None:
+        look, u = self.look, self.look.u
+        size = min(box.width(), box.height()) - 0.8 * u
+        head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
+        painter.setPen(look.pen("run", 0.3))
+        painter.setBrush(look.colour("key"))
+        painter.drawEllipse(head)
+        inset = (1.7 if down else 0.9) * u
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(look.colour("lit" if down else "run"))
+        painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
+        painter.setPen(look.colour("on_lit" if down else "on_state"))
+        painter.setFont(look.font(2.3, bold=True))
+        put(painter, head, CENTRE, key)

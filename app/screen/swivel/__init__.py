@@ -1,1 +1,0 @@
-"""The 3-D view of a mill with rotary axes."""

@@ -1,0 +1,388 @@
+"""SEARCHTO without Qt: a line is chosen, its state rebuilt, the restart confirmed, proved and started."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass, field, replace
+from enum import Enum, auto
+from typing import TYPE_CHECKING
+
+from app.desk.latest import Watch
+from app.desk.program_loading import Loaded, Phase, ProgramLoader, Proved
+from app.desk.translation import tr
+from app.searchto.searchto_cursor import Cursor
+from app.searchto.searchto_finder import Answer, Finder
+from app.searchto.searchto_plan import Leaving, Plan, leaving_of, now_of, plan_of
+from core.executor.commands import Command, Prepare
+from core.executor.job import Job, make_job
+from core.executor.snapshot import CYCLE, Snapshot, Starts, State
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_approach import Choices
+from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
+from core.language.source import Dialect, Source
+
+if TYPE_CHECKING:
+    from core.interpreter.restart.state_rebuild import StateRebuild
+
+# --- How far the operator is on the SEARCHTO page.
+
+
+class Stage(Enum):
+    """From choosing a line to a restart that the palms begin."""
+
+    CHOOSE = auto()
+    SEARCHING = auto()
+    SHOWN = auto()  # a good line, with its plan
+    REFUSED = auto()  # a line that is not good
+    PROVING = auto()
+    READY = auto()
+
+
+# --- The SEARCHTO page opened and left: who starts what meanwhile, and what is forgotten.
+
+
+@dataclass(slots=True)
+class SearchOpening:
+    """What SEARCHTO holds. ``say`` answers on the prompt line, ``clear`` takes that back."""
+
+    session: ProgramLoader
+    post: Callable[[Command], None]
+    snapshot: Callable[[], Snapshot]
+    say: Callable[[str], None]
+    clear: Callable[[], None]
+    rebuild: Callable[[Job, Watch], StateRebuild]  # what goes through a program; called on the worker
+    choices: Choices = field(default_factory=Choices)
+    cursor: Cursor = field(default_factory=Cursor)
+    stage: Stage = Stage.CHOOSE
+    open: bool = False
+    answer: NoRestart | None = None
+    plan: Plan | None = None
+    leaving: Leaving | None = None  # the way out alone
+    number: int = 0  # of the pass in which the line is meant; 0: the one that was interrupted, or the first
+    count: int = 0  # how often the run comes to the line, once that is known
+    proved: Proved | None = None
+    started: bool = False  # the restart was started: what is to be seen now is the Automatic page
+    finder: Finder = field(init=False)
+    _job: Job | None = None
+    _of: Job | None = None  # the program's job that was searched
+    _accepted: bool = False
+    _cut: CutRecord | None = None
+    _going_out: bool = False
+
+    def __post_init__(self) -> None:
+        self.finder = Finder(self.rebuild, self.session.workshop.prove)
+
+    @property
+    def has_keyboard(self) -> bool:
+        """Whether a line can be chosen: not while the way out is under way."""
+        return self.snapshot().state not in CYCLE
+
+    def opens(self) -> bool:
+        """Whether it may be opened now; says why not."""
+        why = self._why_closed(self.snapshot(), self.session.now)
+        if why:
+            self.say(why)
+        return not why
+
+    def opened(self) -> None:
+        """From now on Cycle Start begins a confirmed restart and nothing else."""
+        loaded, snapshot = self.session.now, self.snapshot()
+        self.clear()  # why the palms began nothing before has been read
+        self.open, self.started = True, False
+        lines = loaded.source.lines if loaded.source is not None else ()
+        before = self.cursor.line if self.cursor.lines is lines else 1
+        self.cursor.show(lines, snapshot.interrupted_line or before)
+        self.number = self.count = 0
+        self._going_out = False
+        self._forget()
+
+    def leave(self) -> None:
+        """Cycle Start begins programs again."""
+        if self.open:
+            self.open = False
+            self._withdraw()
+            self.post(Prepare(Starts.PROGRAM))
+
+    def close(self) -> None:
+        """End the worker."""
+        self.finder.close()
+
+    def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:
+        if snapshot.state in CYCLE:
+            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO")
+        if loaded.source is None or loaded.job is None:
+            return tr("CHOOSE A PROGRAM FIRST (F2)")
+        if loaded.source.dialect is not Dialect.OMNITURN:
+            return tr("SEARCHTO READS OMNITURN PROGRAMS ONLY; THIS ONE STARTS FROM ITS FIRST LINE")
+        if loaded.phase is not Phase.READY:
+            return tr("THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT")
+        return ""
+
+    def _forget(self) -> None:
+        """Nothing is shown and nothing is ready."""
+        self._withdraw()
+        if self.open and self.has_keyboard:
+            self.post(Prepare(Starts.RESTART))
+
+    def _withdraw(self) -> None:
+        self.finder.give_up()
+        self.stage, self.answer, self.plan, self.proved = Stage.CHOOSE, None, None, None
+        self.leaving, self._cut = None, None
+        self._job, self._accepted = None, False
+
+
+# --- What the prompt line says on the SEARCHTO page.
+
+
+def prompt(stage: Stage, snapshot: Snapshot, trouble: str, start: str, *, out: bool = False) -> str:
+    """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
+    the way out of the part alone."""
+    if out and stage is Stage.SHOWN and not trouble:
+        return tr("LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT")
+    if out and stage is Stage.READY:
+        return tr("TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK").format(start=start)
+    words = {
+        Stage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
+        Stage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
+        Stage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
+        Stage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
+        Stage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
+    }
+    return words.get(stage) or _choose(snapshot)
+
+
+def _choose(snapshot: Snapshot) -> str:
+    if not snapshot.interrupted_line:
+        return tr("TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE")
+    words = tr(
+        "LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT"
+    )
+    return words.format(line=snapshot.interrupted_line)
+
+
+WAY_OUT = "(WAY OUT OF THE PART)"
+
+
+class SearchtoModel(SearchOpening):
+    """The model behind the SEARCHTO page."""
+
+    __slots__ = ()
+
+    # --- choosing ------------------------------------------------------------------------------------
+
+    def move(self, lines: int) -> None:
+        """The cursor so many lines on."""
+        self.cursor.go(self.cursor.line + lines)
+        self.number = self.count = 0
+        self._forget()
+
+    def go(self, line: int, number: int = 0) -> None:
+        """To this line, in this pass, and rebuild its state."""
+        if line:
+            self.cursor.go(line)
+            self.cursor.text = ""
+            self.number, self.count = number, 0
+            self.search()
+
+    def turn_pass(self, by: int) -> None:
+        """To a later or an earlier pass of a line that is run more than once."""
+        if self.count < 2:
+            self.say(tr("ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES"))
+            return
+        number = max(1, min(self.number + by, self.count))
+        if number != self.number:
+            self.number = number
+            self.search()
+
+    def typed(self, key: str) -> bool:
+        """A character or an editing key of the question; False when it means nothing here."""
+        if not self.cursor.type(key):
+            return False
+        self.clear()
+        return True
+
+    def enter(self) -> None:
+        """A number: that line. A text: the next line that holds it. Found, or nothing: the cursor's line."""
+        number = self.cursor.number
+        if number is not None:
+            self.go(number, self.cursor.visit)
+        elif self.cursor.text and not self.cursor.found:
+            self.find(1)
+        else:
+            self.search()
+
+    def find(self, way: int) -> None:
+        """The next or the previous line that holds the text."""
+        self._forget()
+        self.clear()
+        if not self.cursor.text or self.cursor.number is not None:
+            self.say(tr("TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE"))
+        elif not self.cursor.find(way):
+            self.say(tr("{text} IS IN NO LINE").format(text=self.cursor.wanted))
+
+    def search(self) -> None:
+        """Rebuild the state of the cursor's line."""
+        loaded = self.session.now
+        self._forget()
+        self.clear()
+        job, line = loaded.job, self.cursor.line
+        if job is None:
+            return
+        self.stage, self._of = Stage.SEARCHING, job
+        self.finder.find(job, line, self.number, now_of(self.snapshot(), job).broken)
+
+    def nearest(self, way: int) -> None:
+        """To the good line before or after one that was refused."""
+        if self.answer is not None:
+            self.go(self.answer.before if way < 0 else self.answer.after)
+
+    # --- deciding ------------------------------------------------------------------------------------
+
+    def way_out(self) -> None:
+        """Only the way out of the part, and no going on."""
+        job = self.session.now.job
+        self._forget()
+        self.clear()
+        if job is not None:
+            self.stage, self._of = Stage.SEARCHING, job
+            self.finder.cut(job)
+
+    def turn_coolant(self) -> None:
+        """Whether coolant starts, where the line had it on."""
+        self._choose(replace(self.choices, coolant=not self.choices.coolant))
+
+    def confirm(self) -> None:
+        """Yes to what will start and to the way, or to the way out: it is proved and ready for the palms."""
+        self.clear()
+        snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
+        if self.stage is Stage.SHOWN and self._cut is not None and whole is not None:
+            self._confirm_out(snapshot, self._cut, whole)
+            return
+        if self.stage is not Stage.SHOWN or plan is None or whole is None:
+            self.say(tr("CHOOSE A GOOD LINE FIRST"))
+            return
+        if snapshot.state is not State.IDLE:
+            self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
+            return
+        plan = self.plan = plan_of(plan.found, snapshot, whole, self.choices)
+        if plan.trouble:
+            self.say(plan.trouble)
+            return
+        setup = replace(whole.setup, start=snapshot.demand, begin=plan.begin)
+        self.stage = Stage.PROVING
+        self.finder.check(make_job(whole.source, setup, whole))
+
+    def _confirm_out(self, snapshot: Snapshot, cut: CutRecord, whole: Job) -> None:
+        if snapshot.state is not State.IDLE:
+            self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
+            return
+        out = self.leaving = leaving_of(cut, snapshot, whole, self.choices)
+        if out.trouble:
+            self.say(out.trouble)
+            return
+        setup = replace(whole.setup, start=snapshot.demand, begin=out.begin)
+        self.stage = Stage.PROVING
+        self.finder.check(make_job(Source("WAY OUT", WAY_OUT), setup))
+
+    def escape(self) -> bool:
+        """One step back; False when there is none to go."""
+        if self.cursor.text:
+            self.cursor.text = ""
+            return True
+        if self.stage is Stage.CHOOSE:
+            return False
+        self._forget()
+        return True
+
+    def _choose(self, choices: Choices) -> None:
+        self.choices = choices
+        if self.plan is not None:
+            found = self.plan.found
+            self._forget()
+            self._show(found)
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def look(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """Take up what the worker has found; a program that is read anew has to be searched anew."""
+        if self._of is not None and loaded.job is not self._of:
+            self._of = None
+            self._forget()
+        if self._going_out and snapshot.state not in CYCLE:
+            self._going_out = False
+            self._forget()
+        if self.stage is Stage.READY:
+            self._see_start(snapshot)
+        future = self.finder.poll()
+        if future is not None:
+            self._take_up(future)
+
+    def prompt(self, snapshot: Snapshot, start: str) -> str:
+        """What can be done now; ``start`` names what starts a cycle here."""
+        shown = self.leaving or self.plan
+        trouble = shown.trouble if shown is not None else ""
+        return "" if snapshot.state in CYCLE else self._prompt(snapshot, trouble, start)
+
+    def _prompt(self, snapshot: Snapshot, trouble: str, start: str) -> str:
+        return prompt(self.stage, snapshot, trouble, start, out=self.leaving is not None)
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        if self.stage is Stage.READY or self.snapshot().state in CYCLE:
+            return ""
+        return tr("NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)")
+
+    def settle(self, timeout: float) -> None:
+        """Wait for the worker; for scripts and tests, never for the screen."""
+        self.finder.settle(timeout)
+        self.look(self.snapshot(), self.session.now)
+
+    def _see_start(self, snapshot: Snapshot) -> None:
+        waits = self._job is not None and snapshot.prepared == self._job.digest
+        if self._accepted and not waits and self.leaving is not None:
+            self._going_out = snapshot.state in CYCLE
+            self._withdraw()
+            return
+        if self._accepted and not waits:
+            self.started = snapshot.starts is Starts.PROGRAM  # a restart that is begun counts once
+            self.open = not self.started
+            self._withdraw()
+        self._accepted = waits
+
+    def _take_up(self, future: Future[Answer]) -> None:
+        error = future.exception()
+        if error is not None:
+            self.stage = Stage.CHOOSE
+            self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=error))
+            return
+        answer = future.result()
+        if isinstance(answer, RestartPoint):
+            self.number, self.count = answer.visit.number, answer.visit.of
+            self._show(answer)
+        elif isinstance(answer, CutRecord):
+            self._show_out(answer)
+        elif isinstance(answer, NoRestart):
+            self.stage, self.answer = Stage.REFUSED, answer
+        else:
+            self._made_ready(*answer)
+
+    def _show(self, found: RestartPoint) -> None:
+        if self._of is not None:
+            self.stage = Stage.SHOWN
+            self.plan = plan_of(found, self.snapshot(), self._of, self.choices)
+
+    def _show_out(self, cut: CutRecord) -> None:
+        if self._of is not None:
+            self.stage, self._cut = Stage.SHOWN, cut
+            self.leaving = leaving_of(cut, self.snapshot(), self._of, self.choices)
+
+    def _made_ready(self, job: Job, proved: Proved) -> None:
+        self.proved = proved
+        if proved.proof.errors:
+            self.stage = Stage.SHOWN
+            self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
+            return
+        self.stage, self._job, self._accepted = Stage.READY, job, False
+        starts = Starts.RESTART if self.leaving is None else Starts.LINE
+        self.post(Prepare(starts, job, proved.proof))

@@ -1,0 +1,231 @@
+"""What a restart will do, in words and lines: the state beside the one of now, what starts, the way.
+
+Where the tool stands in the part: the way out of it, or in words how the operator takes it out by hand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.desk import formats
+from app.desk.modal_rows import NONE, ModalRow, rows_of
+from app.desk.translation import tr
+from app.path.path_aspects import DrawnLeg as Drawn
+from core.executor.interrupted_job import CONTROL_LOST
+from core.executor.job import Job
+from core.executor.snapshot import Snapshot
+from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
+from core.interpreter.checkpoint import ApproachStep, Begin, Checkpoint, Leg
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_approach import (
+    Choices,
+    MachineNow,
+    begin_at,
+    retract_from_work,
+    starting,
+    way_out,
+)
+from core.interpreter.restart.restart_lines import Called, Interruption, LoopPass, RestartPoint
+from core.interpreter.restart.restart_retract import Retract, ToolPlace
+
+# --- The tool that stands in the part: the way out of it, or in words how the operator takes it out by hand.
+
+
+@dataclass(frozen=True, slots=True)
+class Leaving:
+    """The way out alone: its legs, and at which feed they go in the part. ``trouble``: why there is none."""
+
+    begin: Begin
+    legs: tuple[Drawn, ...]
+    feed: str
+    trouble: str = ""
+
+
+def leaving_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -> Leaving:
+    """The way out from where the tool stands now."""
+    now = now_of(snapshot, job)
+    found, tool = retract_from_work(cut, now)
+    steps = way_out(cut, now, choices) if found.known else ()
+    begin = Begin(Checkpoint(snapshot.modal), single=True, way=steps)
+    metric = snapshot.modal.metric
+    feed = f"{formats.feed(choices.modest, metric, False)} {formats.feed_unit(metric, False)}"
+    trouble = jog_words(found, tool)
+    if not trouble and not steps:
+        trouble = tr("T{tool} STANDS CLEAR OF THE PART ALREADY").format(tool=tool)
+    return Leaving(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
+
+
+def now_of(snapshot: Snapshot, job: Job) -> MachineNow:
+    """The machine of this instant, and what of the loaded program was interrupted.
+
+    In a text that was changed since, the number of a block tells nothing any more.
+    """
+    found = snapshot.interrupted
+    broken = None
+    same = found is not None and found.program == job.source.name and found.text == job.text_digest
+    if found is not None and same and found.block:
+        stale = found.why == CONTROL_LOST
+        broken = Interruption(found.block, found.tool, found.where, found.begun, stale)
+    return MachineNow(snapshot.demand, snapshot.modal, broken)
+
+
+def drawn(
+    steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
+) -> tuple[Drawn, ...]:
+    """The legs of a way in the frame of one tool; the first is where that stands now."""
+    x, z = snapshot.demand[0], snapshot.demand[1]
+    legs = [Drawn(z - offset[1], x - offset[0])]
+    for step in steps:
+        if isinstance(step, Leg):
+            x, z = x if step.x is None else step.x, z if step.z is None else step.z
+            legs.append(Drawn(z - offset[1], x - offset[0], step.rapid, f"{len(legs)} {step.text}"))
+    return tuple(legs)
+
+
+def jog_words(found: Retract, tool: int) -> str:
+    """What the operator has to do by hand where no way out is sure; empty where one is."""
+    if found.known:
+        return ""
+    if found.lies is ToolPlace.TAP:
+        words = tr("T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING")
+    elif found.lies is ToolPlace.THREAD:
+        words = tr("T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z")
+    elif found.lies is ToolPlace.TURNED:
+        words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
+    else:
+        words = _towards(*found.away)
+    return words.format(tool=tool, x="X+" if found.away[0] > 0 else "X-")
+
+
+def _towards(x: int, z: int) -> str:
+    if x and z:
+        return tr("T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER")
+    if x:
+        return tr("T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z")
+    if z:
+        return tr("T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X")
+    return tr("HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME")
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """One row: what is wanted at the line, what is active now, and whether they differ."""
+
+    label: str
+    wanted: str
+    now: str
+
+    @property
+    def differs(self) -> bool:
+        """Whether the restart has to change it."""
+        return self.wanted != self.now
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A restart as the operator sees it before he confirms it."""
+
+    found: RestartPoint
+    begin: Begin
+    rows: tuple[Beside, ...]
+    starts: tuple[str, ...]  # what will turn, flow or switch on
+    legs: tuple[Drawn, ...]
+    trouble: str = ""  # why it cannot be started as the machine stands
+    warning: str = ""  # what is left out
+
+
+def plan_of(found: RestartPoint, snapshot: Snapshot, job: Job, choices: Choices) -> Plan:
+    """The plan from where the machine stands now."""
+    now = now_of(snapshot, job)
+    begin = begin_at(found, now, choices)
+    modal = begin.checkpoint.modal
+    out = jog_words(*retract_from_work(found.cut, now)) if found.cut is not None else ""
+    return Plan(
+        found=found,
+        begin=begin,
+        rows=(*_passes(found), *_rows(begin.checkpoint, snapshot)),
+        starts=tuple(_words(step, found.checkpoint) for step in starting(found, now, choices)),
+        legs=() if out else drawn(begin.way, snapshot, (modal.tool_x, modal.tool_z)),
+        warning=_left_out(found),
+        trouble=_collet(found.checkpoint, snapshot) or out,
+    )
+
+
+def _passes(found: RestartPoint) -> tuple[Beside, ...]:
+    """The passes and calls in which the line is, beside those that were interrupted."""
+    was = found.was.within if found.was is not None else ()
+    return tuple(
+        _pass(each, was[number] if number < len(was) else None)
+        for number, each in enumerate(found.visit.within)
+    )
+
+
+def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> Beside:
+    if isinstance(wanted, Called):
+        label = tr("CALLED ON LINE")
+        now = str(was.line) if isinstance(was, Called) else NONE
+        return Beside(label, str(wanted.line), now)
+    label = tr("PASS OF LINES {first}-{last}").format(first=wanted.first, last=wanted.last)
+    same = isinstance(was, LoopPass) and was.first == wanted.first
+    return Beside(label, _of(wanted), _of(was) if same and isinstance(was, LoopPass) else NONE)
+
+
+def _of(loop: LoopPass) -> str:
+    return tr("{number} OF {count}").format(number=loop.number, count=loop.of)
+
+
+def _left_out(found: RestartPoint) -> str:
+    first, last = found.left_out
+    if not first:
+        return ""
+    return tr("LOOK: LINES {first} TO {last} ARE LEFT OUT AND THEIR METAL IS STILL THERE").format(
+        first=first, last=last
+    )
+
+
+def _rows(point: Checkpoint, snapshot: Snapshot) -> tuple[Beside, ...]:
+    wanted = (*_places(point, *point.machine), *rows_of(point))
+    now = (*_places(point, *snapshot.demand[:2]), *rows_of(_now(snapshot)))
+    both = zip(wanted, now, strict=True)
+    return tuple(Beside(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
+
+
+def _now(snapshot: Snapshot) -> Checkpoint:
+    return Checkpoint(snapshot.modal, c=snapshot.demand[2] - snapshot.modal.offset_c)
+
+
+def _places(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
+    """A machine point as the line would read it, with its tool, its unit and its Ø or R."""
+    modal = point.modal
+    mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
+    return (
+        ModalRow("x", f"X {mark}", formats.length(factor * (x - modal.offset_x), modal.metric)),
+        ModalRow("z", "Z", formats.length(z - modal.offset_z, modal.metric)),
+    )
+
+
+def _words(step: ApproachStep, point: Checkpoint) -> str:
+    action = getattr(step, "action", None)
+    modal = point.modal
+    match action:
+        case SpindleRun():
+            way = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
+            speed = next(row.value for row in rows_of(point) if row.key == "speed")
+            return f"{way} {speed}"
+        case SpindleLock():
+            return tr("SPINDLE LOCKED AS C, TURNED TO ITS ANGLE")
+        case Coolant():
+            return tr("COOLANT")
+        case Output(name=name):
+            return tr("{name} ON").format(name=name.upper())
+        case _:
+            return ""
+
+
+def _collet(point: Checkpoint, snapshot: Snapshot) -> str:
+    wanted, now = point.modal.collet_closed, snapshot.modal.collet_closed
+    if wanted == now:
+        return ""
+    if wanted:
+        return tr("THE COLLET IS OPEN AND MUST BE CLOSED AT THIS LINE: M12 IN MDI")
+    return tr("THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI")

@@ -1,0 +1,140 @@
+"""The state that the line inherits beside the one that is active now; every difference by colour and sign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.screen.look import CENTRE, LEFT, Look, put
+from app.screen.panel import Panel
+from app.searchto.searchto_plan import Beside
+
+DIFFERS = "≠"
+PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"
+_PASSES = 4.4  # units: what a finger hits
+_LABEL, _SIGN = 0.25, 0.61  # shares of a row: where the label ends, where the sign stands
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """A good line near one that is not: the key that goes there, its number (0: none) and its text."""
+
+    key: str
+    label: str
+    line: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class StateShown:
+    """Either the rows of a good line, or why a line is not good and which ones are."""
+
+    title: str = ""
+    rows: tuple[Beside, ...] = ()
+    why: str = ""
+    near: tuple[Near, ...] = ()
+    passes: str = ""  # which pass of how many, of a line that is run more than once
+
+
+class StatePanel(Panel):
+    """Draws from what it was shown last, and only when that has changed."""
+
+    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self._press = press
+        self.shown = StateShown()
+
+    def show_state(self, shown: StateShown) -> None:
+        """The rows or the refusal of this instant."""
+        if shown != self.shown:
+            self.shown = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        shown = self.shown
+        self.frame(painter, shown.title, "alarm" if shown.why else "frame", 0.3 if shown.why else 0.16)
+        if shown.why:
+            self._refusal(painter)
+        elif shown.rows:
+            room = self.inside()
+            if shown.passes:
+                self._passes(painter, room.adjusted(0, room.height() - _PASSES * self.look.u, 0, 0))
+                room.adjust(0, 0, 0, -(_PASSES + 0.6) * self.look.u)
+            self._table(painter, room)
+
+    def _passes(self, painter: QPainter, room: QRectF) -> None:
+        """Which pass it is, and a place for a finger on either side of it."""
+        look, wide = self.look, room.height() * 2
+        sides = ((room.x(), "◀", PASS_BEFORE), (room.right() - wide, "▶", PASS_AFTER))
+        for left, sign, key in sides:
+            box = QRectF(left, room.y(), wide, room.height())
+            painter.fillRect(box, look.colour("key"))
+            painter.setPen(look.colour("accent"))
+            painter.setFont(look.font(2.4, bold=True))
+            put(painter, box, CENTRE, sign)
+            self.place(box, partial(self._press, key))
+        words = room.adjusted(wide, 0, -wide, 0)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(self.shown.passes, 2.0, words.width(), bold=True))
+        put(painter, words, CENTRE, self.shown.passes)
+
+    def _table(self, painter: QPainter, room: QRectF) -> None:
+        u = self.look.u
+        high = min(2.7 * u, room.height() / (len(self.shown.rows) + 1))
+        size = min(1.9, high / u * 0.78)
+        head = Beside("", tr("AT THE LINE"), tr("NOW"))
+        for number, row in enumerate((head, *self.shown.rows)):
+            box = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            self._row(painter, box, row, size, head=number == 0)
+
+    def _row(self, painter: QPainter, box: QRectF, row: Beside, size: float, *, head: bool) -> None:
+        look, u = self.look, self.look.u
+        label, sign = _LABEL * box.width(), _SIGN * box.width()
+        differs = row.differs and not head
+        painter.setPen(look.colour("soft"))
+        painter.setFont(look.fit(row.label, size, label - u))
+        put(painter, QRectF(box.x(), box.y(), label - u, box.height()), LEFT, row.label)
+        wanted = QRectF(box.x() + label, box.y(), sign - label - u, box.height())
+        now = box.adjusted(sign + 2.4 * u, 0, 0, 0)
+        painter.setPen(look.colour("accent" if head else "mark" if differs else "text"))
+        painter.setFont(look.fit(row.wanted, size, wanted.width(), bold=True))
+        put(painter, wanted, LEFT, row.wanted)
+        painter.setPen(look.colour("accent" if head else "text" if differs else "soft"))
+        painter.setFont(look.fit(row.now, size, now.width(), bold=head or differs))
+        put(painter, now, LEFT, row.now)
+        if differs:
+            painter.setPen(look.colour("mark"))
+            painter.setFont(look.font(size + 0.3, bold=True))
+            put(painter, QRectF(box.x() + sign, box.y(), 2 * u, box.height()), CENTRE, DIFFERS)
+
+    def _refusal(self, painter: QPainter) -> None:
+        look, u, room = self.look, self.look.u, self.inside()
+        painter.setPen(look.colour("alarm"))
+        painter.setFont(look.fit(self.shown.why, 2.2, 2 * room.width(), bold=True))
+        flags = int(LEFT) | 0x1000  # Qt.TextWordWrap
+        painter.drawText(QRectF(room.x(), room.y(), room.width(), 9 * u), flags, self.shown.why)
+        for number, near in enumerate(self.shown.near):
+            box = QRectF(room.x(), room.y() + (11 + 9.4 * number) * u, room.width(), 8.4 * u)
+            self._near(painter, box, near)
+
+    def _near(self, painter: QPainter, box: QRectF, near: Near) -> None:
+        look, u = self.look, self.look.u
+        painter.fillRect(box, look.colour("key"))
+        painter.setPen(look.colour("accent" if near.line else "soft"))
+        painter.setFont(look.font(2.4, bold=True))
+        put(painter, QRectF(box.x(), box.y(), 5 * u, box.height()), CENTRE, near.key)
+        text = box.adjusted(5.6 * u, 0.6 * u, -u, -0.6 * u)
+        half = text.height() / 2
+        painter.setFont(look.fit(near.label, 2.1, text.width(), bold=True))
+        put(painter, QRectF(text.x(), text.y(), text.width(), half), LEFT, near.label)
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.font(2.0))
+        put(painter, QRectF(text.x(), text.y() + half, text.width(), half), LEFT, near.text)
+        if near.line:
+            self.place(box, partial(self._press, near.key))

@@ -1,0 +1,291 @@
+"""F6 SEARCHTO: a line, the state it inherits beside the one of now, the way there, and what will start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from textwrap import wrap
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.translation import tr
+from app.path.path_aspects import Tip, tip_of
+from app.path.path_view import PathView
+from app.screen import page_table
+from app.screen.entry_panel import draw_entry
+from app.screen.look import LEFT, Look, put
+from app.screen.page_base import Doings, Host, Page
+from app.screen.panel import Panel
+from app.screen.program_listing import Listing
+from app.searchto.searchto_model import SearchtoModel, Stage
+from app.searchto.searchto_plan import Leaving, Plan
+from app.searchto.searchto_state_view import PASS_AFTER, PASS_BEFORE, Near, StatePanel, StateShown
+from core.executor.snapshot import Snapshot
+
+# --- What is typed to find a line.
+
+
+class SearchEntryPanel(Panel):
+    """The question and the answer as far as it is typed."""
+
+    ground = "panel"
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.text = ""
+
+    def show_text(self, text: str) -> None:
+        """What is typed."""
+        if text != self.text:
+            self.text = text
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        look, u = self.look, self.look.u
+        room = self.area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
+        painter.setPen(look.colour("text"))
+        question = tr("LINE OR TEXT?")
+        painter.setFont(look.fit(question, 1.9, 14 * u, bold=True))
+        put(painter, QRectF(room.x(), room.y(), 14 * u, room.height()), LEFT, question)
+        box = room.adjusted(14.5 * u, 0, 0, 0)
+        painter.setPen(look.pen("accent", 0.2))
+        painter.setBrush(look.colour("ground"))
+        painter.drawRect(box)
+        draw_entry(painter, look, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
+
+
+# --- What will start, how the tool comes in, and what is still to be confirmed.
+
+
+ROW = 2.7  # units
+ACROSS = 40  # characters of a line of trouble
+
+
+class StartsPanel(Panel):
+    """``choices`` are told with their keys; ``trouble`` keeps it from starting, or has to be looked at."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(look, parent)
+        self.starts: tuple[str, ...] = ()
+        self.choices: tuple[str, ...] = ()
+        self.trouble = ""
+        self.confirmed = False
+
+    def show_starts(
+        self, starts: Sequence[str], choices: Sequence[str], trouble: str, confirmed: bool
+    ) -> None:
+        """The list of this instant."""
+        shown = (tuple(starts), tuple(choices), trouble, confirmed)
+        if shown != (self.starts, self.choices, self.trouble, self.confirmed):
+            self.starts, self.choices, self.trouble, self.confirmed = shown
+            self.update()
+
+    def draw(self, painter: QPainter) -> None:
+        title = tr("CONFIRMED: CYCLE START BEGINS IT") if self.confirmed else tr("WILL START")
+        self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
+        look, u, room = self.look, self.look.u, self.inside()
+        lines = [(text, "text", True) for text in self.starts]
+        lines += [(text, "soft", False) for text in self.choices]
+        lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
+        high = min(ROW * u, room.height() / max(1, len(lines)))
+        for number, (text, colour, bold) in enumerate(lines):
+            row = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            painter.setPen(look.colour(colour))
+            painter.setFont(look.fit(text, min(1.9, high / u * 0.75), row.width(), bold=bold))
+            put(painter, row, LEFT, text)
+
+
+LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # shares of the width; units of height
+
+
+class SearchtoPage(Page):
+    """The model decides, this only shows it and hands the keys on."""
+
+    NAME = page_table.SEARCHTO
+    LABELS = (
+        "MENU",
+        "NEXT",
+        "PREVIOUS",
+        "WAY OUT",
+        "COOLANT",
+        "SEARCH",
+        "ALARMS",
+        "BEFORE",
+        "AFTER",
+        "CONFIRM",
+    )
+    STARTS = True
+
+    def __init__(self, host: Host, model: SearchtoModel, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+        self.asked = SearchEntryPanel(self.look, self)
+        self.listing = Listing(self.look, self)
+        self.state = StatePanel(self.look, host.press, self)
+        self.path = PathView(self.look, self)
+        self.starts = StartsPanel(self.look, self)
+        self._loaded: Loaded | None = None
+
+    def doings(self) -> Doings:
+        """Keys of this page alone."""
+        model = self.model
+        return {
+            "F2": partial(model.find, 1),
+            "F3": partial(model.find, -1),
+            "F4": model.way_out,
+            "F5": model.turn_coolant,
+            "F6": model.search,
+            "F8": partial(model.nearest, -1),
+            "F9": partial(model.nearest, 1),
+            "F10": model.confirm,
+            PASS_BEFORE: partial(model.turn_pass, -1),
+            PASS_AFTER: partial(model.turn_pass, 1),
+            "Zoom in": partial(self.path.zoom, 1),
+            "Zoom out": partial(self.path.zoom, -1),
+        }
+
+    def takes(self, key: str) -> bool:
+        """Characters are the question's, but while the tool is on its way out."""
+        return len(key) == 1 and self.model.has_keyboard
+
+    def typed(self, key: str) -> bool:
+        """Arrows choose a line, everything else is typed."""
+        if not self.model.has_keyboard:
+            return False
+        steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
+        if key in steps:
+            self.model.move(steps[key])
+            return True
+        if key in {"Left", "Right"}:
+            self.model.turn_pass(-1 if key == "Left" else 1)
+            return True
+        if key == "Enter":
+            self.model.enter()
+            return True
+        return self.model.typed(key)
+
+    def has_field(self) -> bool:
+        """The question has it, but while the tool is on its way out."""
+        return self.model.has_keyboard
+
+    def prompt(self) -> str:
+        """What can be done now."""
+        return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
+
+    def opens(self) -> bool:
+        """With a proved program, and none under way."""
+        return self.model.opens()
+
+    def opened(self) -> None:
+        """Cycle Start now means a confirmed restart."""
+        self.model.opened()
+
+    def leave(self) -> bool:
+        """Cycle Start means programs again."""
+        self.model.leave()
+        return True
+
+    def escape(self) -> bool:
+        """One step back, and from the first one to the Automatic page."""
+        if not self.model.escape():
+            self.host.go(page_table.AUTOMATIC)
+        return True
+
+    def dress(self) -> None:
+        """Other colours are in force."""
+        self.path.restart()
+
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
+        """The line, its state, the way; a restart that has begun is followed on the Automatic page."""
+        model = self.model
+        model.look(snapshot, loaded)
+        if model.started:
+            self.host.go(page_table.AUTOMATIC)
+            return
+        if loaded is not self._loaded:
+            self._loaded = loaded
+            self.listing.show_source(model.cursor.lines, {})
+            self.path.show_picture(loaded.picture)
+        self.asked.show_text(model.cursor.text)
+        self.listing.show_run(model.cursor.line, "", "")
+        self.state.show_state(self._shown())
+        self._show_plan()
+        self.path.show_tip(self._tip(snapshot))
+        self.path.advance()
+
+    def _tip(self, snapshot: Snapshot) -> Tip:
+        """With a plan, the tip of the tool that the line works with: the way begins there."""
+        shown = self.model.leaving or self.model.plan
+        legs = shown.legs if shown is not None else ()
+        return Tip(0, legs[0].z, legs[0].x) if legs else tip_of(snapshot)._replace(block=0)
+
+    def _shown(self) -> StateShown:
+        model, line = self.model, self.model.cursor.line
+        answer, plan = model.answer, model.plan
+        if answer is not None:
+            title = tr("LINE {line} IS NOT GOOD").format(line=answer.line)
+            near = (("F8", tr("GOOD BEFORE"), answer.before), ("F9", tr("GOOD AFTER"), answer.after))
+            return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
+        if plan is not None:
+            return self._state(plan)
+        if model.leaving is not None:
+            return StateShown(tr("THE WAY OUT OF THE PART"), (), model.leaving.trouble)
+        if model.stage is Stage.SEARCHING:
+            words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
+            return StateShown(f"{words}  ·  {model.finder.reached}")
+        return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
+
+    def _state(self, plan: Plan) -> StateShown:
+        title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit
+        if visit.of < 2:
+            return StateShown(title, plan.rows)
+        words = tr("PASS {number} OF {count}").format(number=visit.number, count=visit.of)
+        return StateShown(f"{title}, {words}", plan.rows, passes=words)
+
+    def _near(self, key: str, label: str, line: int) -> Near:
+        if not line:
+            return Near(key, tr("{which}: NONE").format(which=label), 0, "")
+        words = tr("{which}: LINE {line}").format(which=label, line=line)
+        return Near(key, words, line, self.model.cursor.lines[line - 1].strip())
+
+    def _show_plan(self) -> None:
+        model, plan = self.model, self.model.plan
+        if model.leaving is not None:
+            self._show_leaving(model.leaving)
+            return
+        if plan is None:
+            self.path.show_approach(None)
+            self.starts.show_starts((), (), "", confirmed=False)
+            return
+        self.path.show_approach(plan.legs)
+        choices: list[str] = []
+        if plan.found.checkpoint.modal.coolant:
+            choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
+        trouble = plan.trouble or plan.warning
+        starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
+        self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is Stage.READY)
+
+    def _show_leaving(self, leaving: Leaving) -> None:
+        self.path.show_approach(leaving.legs)
+        told = tr("THE TOOL LEAVES THE PART AT {feed}").format(feed=leaving.feed)
+        choices = () if leaving.trouble else (told, tr("H HOLDS IT ON ITS WAY"))
+        ready = self.model.stage is Stage.READY
+        only = () if leaving.trouble else (tr("NOTHING BUT THE SLIDES"),)
+        self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Program, state, and the way over what will start."""
+        u = self.look.u
+        gap, asked, starts = max(4, round(0.7 * u)), round(ASKED * u), round(STARTS * u)
+        wide, high = self.width(), self.height()
+        left, state = round(LIST * wide), round(STATE * wide)
+        right = left + gap + state + gap
+        self.asked.setGeometry(0, 0, left, asked)
+        self.listing.setGeometry(0, asked + gap, left, high - asked - gap)
+        self.state.setGeometry(left + gap, 0, state, high)
+        self.path.setGeometry(right, 0, wide - right, high - starts - gap)
+        self.starts.setGeometry(right, high - starts, wide - right, starts)

@@ -1,0 +1,200 @@
+"""Table, workpiece, working plane and tool in space, as ``plane_drawing`` lays them out in pixels."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.translation import tr
+from app.screen.look import CENTRE, LEFT, Look, put, put_raw
+from app.screen.panel import Panel
+
+if TYPE_CHECKING:
+    from app.working_plane.plane_drawing import Camera, Face, FloatArray, Stroke
+    from app.working_plane.plane_instant import Instant
+    from app.working_plane.plane_scene import Scene
+
+# Of each face: fill, how much of it (0 to 255), edge.
+_FILLS = {
+    "table": ("key", 255, "frame"),
+    "table-under": ("key", 110, "frame"),  # what stands on it is seen through it
+    "blank": ("ghost", 215, "soft"),
+    "blank-top": ("here", 225, "soft"),
+    "plane": ("accent", 70, "accent"),
+    "tool": ("pause", 235, "text"),
+}
+# Of each stroke: colour, width in units, dashed.
+_STROKES = {
+    "rapid": ("rapid", 0.10, True),
+    "cut": ("todo", 0.22, False),
+    "done": ("done", 0.26, False),
+    "x": ("alarm", 0.30, False),
+    "y": ("run", 0.30, False),
+    "z": ("wait", 0.30, False),
+    "axis": ("soft", 0.10, True),
+}
+SMOOTH = 2000  # points of a line up to which it is drawn wide and smooth
+_DRAG_STEP = 60.0  # pixels of a drag that are one step of panning
+
+
+class WorkingPlaneView(Panel):
+    """Shows a scene at an instant; the next aspect comes by its button, its key or a tap on its name."""
+
+    title = "TABLE AND PLANE"
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(look, parent)
+        self.words = ""
+        self._scene: Scene | None = None
+        self._instant: Instant | None = None
+        self._camera: Camera | None = None
+        self._held: QPointF | None = None
+        self.hide()
+
+    @property
+    def scene(self) -> Scene | None:
+        """What is shown."""
+        return self._scene
+
+    @property
+    def camera(self) -> Camera | None:
+        """From where one looks."""
+        return self._camera
+
+    def show_scene(self, scene: Scene | None) -> None:
+        """Another program; where one looks from stays."""
+        if scene is self._scene:
+            return
+        aspect = self._camera.aspect if self._camera is not None else 0
+        self._scene, self._instant = scene, None
+        if scene is not None:
+            from app.working_plane.plane_drawing import camera_for
+
+            self._camera = replace(camera_for(scene), aspect=aspect)
+        self.update()
+
+    def show_instant(self, instant: Instant, words: str) -> None:
+        """Where the machine stands, and what the plane is called."""
+        if (instant, words) != (self._instant, self.words):
+            self._instant, self.words = instant, words
+            self.update()
+
+    # --- looking around ------------------------------------------------------------------------------
+
+    def next_view(self) -> None:
+        """From the next side."""
+        self._look(self._camera.following() if self._camera else None)
+
+    def fit(self) -> None:
+        """The whole again."""
+        self._look(self._camera.fitted() if self._camera else None)
+
+    def zoom(self, steps: int) -> None:
+        """Nearer or farther."""
+        self._look(self._camera.zoomed(steps) if self._camera else None)
+
+    def pan(self, across: int, down: int) -> None:
+        """Look further right and down."""
+        self._look(self._camera.panned(across, down) if self._camera else None)
+
+    def _look(self, camera: Camera | None) -> None:
+        if camera is not None:
+            self._camera = camera
+            self.update()
+
+    # --- Qt's calls ----------------------------------------------------------------------------------
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """The wheel zooms."""
+        self.zoom(1 if event.angleDelta().y() > 0 else -1)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """A button of the view, or the start of a drag."""
+        if not self.touch(event.position()):
+            self._held = event.position()
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """A drag pans by steps."""
+        if self._held is None:
+            return
+        way = event.position() - self._held
+        across, down = (int(side / _DRAG_STEP) for side in (way.x(), way.y()))
+        if across or down:
+            self._held = event.position()
+            self.pan(-across, -down)
+
+    def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
+        """The drag is over."""
+        self._held = None
+
+    # --- drawing -------------------------------------------------------------------------------------
+
+    def draw(self, painter: QPainter) -> None:
+        room = self.inside()
+        if self._scene is None or self._instant is None or self._camera is None:
+            return
+        from app.working_plane.plane_drawing import figure
+
+        made = figure(self._scene, self._instant, self._camera, room.width(), room.height())
+        painter.save()
+        painter.setClipRect(room)
+        painter.translate(room.topLeft())
+        for face in made.faces:
+            self._face(painter, face)
+        for stroke in made.strokes:
+            self._stroke(painter, stroke)
+        painter.restore()
+        self._words(painter, room)
+
+    def _face(self, painter: QPainter, face: Face) -> None:
+        fill, share, edge = _FILLS[face.role]
+        colour = QColor(self.look.colour(fill))
+        colour.setAlpha(share)
+        painter.setBrush(colour)
+        painter.setPen(self.look.pen(edge, 0.10))
+        painter.drawPolygon(_polygon(face.points))
+
+    def _stroke(self, painter: QPainter, stroke: Stroke) -> None:
+        colour, width, dashed = _STROKES[stroke.role]
+        pen = QPen(self.look.pen(colour, width))
+        fine = len(stroke.points) <= SMOOTH  # a wide, smoothed pen takes a tenth of a second for the others
+        if not fine:
+            pen.setWidth(1)
+        elif dashed:
+            pen.setStyle(Qt.PenStyle.DashLine)
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, fine)
+        painter.drawPolyline(_polygon(stroke.points))
+        if stroke.name:
+            u = self.look.u
+            x, y = stroke.points[-1].tolist()
+            painter.setFont(self.look.font(1.6, bold=True))
+            put_raw(painter, QRectF(x - 2 * u, y - 1.4 * u, 4 * u, 2.2 * u), CENTRE, stroke.name)
+
+    def _words(self, painter: QPainter, room: QRectF) -> None:
+        look, u = self.look, self.look.u
+        painter.setPen(look.colour("text"))
+        painter.setFont(look.fit(self.words, 1.7, room.width(), bold=True))
+        put_raw(
+            painter,
+            QRectF(room.x(), room.bottom() - 2.4 * u, room.width(), 2.4 * u),
+            LEFT,
+            self.words,
+        )
+        assert self._camera is not None
+        button = QRectF(room.right() - 8 * u, room.top(), 8 * u, 3.4 * u)
+        painter.fillRect(button, look.colour("key"))
+        painter.setFont(look.font(1.6, bold=True))
+        put(painter, button, CENTRE, tr(self._camera.shown.name))
+        self.place(button, self.next_view)
+
+
+def _polygon(points: FloatArray) -> QPolygonF:
+    from app.path.path_layers_view import polygon
+
+    return polygon(points[:, 0], points[:, 1])
