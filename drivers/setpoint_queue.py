@@ -6,14 +6,57 @@ planned deceleration and without a fault. Hold, override, abort and jog are one 
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from core.ports import DriverError, Segments
-from drivers.piece import Piece, at, pieces_of
+
+# --- One piece of motion with constant acceleration, all axes together, in plain numbers for the fast path.
+
+
+class Piece(NamedTuple):
+    """From ``t`` for ``dt`` seconds: position, velocity, acceleration at its start, one number an axis."""
+
+    t: float
+    dt: float
+    p: tuple[float, ...]
+    v: tuple[float, ...]
+    a: tuple[float, ...]
+
+
+def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Position and velocity at ``t``, held at the piece's end when ``t`` lies behind it."""
+    dt = min(max(t - piece.t, 0.0), piece.dt)
+    p = tuple([x + (v + 0.5 * a * dt) * dt for x, v, a in zip(piece.p, piece.v, piece.a, strict=True)])
+    return p, tuple([v + a * dt for v, a in zip(piece.v, piece.a, strict=True)])
+
+
+def pieces_of(segments: Segments, axes: int) -> list[Piece]:
+    """The segments as pieces; raises DriverError when they have the wrong shape or hold no numbers."""
+    count = len(segments.t)
+    shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
+    if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
+        raise DriverError(f"setpoints need one row each of t, dt, p, v, a for {axes} axes", "broken-path")
+    for part in segments:
+        if not np.isfinite(part).all():
+            raise DriverError("setpoints hold a value that is no number", "broken-path")
+    if (segments.dt < 0).any():
+        raise DriverError("setpoints run backwards in time", "broken-path")
+    rows = zip(
+        segments.t.tolist(),
+        segments.dt.tolist(),
+        map(tuple, segments.p.tolist()),
+        map(tuple, segments.v.tolist()),
+        map(tuple, segments.a.tolist()),
+        strict=True,
+    )
+    return [Piece(*row) for row in rows]
+
 
 _SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
 _REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
@@ -169,3 +212,25 @@ class SetpointQueue:
                     raise DriverError(
                         f"{name}: setpoints {where} jump in {what} from {before:.4f} to {after:.4f}"
                     )
+
+
+# --- One axis from rest to rest: what a drive does on its own when it homes.
+
+
+def straight(
+    start: float, rest: Sequence[float], axis: int, *, to: float, speed: float, accel: float
+) -> Segments:
+    """Ramp up, run at ``speed``, ramp down: axis number ``axis`` goes to ``to``, the others stay."""
+    way = to - rest[axis]
+    sign = math.copysign(1.0, way)
+    top = min(speed, math.sqrt(abs(way) * accel))
+    ramp = top / accel
+    cruise = (abs(way) - top * ramp) / top if top > 0.0 else 0.0
+    dt = np.array([ramp, max(cruise, 0.0), ramp])
+    p, v = np.tile(np.asarray(rest, dtype=np.float64), (3, 1)), np.zeros((3, len(rest)))
+    a = np.zeros_like(v)
+    v[:, axis] = [0.0, sign * top, sign * top]
+    a[:, axis] = [sign * accel, 0.0, -sign * accel]
+    p[1, axis] += sign * 0.5 * top * ramp
+    p[2, axis] = to - sign * 0.5 * top * ramp
+    return Segments(start + np.array([0.0, dt[0], dt[0] + dt[1]]), dt, p, v, a)

@@ -10,9 +10,9 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from app.cli.arguments import Parser, add_screen_options, settled
-from app.cli.crash import report_crash, report_thread
-from app.cli.errors import EXIT_OK, EXIT_USAGE, CommandError
+from app.cli.command_errors import EXIT_OK, EXIT_USAGE, CommandError
+from app.cli.command_parser import Parser, add_screen_options, settled
+from app.cli.crash_report import report_crash, report_thread
 from app.desk.data_folder import DataFolderError, check_data_folder
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
@@ -39,7 +39,7 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
         title="commands", metavar="COMMAND", dest="command", parser_class=Parser
     )
     for name in commands:
-        importlib.import_module(f"app.cli.{name}").add_parser(subparsers)
+        importlib.import_module(f"app.cli.{name}_command").add_parser(subparsers)
     return parser
 
 
@@ -75,7 +75,7 @@ def _dispatch(args: argparse.Namespace) -> int:
         return EXIT_OK
     if args.command:
         gc.set_threshold(50_000)  # importing alone would collect a hundred times and find nothing
-        status: int = importlib.import_module(f"app.cli.{args.command}").run(args)
+        status: int = importlib.import_module(f"app.cli.{args.command}_command").run(args)
         return status
     return _screen(args)
 

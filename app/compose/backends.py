@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.compose.canopen import own_process
-from app.compose.driven import driven, has_station
-from app.compose.inverter import has_inverter, with_inverter
-from app.compose.simulated import simulated
+from app.compose.canopen_backend import own_process
+from app.compose.feeder_process import driven, has_station
+from app.compose.inverter_backend import has_inverter, with_inverter
+from app.compose.simulated_backend import simulated
 from app.desk.operator_station import StationPanel
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError, MachinePorts
-from drivers.feeder.client import Line
-from drivers.feeder.hands import FeederHands
-from drivers.feeder.links import LoopLink
-from drivers.feeder.ports import feeder_ports
-from drivers.feeder.server import Feeder
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
+from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_server import Feeder
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +49,7 @@ def connect(machine: Machine, clock: Clock) -> Connected:
 
 def _controller(machine: Machine, clock: Clock) -> Connected:
     """A controller that plans by itself; it knows no buttons, so the station is the screen's."""
-    from app.compose.grblhal import grblhal_machine
+    from app.compose.grblhal_backend import grblhal_machine
 
     controller = grblhal_machine(machine, clock)
     return Connected(controller.ports, controller.panel, None, controller.close)
@@ -83,7 +81,7 @@ def played(machine: Machine) -> bool:
 def _line(machine: Machine, clock: Clock) -> tuple[Line, Callable[[], None]]:
     """The feeder in its own process where time is real, else the same messages in this thread."""
     if isinstance(clock, RealClock) and not _virtual(machine):
-        from app.compose.feeder import FeederProcess
+        from app.compose.feeder_process import FeederProcess
 
         process = FeederProcess(machine, clock)
         return process.line, process.close

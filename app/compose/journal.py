@@ -14,10 +14,10 @@ from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store import backup
-from core.store.errors import StoreError
-from core.store.rows import EventRow, RunRow, VersionRow
 from core.store.store import Store
-from core.store.unwritten import Held
+from core.store.store_errors import StoreError
+from core.store.store_rows import EventRow, RunRow, VersionRow
+from core.store.store_writer import Held
 
 HELD = 10_000  # events that are kept back while there is no store
 UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted

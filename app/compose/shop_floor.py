@@ -7,19 +7,18 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from app.shopfloor.reading import UNKNOWN, FloorReader, Reading
-from app.shopfloor.status import NAME, StatusFile, StatusKeeper, status_of
+from app.shopfloor.floor_reading import UNKNOWN, FloorReader, Reading
+from app.shopfloor.status_file import NAME, StatusFile, StatusKeeper, status_of
 from core.executor.snapshot import Snapshot
-from core.machine.hardware.model import MtconnectModel
-from core.machine.model import Machine
+from core.machine.hardware_model import MtconnectModel
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.mtconnect.adapter import Adapter, Settings, utc_now
-from drivers.mtconnect.items import Category, Component, Layout, machine_items
-from drivers.mtconnect.keeper import Keeper
-from drivers.mtconnect.lines import Active, Report, stamp
-from drivers.mtconnect.listening import listening
-from drivers.mtconnect.probe import devices_xml
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.mtconnect.agent_links import listening
+from drivers.mtconnect.devices_xml import devices_xml
+from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, Settings, utc_now
+from drivers.mtconnect.mtconnect_items import Category, Component, Layout, machine_items
+from drivers.mtconnect.shdr_lines import Active, Report, stamp
 
 
 def open_shop_floor(

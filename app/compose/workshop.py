@@ -1,27 +1,38 @@
-"""What loading needs: programs read, made jobs of, proved and drawn."""
+"""How a desk proves on this machine: programs, MDI lines, a restart, and what other offsets do to a path."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.journal import Journal
-from app.compose.machine import setup_for
-from app.compose.offsets import Offsets
-from app.compose.zero_offsets import Zero, stored_zero
+from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import Offsets, Zero, stored_zero
 from app.desk.data_folder import data_folder
+from app.desk.desk import Desk
 from app.desk.latest import Watch
+from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps, Proved
-from core.executor.job import Job, make_job
+from app.mdi.mdi_model import MdiModel, ProveLine, Typing
+from app.searchto.searchto_model import SearchtoModel
+from core.executor.job import Job, Proof, make_job
+from core.executor.snapshot import Snapshot
+from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
+from core.interpreter.restart.restart_approach import Choices
 from core.language.source import Dialect, Source, SourceError, load_source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
+from core.proving.proof_report import Report
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
+    from app.desk.latest import Watch
+    from app.offsets.effect import Draw
+    from app.path.path_picture import Picture, Timed
+    from core.interpreter.restart.state_rebuild import StateRebuild
 
 
 def samples() -> Path:
@@ -51,7 +62,7 @@ def workshop(
         return make_job(_whole(source), setup)
 
     def prove_job(job: Job, watch: Watch) -> Proved:
-        from app.compose.proof import proof_of
+        pass
         from core.proving.prove_program import prove
 
         report = prove(job.reading, job.setup, machine, watch)
@@ -85,3 +96,101 @@ def _whole(source: Source, *folders: Path) -> Source:
     from core.language.sinumerik.subprogram_files import with_subprograms
 
     return with_subprograms(source, [*folders, data_folder() / "programs", samples()])
+
+
+# --- From what proving reports to what the executor demands before it starts.
+
+
+def proof_of(job: Job, report: Report) -> Proof:
+    """The proof of this job; the report must be of this job's text and circumstances."""
+    return Proof(
+        digest=job.digest,
+        errors=tuple(d.shown(job.source.name) for d in report.errors),
+        blocks=report.elementary,
+        cycle_time=report.times.cycle,
+        tools=report.tools,
+        needs=report.needs,
+    )
+
+
+# --- Drawing a program in the frame of other offsets than its own: what a change of offsets does to its path.
+
+
+def drawer(machine: Machine) -> Draw:
+    """Draws a job on this machine, each tool in the frame of the offset that is given for it."""
+
+    def draw(job: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
+        from app.path.path_picture import sketched
+        from core.proving.program_timeline import Timeline, timed_blocks
+
+        blocks = timed_blocks(Timeline.of(job.reading, job.setup, machine))
+        return sketched(_seen(blocks, frame), watch)
+
+    return draw
+
+
+def _seen(blocks: Iterator[Timed], frame: Mapping[int, ToolOffset]) -> Iterator[Timed]:
+    """The same blocks, with part zero where the offsets of ``frame`` have it."""
+    for block, start, end in blocks:
+        modal = block.modal
+        offset = frame.get(modal.tool, ToolOffset())
+        if (modal.tool_x, modal.tool_z) == (offset.x, offset.z):
+            yield block, start, end
+        else:
+            yield replace(block, modal=modal._replace(tool_x=offset.x, tool_z=offset.z)), start, end
+
+
+# --- MDI of a desk: how its lines are proved on this machine.
+
+
+def point_of(snapshot: Snapshot) -> Checkpoint:
+    """What the next line inherits at the machine of this instant."""
+    return Checkpoint(snapshot.modal, tool_line=-1 if snapshot.tool_open else 0)
+
+
+def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
+    """Proves a line as a program is proved, from where the slides stand."""
+
+    def prove_line(text: str, snapshot: Snapshot, watch: Watch) -> tuple[Job, Proved]:
+        pass
+        from core.proving.prove_program import prove
+
+        tools, secondary = offsets()
+        setup = replace(
+            setup_for(machine, tools=tools, secondary=secondary),
+            start=snapshot.demand,
+            begin=Begin(point_of(snapshot), single=True),
+        )
+        job = make_job(Source("MDI", text), setup)
+        report = prove(job.reading, job.setup, machine, watch)
+        return job, Proved(proof_of(job, report), report.diagnostics)
+
+    return prove_line
+
+
+def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
+    """Give the desk its MDI."""
+    prove_line = line_prover(machine, offsets)
+    desk.mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))
+
+
+# --- SEARCHTO of a desk on this machine.
+
+
+_MODEST = 0.2  # of the manual rapid: legs within the part
+
+
+def rebuilt(job: Job, watch: Watch) -> StateRebuild:
+    """What goes through the program of a job; the interpreter is loaded when it is first asked for."""
+    from core.interpreter.restart.state_rebuild import StateRebuild
+
+    return StateRebuild(job.source, job.setup, watch)
+
+
+def give_searchto(desk: Desk, machine: Machine) -> None:
+    """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
+    rapid = machine.manual_rapid
+    choices = Choices(rapid=rapid, modest=_MODEST * rapid)
+    desk.searchto = SearchtoModel(
+        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices
+    )

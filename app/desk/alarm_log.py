@@ -14,7 +14,7 @@ from datetime import datetime
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event
-from core.store.rows import EventRow
+from core.store.store_rows import EventRow
 
 KEPT = 500
 KINDS = frozenset({"alarm", "estop", "stop"})  # of events

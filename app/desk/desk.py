@@ -41,7 +41,7 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import Event, Snapshot, Starts, State
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
     from app.editor.editor import Editor
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from app.programs.program_list import FilesDesk
     from app.searchto.searchto_model import SearchtoModel
     from app.special.special_functions import SpecialDesk
-    from core.machine.model import Machine
+    from core.machine.machine_model import Machine
 
 # --- What a desk is made of, and what it answers with; nothing of it computes or waits.
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from app.desk.translation import tr
-from core.machine.changes import Change
+from core.machine.machine_changes import Change
 
 
 def _forget() -> None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from core.store.errors import StoreError
-from core.store.rows import EventRow, RunRow
+from core.store.store_errors import StoreError
+from core.store.store_rows import EventRow, RunRow
 
 NOTHING_KEPT = "nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)"
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
 
 from app.desk.persistence import NoPersistence, Persistence
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 KEY = "screen"
 

@@ -9,8 +9,8 @@ from app.desk.program_folder import ENDINGS
 from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
 from core.language.source import SourceError, load_source
-from core.store.errors import StoreError
-from core.store.programs import check_name
+from core.store.program_records import check_name
+from core.store.store_errors import StoreError
 
 USUAL_ENDING = ".nc"
 MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them

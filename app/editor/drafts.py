@@ -11,7 +11,7 @@ from app.desk.latest import Latest
 from app.editor import messages
 from app.editor.document import Document
 from app.editor.versions import Archive
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 WHY = "typed and not saved"
 

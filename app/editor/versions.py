@@ -10,8 +10,8 @@ from typing import Protocol
 
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import LoadingSteps
-from core.store.errors import StoreError
-from core.store.rows import VersionRow
+from core.store.store_errors import StoreError
+from core.store.store_rows import VersionRow
 
 
 class Archive(Protocol):

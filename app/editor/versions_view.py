@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.editor.versions import History, Row
 from app.screen.look import LEFT, RIGHT, Look, put, put_raw
 from app.screen.panel import Panel
-from core.store.rows import VersionRow
+from core.store.store_rows import VersionRow
 
 ROW = 5.2  # units: a version, a fingertip high
 LINE = 2.9  # units: a line of the comparison

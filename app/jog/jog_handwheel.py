@@ -14,8 +14,8 @@ from app.jog.held_jog import BEGINS, RENEWED, JogHold
 from app.jog.jog_speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Wheel, WheelOff
 from core.executor.snapshot import Snapshot
-from core.machine.hardware.wheel import FACTORS, WHEEL, selector
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
+from core.machine.station_rules import FACTORS, WHEEL, selector
 
 FINE = 2  # of the steps: .001 in
 _LONG = 0  # .1 in is for keys

@@ -10,7 +10,7 @@ from typing import Protocol
 from app.desk.translation import tr
 from core.executor.commands import Command, Home
 from core.executor.snapshot import Snapshot, State
-from core.machine.model import Axis, Machine
+from core.machine.machine_model import Axis, Machine
 
 
 class Known(StrEnum):

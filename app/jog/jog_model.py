@@ -17,7 +17,7 @@ from app.jog.tool_setting import TOOL, ToolSetting
 from app.jog.touch_off import TOUCH_X, TOUCH_Z, TOUCHES
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 # --- Which step and which speed a hand move has: any change ends what is held.
 

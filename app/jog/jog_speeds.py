@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.desk.formats import MM_PER_INCH
 from app.offsets.offset_values import Mode
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
     (0.1, 0.01, 0.001, 0.0001),

@@ -18,7 +18,7 @@ from app.screen import page_table
 from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.page_base import Doings, Host, Page
 from core.executor.snapshot import Snapshot
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 Key = Qt.Key
 CHORDS = (

@@ -17,8 +17,8 @@ from app.offsets.offset_values import TOOL_FIELDS, Mode, marked, not_set, shown_
 from app.offsets.secondary_dialogue import CHARACTERS
 from app.offsets.tool_cells import ToolCells
 from core.executor.snapshot import Snapshot
-from core.store.fields import Sort
-from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
+from core.store.offset_fields import Sort
+from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
 # --- Tool setting in words: what is asked, what the answer would make of the tool, where its tip stands.
 

@@ -14,7 +14,7 @@ from app.offsets.offset_history import Ledger
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_cells import NewTool
 from core.executor.snapshot import Snapshot, State
-from core.store.toolset import Touch
+from core.store.touch_off import Touch
 
 TOUCH_X, TOUCH_Z = "touch x", "touch z"
 TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}

@@ -16,7 +16,7 @@ from core.executor.commands import Command, Prepare, SpindleStop
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic, Severity
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 # --- What MDI says of a line besides what proving says, and what the prompt line asks for next.
 

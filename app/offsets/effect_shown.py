@@ -12,7 +12,7 @@ from app.desk.translation import tr
 from app.offsets.effect import Compared, Effect, Tables
 from app.offsets.offset_book import secondary_offsets, tool_offsets
 from app.offsets.offset_history import Ledger
-from core.store.rows import Change, Kind, SecondaryRow, ToolRow
+from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
 R = TypeVar("R", ToolRow, SecondaryRow)
 Rows = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]

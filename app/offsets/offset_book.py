@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
-from core.store.errors import StoreError
-from core.store.rows import Change, Kind, Row, SecondaryRow, ToolRow, Value
-from core.store.toolset import Touch
-from core.store.zero import ZeroChange, ZeroRow
+from core.store.store_errors import StoreError
+from core.store.store_rows import Change, Kind, Row, SecondaryRow, ToolRow, Value
+from core.store.touch_off import Touch
+from core.store.zero_offset_table import ZeroChange, ZeroRow
 
 if TYPE_CHECKING:
     from core.store.store import Store

@@ -11,9 +11,9 @@ from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import counts_later
 from app.offsets.offset_values import Mode, in_words, shown_value, word, zero_change_in_words
 from core.executor.snapshot import Snapshot
-from core.store.errors import StoreError
-from core.store.rows import Change, Kind, Row, ToolRow
-from core.store.zero import ZeroChange
+from core.store.store_errors import StoreError
+from core.store.store_rows import Change, Kind, Row, ToolRow
+from core.store.zero_offset_table import ZeroChange
 
 # --- A change of the history in words.
 

@@ -10,9 +10,9 @@ from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH, fixed
 from app.desk.translation import tr
-from core.store.fields import FIELDS, Field, Sort
-from core.store.rows import Kind, Row, SecondaryRow, ToolRow, Value
-from core.store.zero import ZeroChange, ZeroRow, reach
+from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.store_rows import Kind, Row, SecondaryRow, ToolRow, Value
+from core.store.zero_offset_table import ZeroChange, ZeroRow, reach
 
 # --- How offsets are written: inch with 5 places, metric with 4, always with their sign.
 

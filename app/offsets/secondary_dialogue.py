@@ -11,7 +11,7 @@ from app.desk.formats import length
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import Mode, added, to_mm
-from core.store.rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow
+from core.store.store_rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow
 
 # --- What a typed value does to a secondary offset, in the control's words.
 

@@ -13,7 +13,7 @@ from app.offsets.offset_history import Ledger
 from app.offsets.offset_values import Mode, in_words
 from app.offsets.secondary_dialogue import KEYS, Dialogue, Step
 from core.executor.snapshot import Snapshot
-from core.store.rows import Kind
+from core.store.store_rows import Kind
 
 
 @dataclass(slots=True)

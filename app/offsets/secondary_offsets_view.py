@@ -20,7 +20,7 @@ from app.screen.entry_panel import Asked
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.page_base import Host
 from app.screen.panel import Panel
-from core.store.rows import SecondaryRow
+from core.store.store_rows import SecondaryRow
 
 # --- Thirty-two secondary offsets in two columns of sixteen; a finger has eight of them brought near first.
 

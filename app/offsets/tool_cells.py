@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from app.desk.translation import tr
 from app.offsets.offset_history import Ledger
 from app.offsets.offset_values import value_added, value_typed, word
-from core.store.rows import Kind, Value
+from core.store.store_rows import Kind, Value
 
 
 @dataclass(slots=True)

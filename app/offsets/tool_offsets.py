@@ -15,7 +15,7 @@ from app.offsets.offset_values import marked, not_set, shown_value, value_typed,
 from app.offsets.secondary_dialogue import CHARACTERS
 from app.offsets.tool_cells import ToolCells
 from core.executor.snapshot import Snapshot
-from core.store.rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
+from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, ToolRow
 
 # --- F8 in words: the cells of the table, the question, and what an answer would change.
 

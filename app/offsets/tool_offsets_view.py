@@ -20,7 +20,7 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.page_base import Doings, Host
 from app.screen.panel import Panel
 from app.screen.tool_tip_drawing import draw_tip
-from core.store.rows import OFFSETS
+from core.store.store_rows import OFFSETS
 
 # --- F8's table: some of the 32 tools, each field a cell that a finger or the cursor chooses.
 

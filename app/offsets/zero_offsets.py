@@ -14,7 +14,7 @@ from app.offsets.offset_history import ZeroLedger
 from app.offsets.offset_values import shown_zero, zero_touched, zero_typed
 from app.offsets.secondary_dialogue import CHARACTERS
 from core.executor.snapshot import Snapshot, State
-from core.store.zero import CODES, FIELDS, ZeroRow
+from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow
 
 KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
 _STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
@@ -41,12 +41,12 @@ class ZeroDesk:
     @property
     def code(self) -> int:
         """The G code of the chosen row."""
-        return CODES[self.row]
+        return ZERO_CODES[self.row]
 
     @property
     def name(self) -> str:
         """The field of the chosen column: x, z or c."""
-        return FIELDS[self.column]
+        return ZERO_FIELDS[self.column]
 
     def barred(self, snapshot: Snapshot) -> str:
         """Why nothing may be changed now; empty when it may."""
@@ -107,9 +107,9 @@ class ZeroDesk:
 
     def move(self, rows: int, columns: int) -> None:
         """Another cell; what was typed and not entered is forgotten."""
-        at = self.row * len(FIELDS) + self.column + rows * len(FIELDS) + columns
-        at %= len(CODES) * len(FIELDS)
-        self.row, self.column, self.text = at // len(FIELDS), at % len(FIELDS), ""
+        at = self.row * len(ZERO_FIELDS) + self.column + rows * len(ZERO_FIELDS) + columns
+        at %= len(ZERO_CODES) * len(ZERO_FIELDS)
+        self.row, self.column, self.text = at // len(ZERO_FIELDS), at % len(ZERO_FIELDS), ""
 
     def choose(self, row: int, column: int) -> None:
         """The cell that a finger touched."""

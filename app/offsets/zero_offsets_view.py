@@ -22,7 +22,7 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.page_base import Doings, Host, Page
 from app.screen.panel import Panel
 from core.executor.snapshot import Snapshot
-from core.store.zero import CODES, FIELDS, ZeroRow
+from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow
 
 # --- G54 to G59, a row each: X, Z and C.
 
@@ -49,36 +49,36 @@ class ZeroTable(Panel):
     def draw(self, painter: QPainter) -> None:
         self.frame(painter, tr("SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES"))
         room, u = self.inside(), self.look.u
-        high = min(room.height() / (len(CODES) + 1), 8.0 * u)
+        high = min(room.height() / (len(ZERO_CODES) + 1), 8.0 * u)
         self._head(painter, QRectF(room.x(), room.y(), room.width(), high))
-        for row in range(len(CODES)):
+        for row in range(len(ZERO_CODES)):
             self._row(
                 painter, QRectF(room.x(), room.y() + (row + 1) * high, room.width(), high - 0.5 * u), row
             )
 
     def _cells(self, row: QRectF) -> list[QRectF]:
-        wide = row.width() * (1.0 - _NAME) / len(FIELDS)
+        wide = row.width() * (1.0 - _NAME) / len(ZERO_FIELDS)
         left = row.x() + row.width() * _NAME
         return [
             QRectF(left + n * wide, row.y(), wide - 0.5 * self.look.u, row.height())
-            for n in range(len(FIELDS))
+            for n in range(len(ZERO_FIELDS))
         ]
 
     def _head(self, painter: QPainter, row: QRectF) -> None:
         painter.setPen(self.look.colour("soft"))
         painter.setFont(self.look.font(2.4, bold=True))
-        for name, cell in zip(FIELDS, self._cells(row), strict=True):
+        for name, cell in zip(ZERO_FIELDS, self._cells(row), strict=True):
             put(painter, cell, CENTRE, name.upper())
 
     def _row(self, painter: QPainter, box: QRectF, row: int) -> None:
-        look, u, code = self.look, self.look.u, CODES[row]
+        look, u, code = self.look, self.look.u, ZERO_CODES[row]
         if code == self.in_force:
             painter.fillRect(QRectF(box.x(), box.y(), 0.6 * u, box.height()), look.colour("lit"))
         painter.setPen(look.colour("accent"))
         painter.setFont(look.font(2.8, bold=True))
         put(painter, box.adjusted(1.6 * u, 0, 0, 0), LEFT, f"G{code}")
         offset = self.rows.get(code)
-        for column, (name, cell) in enumerate(zip(FIELDS, self._cells(box), strict=True)):
+        for column, (name, cell) in enumerate(zip(ZERO_FIELDS, self._cells(box), strict=True)):
             here = (row, column) == self.cell
             painter.fillRect(cell, look.colour("here" if here else "key"))
             painter.setPen(look.colour("text" if offset is not None or here else "soft"))

@@ -7,8 +7,8 @@ from pathlib import Path
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ENDINGS
 from app.programs.whole_file import SavingError, present, write_whole
-from core.store.errors import StoreError
-from core.store.programs import check_name
+from core.store.program_records import check_name
+from core.store.store_errors import StoreError
 
 
 class FileError(Exception):

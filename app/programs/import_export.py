@@ -19,7 +19,7 @@ from app.programs.program_rows import chooser_sheet
 from app.programs.whole_file import SavingError, present, write_whole
 from app.special.section import Key, Sheet
 from core.language.source import SourceError, load_source
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 # --- Programs in and out by folder and USB stick. On a worker.
 

@@ -14,7 +14,7 @@ from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
 from app.special.section import Row, Sheet
-from core.store.rows import RunRow
+from core.store.store_rows import RunRow
 
 if TYPE_CHECKING:
     from app.programs.folder_chooser import Chooser

@@ -10,8 +10,8 @@ from app.desk import prompt_line
 from app.desk.persistence import NoPersistence, Persistence
 from app.desk.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
-from core.store.errors import StoreError
 from core.store.store import Store
+from core.store.store_errors import StoreError
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
 CUT_OFF = "CUT OFF"  # the control ended in its middle: found at the next start

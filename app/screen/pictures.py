@@ -47,8 +47,8 @@ class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
-        from app.cli.offset_file import read_offsets
-        from app.compose.screen import desk_and_executor, step_clock
+        from app.cli.toml_files import read_offsets
+        from app.compose.screen_desk import desk_and_executor, step_clock
         from app.compose.workshop import samples
         from app.offsets.offset_book import OffsetBook
         from core.store.store import Store
@@ -69,7 +69,7 @@ class Stage:
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
-        from app.cli.offset_file import read_offsets
+        from app.cli.toml_files import read_offsets
         from app.compose.workshop import samples
 
         for number, tool in read_offsets(samples() / "offsets.toml")[0].items():

@@ -112,9 +112,8 @@ class _Carry:
 
 
 def _composed(machine: str | None, offsets: str | None) -> Desk:
-    from app.compose.offsets import chosen_offsets
-    from app.compose.screen import build_desk
-    from app.compose.zero_offsets import chosen_zero
+    from app.compose.screen_desk import build_desk
+    from app.compose.stored_offsets import chosen_offsets, chosen_zero
 
     return build_desk(machine, chosen_offsets(offsets), chosen_zero(offsets))
 

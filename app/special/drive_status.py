@@ -7,7 +7,7 @@ from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.special.section import Row, Section, Sheet
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.machine.model import Axis, Machine
+from core.machine.machine_model import Axis, Machine
 
 OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
 HOW = {"lathe": "X IS A RADIUS FROM HOME", "mill": "FROM HOME"}

@@ -11,7 +11,7 @@ from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.special.section import Entry, Key, Row, Section, Sheet
 from core.executor.snapshot import Snapshot
-from core.store.rows import EventRow
+from core.store.store_rows import EventRow
 
 SHOWN = 500
 EVERY = 1.0  # seconds between two looks at a log that is open

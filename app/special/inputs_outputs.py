@@ -12,7 +12,7 @@ from app.desk.translation import tr
 from app.special.section import Key, Row, Section, Sheet
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 NOT_NOW = "OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES"
 AT_REST = frozenset({State.IDLE, State.DISABLED})

@@ -10,7 +10,7 @@ from app.desk.persistence import NoPersistence, Persistence
 from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 MOST = 9_999_999
 _RUNNING = frozenset({State.RUN, State.WAIT})

@@ -11,7 +11,7 @@ from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.section import FigureSection, Key, Row, Sheet
 from core.executor.snapshot import Snapshot
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"

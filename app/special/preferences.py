@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.special.section import Row, Section, Sheet
 from core.executor.snapshot import Snapshot
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 WORDS = {
     "units": "UNITS OF THE FIGURES",

@@ -12,7 +12,7 @@ from app.desk.translation import tr
 from app.special.section import FigureSection, Key, Row, Sheet
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
-from core.machine.model import SpindleModel
+from core.machine.machine_model import SpindleModel
 
 LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
 

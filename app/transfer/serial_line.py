@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from core.machine.hardware.model import DncModel
+from core.machine.hardware_model import DncModel
 
 T_co = TypeVar("T_co", covariant=True)
 

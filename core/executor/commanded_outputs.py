@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from core.machine.model import OutputModel
+from core.machine.machine_model import OutputModel
 from core.ports import DigitalIO
 
 _TELLS = 0.5  # s in which an output that was written may still be told as it was before

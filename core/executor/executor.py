@@ -24,7 +24,7 @@ from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import guard_open
 from core.interpreter.job_setup import Setup
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError
 

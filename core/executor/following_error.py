@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from core.alarms import Code
 from core.executor.raised_alarm import AlarmError
-from core.machine.model import Axis
+from core.machine.machine_model import Axis
 from core.ports import AxisSample
 
 _HOST = 0.03  # s beyond a drive's own time: a drive that trips by itself is to be heard first

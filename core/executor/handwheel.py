@@ -14,8 +14,8 @@ from core.executor.commands import Wheel
 from core.executor.jogging import LONGEST_LEASE, Jogger, Ramp, at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State
-from core.machine.hardware.wheel import ENABLE, WHEEL, selector
-from core.machine.model import Axis
+from core.machine.machine_model import Axis
+from core.machine.station_rules import ENABLE, WHEEL, selector
 
 # --- counts and clicks ----------------------------------------------------------------------------------
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.executor.machine_context import MachineContext
-from core.machine.model import Axis
+from core.machine.machine_model import Axis
 from core.ports import BlockSink, DriverError, Segments, at_rest
 
 # --- setpoints of one axis ------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from core.executor.operator_station import StationSignals
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Alarm, Event
 from core.executor.spindle_control import SpindleControl
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.ports import AxisSample, MachinePorts
 
 _log = logging.getLogger(__name__)

@@ -13,7 +13,7 @@ from core.interpreter.actions import SpindleRun
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.elementary_blocks import Block, Kind
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
-from core.machine.model import Axis, Machine
+from core.machine.machine_model import Axis, Machine
 
 
 class ProgramPass(NamedTuple):

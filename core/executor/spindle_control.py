@@ -13,7 +13,7 @@ import numpy as np
 from core.executor.raised_alarm import AlarmError
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block
-from core.machine.model import SpindleModel
+from core.machine.machine_model import SpindleModel
 from core.ports import Spindle, SpindleHold, code_of
 
 # --- the angle of the spindle ---------------------------------------------------------------------------

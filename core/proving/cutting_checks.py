@@ -10,7 +10,7 @@ from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 LIVE = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""

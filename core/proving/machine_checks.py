@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.language.diagnostics import Diagnostic, Severity
-from core.machine.model import Axis, Machine
+from core.machine.machine_model import Axis, Machine
 
 MM_PER_INCH = 25.4
 

@@ -24,7 +24,7 @@ from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.program_size import terminal
 from core.language.diagnostics import Diagnostic, Severity
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.block_delete import in_order
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.program_timeline import MotionSpan, RestSpan, RestState, Timeline

@@ -16,7 +16,7 @@ from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.window_planner import Chunk, ChunkPlanner
 from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast

@@ -15,7 +15,7 @@ from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.interpreter.machine_requirements import Need, first_needs, needs_of
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.machine_checks import c_findings, travel_findings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline

@@ -8,7 +8,7 @@ from dataclasses import replace
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.block_delete import deletes_blocks, with_the_other
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.program_branches import Branches

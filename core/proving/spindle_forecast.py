@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08

@@ -10,11 +10,37 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
-from core.store import checking, database
-from core.store.causes import Cause, cause_of, why
-from core.store.errors import StoreError
-from core.store.lock import WriterLock
-from core.store.opening import make_folder
+from core.store import database, program_records
+from core.store.database import WriterLock, make_folder
+from core.store.store_errors import Cause, StoreError, cause_of, why
+
+# --- Is everything in a store as it was stored?
+
+
+def problems(path: Path) -> tuple[str, ...]:
+    """What is wrong inside ``path``, which is not written to: pages, references, program texts.
+
+    Raises StoreError when it is no store of ours or of a newer version.
+    """
+    database.check_file(path, thorough=False)
+    connection = database.connect(path, read_only=True)
+    try:
+        return _found(connection)
+    except sqlite3.Error as error:
+        return (f"the file is damaged: {error}",)
+    finally:
+        connection.close()
+
+
+def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
+    pages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
+    found = [f"the file is damaged: {text}" for text in pages if text != "ok"]
+    found += [
+        f"a row of {table} points to a row of {parent} that is not there"
+        for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
+    ]
+    found += [f"{which} is not what was saved" for which in program_records.spoilt(connection)]
+    return tuple(found)
 
 
 def backup(folder: Path, target: Path) -> None:
@@ -29,7 +55,7 @@ def backup(folder: Path, target: Path) -> None:
         if target.samefile(path):
             raise StoreError(f"{target} is the store itself; name another file for the backup")
         database.check_header(target)
-    found = checking.problems(path)
+    found = problems(path)
     if found:
         raise StoreError(f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup")
     _copy(path, target)
@@ -40,7 +66,7 @@ def restore(folder: Path, source: Path) -> Path | None:
 
     The backup is checked through first. Raises StoreError when it is no good or the store is in use.
     """
-    found = checking.problems(source)
+    found = problems(source)
     if found:
         raise StoreError(f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup")
     make_folder(folder)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import sqlite3
 from collections.abc import Sequence
-from contextlib import closing
+from contextlib import ExitStack, closing, suppress
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from core.store.causes import Cause, why
-from core.store.errors import StoreError
+from core.store.store_errors import Cause, StoreError, cause_of, why
 
 FILE_NAME = "turndesk.db"
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
@@ -153,3 +154,131 @@ def empty() -> sqlite3.Connection:
 def companions(path: Path) -> tuple[Path, Path]:
     """SQLite's write-ahead log and its index beside a database."""
     return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
+
+
+# --- One process writes a store. The kernel gives the lock back when that process ends, however it ends.
+
+
+class WriterLock:
+    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "turndesk.lock"
+        try:
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
+        except OSError as error:
+            raise why(self._path, error) from error
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            owner = os.read(self._file, 32).decode("ascii", "replace").strip()
+            os.close(self._file)
+            who = f" (process {owner})" if owner else ""
+            raise StoreError(
+                f"the store in {folder} is in use by another TurnDesk{who}; close that one, or enter it there"
+            ) from error
+        with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
+            os.ftruncate(self._file, 0)
+            os.pwrite(self._file, f"{os.getpid()}\n".encode("ascii"), 0)
+
+    def close(self) -> None:
+        """Give the store free. Calling it again does nothing."""
+        if self._file >= 0:
+            os.close(self._file)
+            self._file = -1
+
+
+# --- Opening a store: nothing is written before the file has been found to be a whole one of ours.
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """The connections of an open store; no ``writer``: for reading only."""
+
+    path: Path
+    reader: sqlite3.Connection
+    writer: sqlite3.Connection | None = None
+    lock: WriterLock | None = None
+
+    def close(self) -> None:
+        """Ends the connections, then gives the lock back. Calling it again does nothing."""
+        self.reader.close()
+        if self.writer:
+            self.writer.close()
+        if self.lock:
+            self.lock.close()
+
+
+def open_to_read(folder: Path) -> Opened:
+    """The store as it is; an empty one where there is no file. Raises StoreError for a bad file."""
+    path = folder / FILE_NAME
+    if not path.exists():
+        return Opened(path, empty())
+    version = check_file(path, thorough=False)
+    if version < len(migrations()):
+        raise StoreError(f"{path} is from an older TurnDesk; start turndesk once to bring it up to date")
+    return Opened(path, connect(path, read_only=True))
+
+
+def open_to_write(folder: Path) -> Opened:
+    """The store under our lock, brought up to date; made where there is none. Raises StoreError."""
+    path = folder / FILE_NAME
+    make_folder(folder)
+    with ExitStack() as undo:
+        lock = WriterLock(folder)
+        undo.callback(lock.close)
+        if not path.exists():
+            _refuse_lost_file(path)
+            create(path)
+        version = check_file(path, thorough=True)
+        writer = _writing(path, version)
+        undo.callback(writer.close)
+        reader = connect(path, read_only=True)
+        undo.pop_all()
+        return Opened(path, reader, writer, lock)
+
+
+def make_folder(folder: Path) -> None:
+    """The store's folder. Raises StoreError where it cannot be made."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        if cause_of(folder, error) is Cause.FULL:
+            raise why(folder, error) from error
+        raise StoreError(
+            f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours"
+        ) from error
+
+
+def _refuse_lost_file(path: Path) -> None:
+    """A log without its database would be poured into the new, empty one."""
+    log, _ = companions(path)
+    if log.exists() and log.stat().st_size:
+        raise StoreError(
+            f"{path} has gone but its log {log.name} is still there; put the file back, or move the log away"
+        )
+
+
+def _writing(path: Path, version: int) -> sqlite3.Connection:
+    connection = connect(path, read_only=False)
+    try:
+        if 0 < version < len(migrations()):
+            _keep_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))
+        connection.execute("PRAGMA journal_mode = WAL")
+        migrate(connection, migrations())
+    except sqlite3.Error as error:
+        connection.close()
+        raise why(path, error) from error
+    except StoreError:
+        connection.close()
+        raise
+    return connection
+
+
+def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:
+    """The store as the older version had it, kept beside the one that is about to change."""
+    copy = sqlite3.connect(target)
+    try:
+        connection.backup(copy)
+    finally:
+        copy.close()

@@ -3,22 +3,120 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterable, Mapping
+import threading
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from core.store import offsets, programs, records, runs, toolset, zero
-from core.store.errors import StoreError
-from core.store.offsets import Reason
-from core.store.opening import Opened, open_to_read, open_to_write
-from core.store.reading import StoreReader
-from core.store.rows import Change, EventRow, Kind, Row, SecondaryRow, ToolRow, Value, utc_now
-from core.store.toolset import Touch
-from core.store.unwritten import Held, Unwritten
-from core.store.writer import Keeping, Operation, StoreWriter
-from core.store.zero import ZeroChange, ZeroRow
+from core.store import event_log, offset_tables, program_records, touch_off, zero_offset_table
+from core.store.database import Opened, open_to_read, open_to_write
+from core.store.offset_tables import Reason
+from core.store.store_errors import StoreError, why
+from core.store.store_rows import (
+    Change,
+    EventRow,
+    Kind,
+    ProgramRow,
+    Row,
+    RunRow,
+    SecondaryRow,
+    ToolRow,
+    Value,
+    VersionRow,
+    utc_now,
+)
+from core.store.store_writer import Held, Keeping, Operation, StoreWriter, Unwritten
+from core.store.touch_off import Touch
+from core.store.zero_offset_table import ZeroChange, ZeroRow
+
+# --- The reading half of the store: answers at once, from any thread, beside a writer anywhere.
+
+
+class StoreReader:
+    """Questions to a store. Every one of them raises StoreError when the file turns out to be damaged."""
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._reader = connection
+        self._reading = threading.Lock()
+
+    @contextmanager
+    def read(self) -> Iterator[sqlite3.Connection]:
+        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError."""
+        with self._reading:
+            try:
+                yield self._reader
+            except sqlite3.ProgrammingError as error:
+                raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
+            except sqlite3.Error as error:
+                raise why(self.path, error) from error
+
+    def tools(self) -> dict[int, ToolRow]:
+        """The tool offsets that have been set."""
+        with self.read() as connection:
+            return offset_tables.tools(connection)
+
+    def secondary(self) -> dict[int, SecondaryRow]:
+        """The secondary offsets that have been set."""
+        with self.read() as connection:
+            return offset_tables.secondary(connection)
+
+    def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
+        """Changes of offsets, newest first."""
+        with self.read() as connection:
+            return offset_tables.history(connection, kind, limit)
+
+    def zero_offsets(self) -> dict[int, ZeroRow]:
+        """The settable offsets G54…G59 that have been set."""
+        with self.read() as connection:
+            return zero_offset_table.current(connection)
+
+    def zero_history(self, limit: int = 100) -> tuple[ZeroChange, ...]:
+        """Changes of G54…G59, newest first."""
+        with self.read() as connection:
+            return zero_offset_table.history(connection, limit)
+
+    def programs(self) -> tuple[ProgramRow, ...]:
+        """All programs by name."""
+        with self.read() as connection:
+            return program_records.listing(connection)
+
+    def versions(self, name: str) -> tuple[VersionRow, ...]:
+        """Every version of a program, newest first."""
+        with self.read() as connection:
+            return program_records.versions(connection, name)
+
+    def load_program(self, name: str, version: int | None = None) -> bytes:
+        """The text as saved. Raises StoreError for a version that is not there or not as it was saved."""
+        with self.read() as connection:
+            return program_records.load(connection, name, version)
+
+    def events(self, search: str = "", limit: int = 100, kinds: Collection[str] = ()) -> tuple[EventRow, ...]:
+        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters.
+
+        With ``kinds`` only events of these.
+        """
+        with self.read() as connection:
+            return event_log.events(connection, search, limit, kinds)
+
+    def runs(self) -> tuple[RunRow, ...]:
+        """What each program has done."""
+        with self.read() as connection:
+            return program_records.all_of(connection)
+
+    def parts(self, program: str) -> int:
+        """Parts of this program that were counted."""
+        with self.read() as connection:
+            return program_records.parts(connection, program)
+
+    def setting(self, key: str) -> object:
+        """A setting, None: not set."""
+        with self.read() as connection:
+            return event_log.setting(connection, key)
+
 
 __all__ = ["Store", "StoreError"]
 
@@ -99,7 +197,7 @@ class Store(StoreReader):
     ) -> Future[Row]:
         """Sets the fields of offset 1…32 that ``values`` names, mm and X a radius; the rest stays."""
         reason, wanted = Reason(why, who), dict(values)
-        return self.write(lambda c: offsets.change(c, kind, number, reason, wanted))
+        return self.write(lambda c: offset_tables.change(c, kind, number, reason, wanted))
 
     def set_tool(self, number: int, why: str, *, who: str = "operator", **values: Value) -> Future[Row]:
         """Sets what is given of tool offset 1…32, by the names of ``ToolRow``."""
@@ -113,15 +211,15 @@ class Store(StoreReader):
         self, number: int, touch: Touch, why: str, *, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
         """Sets a tool by what it touched, and all with it when it is the master; answers the changes."""
-        return self.write(lambda c: toolset.touch_off(c, number, touch, Reason(why, who)))
+        return self.write(lambda c: touch_off.touch_off(c, number, touch, Reason(why, who)))
 
     def choose_master(self, number: int, why: str, *, who: str = "operator") -> Future[tuple[Change, ...]]:
         """The tool that the others are relative to, 0: none; no tip moves by it."""
-        return self.write(lambda c: toolset.choose_master(c, number, Reason(why, who)))
+        return self.write(lambda c: touch_off.choose_master(c, number, Reason(why, who)))
 
     def clear_secondary(self, why: str, *, who: str = "operator") -> Future[int]:
         """All D offsets at once, as one step of the history; answers how many were set."""
-        return self.write(lambda c: offsets.clear(c, Kind.SECONDARY, Reason(why, who)))
+        return self.write(lambda c: offset_tables.clear(c, Kind.SECONDARY, Reason(why, who)))
 
     def undo_offset(
         self, why: str = "undo", *, kind: Kind | None = None, who: str = "operator"
@@ -130,36 +228,36 @@ class Store(StoreReader):
 
         StoreError when there is none.
         """
-        return self.write(lambda c: offsets.undo(c, Reason(why, who), kind))
+        return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
 
     def set_zero(
         self, code: int, why: str, values: Mapping[str, float], *, who: str = "operator"
     ) -> Future[ZeroRow]:
         """Sets what ``values`` names of G54…G59: mm, X a radius, C in degrees; the rest stays."""
         wanted = dict(values)
-        return self.write(lambda c: zero.change(c, code, Reason(why, who), wanted))
+        return self.write(lambda c: zero_offset_table.change(c, code, Reason(why, who), wanted))
 
     def clear_zero(self, why: str, *, who: str = "operator") -> Future[int]:
         """All of G54…G59 at once, as one step of their history; answers how many were set."""
-        return self.write(lambda c: zero.clear(c, Reason(why, who)))
+        return self.write(lambda c: zero_offset_table.clear(c, Reason(why, who)))
 
     def undo_zero(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[ZeroChange, ...]]:
         """Takes the last change of G54…G59 back; again: the one before. StoreError when there is none."""
-        return self.write(lambda c: zero.undo(c, Reason(why, who)))
+        return self.write(lambda c: zero_offset_table.undo(c, Reason(why, who)))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
-        return self.write(lambda c: programs.save(c, name, text, why))
+        return self.write(lambda c: program_records.save(c, name, text, why))
 
     def rename_program(self, old: str, new: str) -> Future[None]:
         """Versions, part count and record go with a program that gets another name."""
-        return self.write(lambda c: runs.renamed(c, old, new))
+        return self.write(lambda c: program_records.renamed(c, old, new))
 
     # --- what must be kept, sooner or later: a disk that is full gets it when there is room again ----------
 
     def keep_program(self, name: str, text: bytes, why: str) -> Future[None]:
         """A version that nobody waits for."""
-        return self._keep_latest("text", name, lambda c: programs.save(c, name, text, why))
+        return self._keep_latest("text", name, lambda c: program_records.save(c, name, text, why))
 
     def log_event(self, kind: str, text: str, line: int = 0) -> Future[None]:
         """One line of the log, at this moment."""
@@ -190,18 +288,18 @@ class Store(StoreReader):
     def run_started(self, program: str) -> Future[None]:
         """A run of this program begins now."""
         at = utc_now()
-        return self._keep_latest("start", program, lambda c: runs.started(c, program, at))
+        return self._keep_latest("start", program, lambda c: program_records.started(c, program, at))
 
     def run_ended(self, program: str, outcome: str) -> Future[None]:
         """How it ended."""
-        return self._keep_latest("end", program, lambda c: runs.ended(c, program, outcome))
+        return self._keep_latest("end", program, lambda c: program_records.ended(c, program, outcome))
 
     def runs_cut_off(self, outcome: str, words: str) -> Future[None]:
         """How those ended whose end was never told; a warning for each, its name before ``words``."""
 
         def operation(connection: sqlite3.Connection) -> None:
-            cut_off = runs.cut_off(connection, outcome)
-            records.log(connection, (EventRow(utc_now(), "warning", f"{name}{words}") for name in cut_off))
+            cut_off = program_records.cut_off(connection, outcome)
+            event_log.log(connection, (EventRow(utc_now(), "warning", f"{name}{words}") for name in cut_off))
 
         return self._keep_latest("start", "", operation)
 
@@ -212,12 +310,14 @@ class Store(StoreReader):
     def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
         """What proving found, and the cycle time it reckons with."""
         at = utc_now()
-        return self._keep_latest("proof", program, lambda c: runs.proved(c, program, result, planned, at))
+        return self._keep_latest(
+            "proof", program, lambda c: program_records.proved(c, program, result, planned, at)
+        )
 
     def set_setting(self, key: str, value: object) -> Future[None]:
         """Keeps anything JSON can hold; None forgets it. Raises StoreError for what it cannot hold."""
-        records.setting_text(key, value)
-        return self._keep_latest("setting", key, lambda c: records.set_setting(c, key, value))
+        event_log.setting_text(key, value)
+        return self._keep_latest("setting", key, lambda c: event_log.set_setting(c, key, value))
 
     def _keep_latest(self, what: str, of: str, operation: Operation[object]) -> Future[None]:
         return self.keep(lambda unwritten: unwritten.latest((what, of), operation))
@@ -237,12 +337,12 @@ class Store(StoreReader):
         def operation(connection: sqlite3.Connection) -> None:
             reason = Reason(why, "import")
             for name, text in texts.items():
-                programs.save(connection, name, text, why)
+                program_records.save(connection, name, text, why)
             for number, tool in tools.items():
-                offsets.change(connection, Kind.TOOL, number, reason, tool._asdict())
+                offset_tables.change(connection, Kind.TOOL, number, reason, tool._asdict())
             for number, row in secondary.items():
-                offsets.change(connection, Kind.SECONDARY, number, reason, row._asdict())
+                offset_tables.change(connection, Kind.SECONDARY, number, reason, row._asdict())
             for code, offset in (zero_rows or {}).items():
-                zero.change(connection, code, reason, offset._asdict())
+                zero_offset_table.change(connection, code, reason, offset._asdict())
 
         return self.write(operation)

@@ -119,52 +119,52 @@
       <translation>el almacén está cerrado</translation>
     </message>
     <message>
-      <location filename="app/compose/offsets.py" />
+      <location filename="app/compose/stored_offsets.py" />
       <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
       <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>MTCONNECT</source>
       <translation>MTCONNECT</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>NO SHOP-FLOOR DATA: {why}</source>
       <translation>SIN DATOS PARA LA PLANTA: {why}</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>SIMULATED</source>
       <translation>SIMULADO</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>SIMULATED SLIDES · REAL SPINDLE</source>
       <translation>CARROS SIMULADOS · HUSILLO REAL</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
       <translation>LO QUE GUARDA COMPENSACIONES Y CUENTAS</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT TALKS TO THE INVERTER</source>
       <translation>LO QUE HABLA CON EL VARIADOR</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT WATCHES THE PROGRAM'S FILE</source>
       <translation>LO QUE VIGILA EL ARCHIVO DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>machine file: %1</source>
       <translation>archivo de máquina: %1</translation>
     </message>
     <message>
-      <location filename="app/compose/screen.py" />
+      <location filename="app/compose/screen_desk.py" />
       <source>{what} HAS ENDED: SAVE THE LOG, END TURNDESK AND START IT AGAIN</source>
       <translation>{what} TERMINÓ: GUARDE LA BITÁCORA, CIERRE TURNDESK Y ÁBRALO OTRA VEZ</translation>
     </message>
@@ -12009,187 +12009,187 @@
       <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>the disk is full: {path} takes nothing more; make room on that disk</source>
       <translation>el disco está lleno: {path} no admite nada más; haga espacio en ese disco</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path} cannot be used ({error}); it is left as it is</source>
       <translation>{path} no se puede usar ({error}); se deja como está</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE</source>
       <translation>{path} está dañado ({error}); se deja como está. Restaure un respaldo: turndesk store restore FILE</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path} is locked by another program; close that one, then try again</source>
       <translation>{path} está bloqueado por otro programa; ciérrelo e intente otra vez</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path} is not there: look at the name, or put it back and start turndesk again</source>
       <translation>{path} no está: revise el nombre, o regréselo y arranque turndesk otra vez</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path} may not be used so by this user ({error}); check its rights and those of its folder</source>
       <translation>este usuario no puede usar así {path} ({error}); revise sus permisos y los de su carpeta</translation>
     </message>
     <message>
-      <location filename="core/store/causes.py" />
+      <location filename="core/store/store_errors.py" />
       <source>{path}: the disk fails ({error}); check that it is there and sound</source>
       <translation>{path}: el disco falla ({error}); revise que esté y que esté sano</translation>
     </message>
     <message>
-      <location filename="core/store/checking.py" />
+      <location filename="core/store/backup.py" />
       <source>%1 is not what was saved</source>
       <translation>%1 no es lo que se guardó</translation>
     </message>
     <message>
-      <location filename="core/store/checking.py" />
+      <location filename="core/store/backup.py" />
       <source>a row of %1 points to a row of %2 that is not there</source>
       <translation>un renglón de %1 apunta a un renglón de %2 que no está</translation>
     </message>
     <message>
-      <location filename="core/store/checking.py" />
+      <location filename="core/store/backup.py" />
       <source>the file is damaged: %1</source>
       <translation>el archivo está dañado: %1</translation>
     </message>
     <message>
-      <location filename="core/store/export.py" />
+      <location filename="core/store/store_export.py" />
       <source># Offsets in inches, X a radius.</source>
       <translation># Compensaciones en pulgadas, X es radio.</translation>
     </message>
     <message>
-      <location filename="core/store/export.py" />
+      <location filename="core/store/store_export.py" />
       <source>%1 is no exported folder (%2); name one that 'store export' wrote</source>
       <translation>%1 no es una carpeta exportada (%2); dé una escrita por 'store export'</translation>
     </message>
     <message>
-      <location filename="core/store/export.py" />
+      <location filename="core/store/store_export.py" />
       <source>%1 is not empty; name a new folder for the export</source>
       <translation>%1 no está vacía; dé una carpeta nueva para la exportación</translation>
     </message>
     <message>
-      <location filename="core/store/export.py" />
+      <location filename="core/store/store_export.py" />
       <source>[zero.%1]  # mm and degrees</source>
       <translation>[zero.%1]  # mm and degrees</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>%1…%2 in</source>
       <translation>%1…%2 pulg</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>nose radius</source>
       <translation>radio de punta</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>tip quadrant</source>
       <translation>cuadrante de punta</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>up to %1 characters in one line</source>
       <translation>hasta %1 caracteres en una línea</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>whole number</source>
       <translation>número entero</translation>
     </message>
     <message>
-      <location filename="core/store/fields.py" />
+      <location filename="core/store/offset_fields.py" />
       <source>yes or no</source>
       <translation>sí o no</translation>
     </message>
     <message>
-      <location filename="core/store/lock.py" />
+      <location filename="core/store/database.py" />
       <source> (process %1)</source>
       <translation> (proceso %1)</translation>
     </message>
     <message>
-      <location filename="core/store/lock.py" />
+      <location filename="core/store/database.py" />
       <source>the store in %1 is in use by another TurnDesk%2; close that one, or enter it there</source>
       <translation>otro TurnDesk%2 usa el almacén en %1; ciérrelo, o hágalo allá</translation>
     </message>
     <message>
-      <location filename="core/store/offsets.py" />
+      <location filename="core/store/offset_tables.py" />
       <source>%1 in</source>
       <translation>%1 pulg</translation>
     </message>
     <message>
-      <location filename="core/store/offsets.py" />
+      <location filename="core/store/offset_tables.py" />
       <source>%1 is out of range; enter %2</source>
       <translation>%1 está fuera de alcance; escriba %2</translation>
     </message>
     <message>
-      <location filename="core/store/offsets.py" />
+      <location filename="core/store/offset_tables.py" />
       <source>%1%2 does not exist; offsets are %31…32</source>
       <translation>%1%2 no existe; las compensaciones son %31…32</translation>
     </message>
     <message>
-      <location filename="core/store/offsets.py" />
+      <location filename="core/store/offset_tables.py" />
       <source>T%1 was never set, so nothing can be relative to it; touch it off first</source>
       <translation>T%1 nunca se puso, nada puede ser relativo a ella; tóquela primero</translation>
     </message>
     <message>
-      <location filename="core/store/offsets.py" />
+      <location filename="core/store/offset_tables.py" />
       <source>there is no offset change to undo</source>
       <translation>no hay cambio de compensación que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/opening.py" />
+      <location filename="core/store/database.py" />
       <source>%1 has gone but its log %2 is still there; put the file back, or move the log away</source>
       <translation>%1 ya no está pero su bitácora %2 sigue ahí; regrese el archivo, o mueva la bitácora</translation>
     </message>
     <message>
-      <location filename="core/store/opening.py" />
+      <location filename="core/store/database.py" />
       <source>%1 is from an older TurnDesk; start turndesk once to bring it up to date</source>
       <translation>%1 es de un TurnDesk anterior; arranque turndesk una vez para actualizarlo</translation>
     </message>
     <message>
-      <location filename="core/store/opening.py" />
+      <location filename="core/store/database.py" />
       <source>the folder %1 cannot be made (%2); set TURNDESK_HOME to a folder of yours</source>
       <translation>no se puede crear la carpeta %1 (%2); ponga TURNDESK_HOME en una carpeta suya</translation>
     </message>
     <message>
-      <location filename="core/store/programs.py" />
+      <location filename="core/store/program_records.py" />
       <source> version %1</source>
       <translation> versión %1</translation>
     </message>
     <message>
-      <location filename="core/store/programs.py" />
+      <location filename="core/store/program_records.py" />
       <source>%1 cannot name a program; take letters, digits, dot, dash and blank</source>
       <translation>%1 no puede nombrar un programa; use letras, números, punto, guion y espacio</translation>
     </message>
     <message>
-      <location filename="core/store/programs.py" />
+      <location filename="core/store/program_records.py" />
       <source>%1 version %2</source>
       <translation>%1 versión %2</translation>
     </message>
     <message>
-      <location filename="core/store/programs.py" />
+      <location filename="core/store/program_records.py" />
       <source>%1 version %2 is not what was saved; load another version or a backup</source>
       <translation>%1 versión %2 no es lo que se guardó; cargue otra versión o un respaldo</translation>
     </message>
     <message>
-      <location filename="core/store/programs.py" />
+      <location filename="core/store/program_records.py" />
       <source>the store has no program %1%2; see the list of programs and versions</source>
       <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
     </message>
     <message>
-      <location filename="core/store/reading.py" />
+      <location filename="core/store/store.py" />
       <source>%1 is closed; nothing can be read from it any more</source>
       <translation>%1 está cerrado; ya no se puede leer nada de él</translation>
     </message>
     <message>
-      <location filename="core/store/records.py" />
+      <location filename="core/store/event_log.py" />
       <source>the setting %1 cannot be stored: %2</source>
       <translation>el ajuste %1 no se puede guardar: %2</translation>
     </message>
@@ -12199,52 +12199,52 @@
       <translation>%1 está abierto sólo para lectura; no se puede guardar nada</translation>
     </message>
     <message>
-      <location filename="core/store/toolset.py" />
+      <location filename="core/store/touch_off.py" />
       <source>T%1 was never set; touch both X and Z</source>
       <translation>T%1 nunca se puso; toque X y Z</translation>
     </message>
     <message>
-      <location filename="core/store/unwritten.py" />
+      <location filename="core/store/store_writer.py" />
       <source>%1 events had no room while nothing could be written</source>
       <translation>%1 eventos no cupieron mientras no se podía escribir</translation>
     </message>
     <message>
-      <location filename="core/store/unwritten.py" />
+      <location filename="core/store/store_writer.py" />
       <source>not kept: %1</source>
       <translation>sin guardar: %1</translation>
     </message>
     <message>
-      <location filename="core/store/unwritten.py" />
+      <location filename="core/store/store_writer.py" />
       <source>other entry</source>
       <translation>otro apunte</translation>
     </message>
     <message>
-      <location filename="core/store/writer.py" />
+      <location filename="core/store/store_writer.py" />
       <source>nothing was stored (%1)</source>
       <translation>no se guardó nada (%1)</translation>
     </message>
     <message>
-      <location filename="core/store/writer.py" />
+      <location filename="core/store/store_writer.py" />
       <source>nothing was stored: %1, then enter it again</source>
       <translation>no se guardó nada: %1, y escríbalo de nuevo</translation>
     </message>
     <message>
-      <location filename="core/store/writer.py" />
+      <location filename="core/store/store_writer.py" />
       <source>the store is closed; nothing can be written any more</source>
       <translation>el almacén está cerrado; ya no se puede escribir nada</translation>
     </message>
     <message>
-      <location filename="core/store/zero.py" />
+      <location filename="core/store/zero_offset_table.py" />
       <source>G%1 %2 %3 is out of range; enter -%4…%5 %6</source>
       <translation>G%1 %2 %3 está fuera de alcance; escriba -%4…%5 %6</translation>
     </message>
     <message>
-      <location filename="core/store/zero.py" />
+      <location filename="core/store/zero_offset_table.py" />
       <source>G%1 does not exist; settable offsets are G54…G59</source>
       <translation>G%1 no existe; los ceros ajustables son G54…G59</translation>
     </message>
     <message>
-      <location filename="core/store/zero.py" />
+      <location filename="core/store/zero_offset_table.py" />
       <source>there is no change of G54…G59 to undo</source>
       <translation>no hay cambio de G54…G59 que deshacer</translation>
     </message>

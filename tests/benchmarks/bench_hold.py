@@ -11,15 +11,15 @@ import statistics
 import sys
 import time
 
-from app.compose.machine import read_machine, setup_for
-from app.compose.simulated import simulated
+from app.compose.machine_setup import read_machine, setup_for
+from app.compose.simulated_backend import simulated
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 
 TICK = 0.01
 PRESSES = 20

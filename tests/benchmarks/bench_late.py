@@ -22,13 +22,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import resources
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.store.database import FILE_NAME
-from drivers.simulated import SimMachine
+from drivers.lookalikes.plant_hands import SimMachine
 
 SHOWN = 0.01  # s between two lines of the child
 STALLS = (0.1, 0.3, 0.5, 1.0, 5.0)
@@ -51,7 +51,7 @@ class Child:
     """Words in by standard input, a line for each look out."""
 
     def __init__(self, machine_file: str) -> None:
-        from app.compose.screen import build_desk  # noqa: PLC0415  the parent needs none of it
+        from app.compose.screen_desk import build_desk  # noqa: PLC0415  the parent needs none of it
 
         self.desk = build_desk(machine_file)
         assert self.desk.lathe is not None

@@ -23,8 +23,8 @@ begun = float(sys.argv[1])
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from app.screen import main as screen
-from app.compose.offsets import chosen_offsets
-from app.compose.screen import build_desk
+from app.compose.stored_offsets import chosen_offsets
+from app.compose.screen_desk import build_desk
 desks, usable = [], []
 def build():
     desks.append(build_desk(None, chosen_offsets(sys.argv[3])))
@@ -48,9 +48,9 @@ HEADLESS = """
 import sys, time
 begun = float(sys.argv[1])
 from pathlib import Path
-from app.compose.machine import read_machine, setup_for
-from app.compose.offsets import chosen_offsets
-from app.compose.simulated import simulated
+from app.compose.machine_setup import read_machine, setup_for
+from app.compose.stored_offsets import chosen_offsets
+from app.compose.simulated_backend import simulated
 from app.desk.headless_run import HeadlessRun
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor

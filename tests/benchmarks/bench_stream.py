@@ -13,14 +13,14 @@ import time
 import numpy as np
 
 from app.compose.backends import connect
-from app.compose.machine import read_machine, setup_for
+from app.compose.machine_setup import read_machine, setup_for
 from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import Event, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
 from tests.benchmarks.bench_hold import TICK, chords
 
 HOG = "while True: sum(range(1000))"

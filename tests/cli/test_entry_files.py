@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.errors import CommandError
-from app.cli.inputs_file import read_inputs
-from app.cli.offset_file import read_offsets
+from app.cli.command_errors import CommandError
+from app.cli.toml_files import read_inputs, read_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 

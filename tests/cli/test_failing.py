@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.crash import report_crash, report_thread
-from app.compose.logs import Log
+from app.cli.crash_report import report_crash, report_thread
+from app.compose.error_log import Log
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
 
 CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"

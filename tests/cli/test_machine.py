@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.cli.machine_check import table
+from app.cli.machine_command import table
 from app.cli.main import main
-from drivers.simulated.ports import SimIO
+from drivers.simulated.simulated_machine import SimIO
 
 Captured = pytest.CaptureFixture[str]
 

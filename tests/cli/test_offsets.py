@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from core.store.rows import SecondaryRow, ToolRow
 from core.store.store import Store
+from core.store.store_rows import SecondaryRow, ToolRow
 
 Captured = pytest.CaptureFixture[str]
 

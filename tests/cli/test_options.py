@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.arguments import BEFORE
+from app.cli.command_parser import BEFORE
 from app.cli.main import COMMANDS, build_parser, main
 from tests.cli.conftest import Turndesk
 

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.errors import CommandError
-from app.cli.offset_file import read_offsets
-from app.cli.zero_file import read_zero
-from core.store.zero import ZeroRow
+from app.cli.command_errors import CommandError
+from app.cli.toml_files import read_offsets, read_zero
+from core.store.zero_offset_table import ZeroRow
 from tests.cli.conftest import Turndesk
 
 PROGRAM = "G54\nTRANS C30\nATRANS C10\nG0 X20 Z1 C=DC(0)\nM30\n"

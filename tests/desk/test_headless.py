@@ -10,7 +10,7 @@ from core.executor.job import Proof, make_job
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 
 
 @dataclass

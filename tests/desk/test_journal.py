@@ -9,7 +9,7 @@ import pytest
 
 from app.compose.journal import UNDER_WAY, Journal
 from core.executor.snapshot import Event
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 from tests.interrupted import broken_off
 
 

@@ -10,17 +10,17 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.accepted import differences, key_of, record_of
+from app.compose.accepted_machine import differences, key_of, record_of
 from app.compose.journal import Journal
-from app.compose.screen import desk_and_executor
+from app.compose.screen_desk import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.persistence import NoPersistence
 from app.special.machine_file_acceptance import MachineFileSection
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.machine.load import load_machine
-from core.machine.model import Machine
-from drivers.simulated import StepClock
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
+from drivers.clocks import StepClock
 
 SHIPPED = resources.machine_file("gt75.toml")
 

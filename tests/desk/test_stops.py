@@ -8,7 +8,7 @@ from app.desk.alarm_log import KEPT, StopLog, read_back
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event
-from core.store.rows import EventRow
+from core.store.store_rows import EventRow
 
 
 def event(code: Code, detail: str = "", line: int = 0) -> Event:

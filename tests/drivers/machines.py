@@ -7,16 +7,10 @@ import dataclasses
 import numpy as np
 
 from core.ports import Segments
-from drivers.simulated import (
-    SimAxis,
-    SimConfig,
-    SimMachine,
-    SimOutput,
-    SimSpindle,
-    Simulation,
-    StepClock,
-    build_simulation,
-)
+from drivers.clocks import StepClock
+from drivers.lookalikes.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
+from drivers.lookalikes.plant_hands import SimMachine
+from drivers.simulated.simulated_machine import Simulation, build_simulation
 
 SLIDE = SimAxis(
     name="X",

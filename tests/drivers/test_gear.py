@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from core.ports import Cam, DriverError, Gear, Segments, Stop, at_rest
-from drivers.phase import Phase
-from drivers.simulated import Simulation, StepClock
+from drivers.clocks import StepClock
+from drivers.simulated.simulated_machine import Simulation
+from drivers.spindle_gear import Phase
 from tests.drivers.machines import play, ramp, simulation
 
 ZERO = (0.0, 0.0, 0.0)

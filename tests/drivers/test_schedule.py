@@ -6,9 +6,11 @@ import dataclasses
 
 import pytest
 
-from core.machine.hardware.fields import SIM_FAULTS
+from core.machine.hardware_tables import SIM_FAULTS
 from core.ports import DriverError
-from drivers.simulated import PlannedFault, Simulation, StepClock, build_simulation
+from drivers.clocks import StepClock
+from drivers.lookalikes.plant_config import PlannedFault
+from drivers.simulated.simulated_machine import Simulation, build_simulation
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.simulated import StepClock, build_simulation
+from drivers.clocks import StepClock
+from drivers.simulated.simulated_machine import build_simulation
 from tests.drivers.machines import CONFIG
 
 

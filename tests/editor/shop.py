@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from app.compose.machine import setup_for
-from app.compose.proof import proof_of
+from app.compose.machine_setup import setup_for
+from app.compose.workshop import proof_of
 from app.desk.latest import Watch
 from app.desk.program_loading import LoadingSteps, Proved
 from app.editor.versions import Bench
@@ -16,11 +16,11 @@ from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source, load_source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove
-from core.store.errors import StoreError
-from core.store.rows import VersionRow
+from core.store.store_errors import StoreError
+from core.store.store_rows import VersionRow
 
 GOOD = "G90G94F300G72\nT1\nM03S1000\nX1Z.1\nZ-.5\nM05\nM30\n"
 TOOLS = {1: ToolOffset(-12.7, -76.2)}

@@ -17,7 +17,7 @@ from typing import Any
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
-from app.compose.proof import proof_of
+from app.compose.workshop import proof_of
 from core.executor.commands import (
     Command,
     CycleStart,

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from app.compose.machine import control_limits
-from app.compose.simulated import simulated
+from app.compose.machine_setup import control_limits
+from app.compose.simulated_backend import simulated
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
@@ -18,9 +18,10 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
-from core.machine.load import load_machine
-from core.machine.model import Machine
-from drivers.simulated import Simulation, StepClock
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
+from drivers.clocks import StepClock
+from drivers.simulated.simulated_machine import Simulation
 
 INCH = 25.4
 TICK = 0.01

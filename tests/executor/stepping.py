@@ -16,7 +16,7 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Severity
 from core.language.source import Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from tests.executor.rig import Rig
 
 STOPPED = {State.BLOCK_END, State.PROGRAM_STOP}

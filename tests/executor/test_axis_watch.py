@@ -10,7 +10,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverr
 from core.executor.following_error import FollowingErrorWatch
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from core.ports import AxisSample
 from tests.executor.rig import Rig
 

@@ -10,9 +10,9 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Res
 from core.executor.snapshot import Snapshot, State
 from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
-from core.machine.load import load_machine
-from core.machine.model import Machine
-from drivers.simulated import RealClock
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
+from drivers.clocks import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import INCH, Rig, unhomed_machine
 

@@ -14,7 +14,7 @@ from core.geometry.machine_travel import FloatArray, Travel
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.machine.load import parse_machine
+from core.machine.machine_file import parse_machine
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 

@@ -20,9 +20,9 @@ from core.executor.commands import (
 )
 from core.executor.handwheel import WheelClicks
 from core.executor.snapshot import State
-from core.machine.hardware.model import AnalogModel
-from core.machine.load import load_machine
-from core.machine.model import InputModel, Machine
+from core.machine.hardware_model import AnalogModel
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import InputModel, Machine
 from tests.executor.rig import INCH, TICK, Rig
 
 THOU = 0.001 * INCH

@@ -18,8 +18,8 @@ from core.executor.commands import (
     Reset,
 )
 from core.executor.snapshot import State
-from core.machine.load import load_machine
-from core.machine.model import Machine
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 
 AMAX = 120 * INCH

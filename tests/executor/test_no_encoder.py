@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from core.executor.snapshot import State
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from tests.executor.rig import Rig
 
 

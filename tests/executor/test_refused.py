@@ -22,7 +22,7 @@ from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_a
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.machine_requirements import THREAD, Need
 from core.language.source import Source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from tests.executor.rig import Rig, unhomed_machine
 
 TEXT = "G90G94F300\nX1\nM30\n"

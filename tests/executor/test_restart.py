@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.proof import proof_of
+from app.compose.workshop import proof_of
 from app.searchto.searchto_model import WAY_OUT
 from app.searchto.searchto_plan import leaving_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.offset_file import read_offsets
-from app.compose.machine import setup_for
+from app.cli.toml_files import read_offsets
+from app.compose.machine_setup import setup_for
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
 from core.language.sinumerik.subprogram_files import with_subprograms
 from core.language.source import Source, load_source
-from core.machine.load import load_machine, shipped_machine
-from core.machine.model import Machine
+from core.machine.machine_file import load_machine, shipped_machine
+from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, Rig
 from tests.executor.stepping import has_errors, stepped_through, steps_of
 from tests.interpreter.restart.test_everything import golden_setup

@@ -18,7 +18,7 @@ from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.ports import DriverError
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig
 
 TOOLS = {4: ToolOffset()}

@@ -12,7 +12,7 @@ from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.executor.watchdog import AGAIN, PATIENT, STUCK, ExecutorThread, Watchdog, running
-from drivers.grblhal import codes
+from drivers.grblhal import grblhal_codes
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.grbl import Grblhal
 from tests.drivers.contract.rig import TICK, Rig
@@ -139,8 +139,8 @@ def test_a_controller_is_held_first_and_then_reset() -> None:
     for _ in range(3 * AGAIN):
         away(rig, 0.1)
         dog.look()
-    assert sent[0] == bytes([codes.JOG_CANCEL, codes.HOLD])
-    assert set(sent[1:]) == {bytes([codes.RESET])}
+    assert sent[0] == bytes([grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
+    assert set(sent[1:]) == {bytes([grblhal_codes.RESET])}
     rig.close()
 
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.code_table import CHAPTERS, Entry
 from core.interpreter.omniturn.language_page import page
 from core.language.diagnostics import Severity
 from core.language.source import Source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 
 ENTRIES = [entry for _, entries in CHAPTERS for entry in entries]

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -22,7 +22,7 @@ from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.omniturn.plain_moves import LongProgram, columns_of, read_columns, read_move
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import SEEDS, mutated
 from tests.interpreter.programs import body, inches, lines, setup

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from core.store.store import Store
-from drivers.canopen.peer.machine import Peers
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.lookalikes.canopen_devices import Peers
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import PATIENCE, Process, process
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.kinematics import kinematics_of
-from core.machine.load import MachineFileError, parse_machine, shipped_machine
+from app.compose.kinematics_chain import kinematics_of
+from core.machine.machine_file import MachineFileError, parse_machine, shipped_machine
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 from tests.klartext.chamfers import AXIAL, POINTS

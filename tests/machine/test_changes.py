@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import resources
-from core.machine.changes import ABSENT, changes
+from core.machine.machine_changes import ABSENT, changes
 
 SHIPPED = resources.machine_file("gt75.toml")
 

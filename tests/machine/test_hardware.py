@@ -7,10 +7,10 @@ import re
 import pytest
 
 import resources
-from core.machine.errors import Finding
-from core.machine.hardware.addresses import CanTerminal, can_terminal
-from core.machine.hardware.model import SdoValue, SimFault
-from core.machine.load import MachineFileError, load_machine, parse_machine
+from core.machine.can_addresses import CanTerminal, can_terminal
+from core.machine.hardware_model import SdoValue, SimFault
+from core.machine.machine_file import MachineFileError, load_machine, parse_machine
+from core.table_schema import Finding
 
 CAN = resources.machine_file("gt75-canopen.toml")
 SHIPPED = resources.machine_file("gt75.toml")

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from core.machine.errors import Finding
-from core.machine.load import MachineFileError, load_machine, parse_machine
+from core.machine.machine_file import MachineFileError, load_machine, parse_machine
+from core.table_schema import Finding
 
 SHIPPED = resources.machine_file("gt75.toml")
 

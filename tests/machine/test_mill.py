@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.machine.load import MachineFileError, parse_machine
+from core.machine.machine_file import MachineFileError, parse_machine
 from tests.machine.mill import MILL
 
 

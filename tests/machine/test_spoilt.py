@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.machine.load import MachineFileError, parse_machine
+from core.machine.machine_file import MachineFileError, parse_machine
 from tests.machine.spoil import Place, leaves, path_of, sample, with_value
 
 SAMPLES = (

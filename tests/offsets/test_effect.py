@@ -7,15 +7,15 @@ from collections.abc import Iterator, Mapping
 
 import pytest
 
-from app.compose.effect import drawer
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
+from app.compose.workshop import drawer
 from app.desk.latest import Watch
 from app.offsets.effect import Effect, Tables
 from app.path.path_picture import Picture
 from core.executor.job import Job, make_job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 
 INCH = 25.4
 LIMIT = 10.0

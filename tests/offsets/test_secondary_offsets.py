@@ -11,7 +11,7 @@ from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import row
 from app.offsets.secondary_dialogue import Step
 from core.executor.snapshot import State
-from core.store.rows import Kind, SecondaryRow
+from core.store.store_rows import Kind, SecondaryRow
 from tests.offsets.conftest import LIMIT, Room
 
 

@@ -7,7 +7,7 @@ import pytest
 from app.offsets import tool_offsets
 from app.offsets.tool_offsets import ToolGrid
 from core.executor.snapshot import State
-from core.store.rows import ToolRow
+from core.store.store_rows import ToolRow
 from tests.offsets.conftest import LIMIT, Room
 
 INCH = 25.4

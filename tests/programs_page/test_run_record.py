@@ -12,7 +12,7 @@ from app.desk.program_loading import Loaded, Phase
 from app.programs.run_record import RunRecord
 from core.executor.job import Proof
 from core.executor.snapshot import Alarm, Snapshot, State
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 READY = Snapshot(state=State.IDLE, program="/programs/pin.nc")
 RUNNING = replace(READY, state=State.RUN, block=3)

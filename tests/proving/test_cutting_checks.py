@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.machine.load import load_machine
-from core.machine.model import Machine
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove
 from tests.worked import FOLDER

@@ -16,8 +16,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.compose.offsets import stored_offsets
-from app.compose.screen import desk_and_executor
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import stored_offsets
 from app.desk.desk import Desk
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
@@ -26,8 +26,8 @@ from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
-from drivers.simulated import StepClock
-from drivers.simulated.machine import SimMachine
+from drivers.clocks import StepClock
+from drivers.lookalikes.plant_hands import SimMachine
 
 Key = Qt.Key
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier

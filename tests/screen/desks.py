@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.effect import drawer
-from app.compose.machine import setup_for
-from app.compose.proof import proof_of
-from app.compose.special import furnish
+from app.compose.machine_setup import setup_for
+from app.compose.special_functions import furnish
+from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.desk.persistence import NoPersistence, Persistence
@@ -22,7 +21,7 @@ from core.executor.job import Job
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source, load_source
-from core.machine.load import load_machine
+from core.machine.machine_file import load_machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from core.proving.prove_program import prove
 from tests.screen.fake import FakeMachine

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.errors import CommandError
+from app.cli.command_errors import CommandError
 from app.compose.journal import Journal
-from app.compose.offsets import book_of, chosen_offsets, stored_offsets
-from app.compose.screen import build_desk
+from app.compose.screen_desk import build_desk
+from app.compose.stored_offsets import book_of, chosen_offsets, stored_offsets
 from core.executor.snapshot import Event
 from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Source
-from core.store.rows import Kind
 from core.store.store import Store
+from core.store.store_rows import Kind
 
 
 @pytest.fixture(autouse=True)

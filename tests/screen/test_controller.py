@@ -11,15 +11,15 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 import resources
-from app.compose.screen import build_desk
+from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from core.executor.snapshot import State
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.grblhal.peer.serve import TcpEnd, serve
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
+from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 

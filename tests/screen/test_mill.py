@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
-from app.cli.offset_file import read_offsets
-from app.compose.screen import desk_and_executor, step_clock
+from app.cli.toml_files import read_offsets
+from app.compose.screen_desk import desk_and_executor, step_clock
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook

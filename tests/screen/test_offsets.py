@@ -19,8 +19,8 @@ from app.screen.panel import Panel
 from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold, LoadJob, Renew, UseOffsets
 from core.executor.snapshot import State
-from core.store.rows import ToolRow
 from core.store.store import Store
+from core.store.store_rows import ToolRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 

@@ -19,7 +19,7 @@ from app.transfer.serial_line import Received
 from app.transfer.serial_transfer import TransferSection
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
-from core.machine.hardware.model import DncModel
+from core.machine.hardware_model import DncModel
 from core.ports import DriverError
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine

@@ -13,7 +13,7 @@ from app.offsets.zero_offsets_view import ZeroPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from core.store.store import Store
-from core.store.zero import ZeroRow
+from core.store.zero_offset_table import ZeroRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
 

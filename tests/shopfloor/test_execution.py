@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.shopfloor.execution import Execution, mode_of
+from app.shopfloor.floor_reading import Execution, mode_of
 from core.executor.snapshot import Snapshot, Starts, State
 from tests.interrupted import broken_off
 

@@ -7,13 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.shopfloor.conditions import PLACES
-from app.shopfloor.reading import FloorReader, Value
+from app.shopfloor.floor_reading import PLACES, FloorReader, Value
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
-from core.machine.load import load_machine
-from core.machine.model import InputModel, Machine
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import InputModel, Machine
 from tests.interrupted import broken_off
 
 KEYS = frozenset(

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from app.shopfloor.reading import Reading
-from app.shopfloor.status import Status, StatusFile, StatusKeeper, status_of
+from app.shopfloor.floor_reading import Reading
+from app.shopfloor.status_file import Status, StatusFile, StatusKeeper, status_of
 from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
 from tests.interrupted import broken_off

@@ -15,13 +15,13 @@ from xml.etree import ElementTree
 import pytest
 
 import resources
-from app.compose.screen import build_desk
+from app.compose.screen_desk import build_desk
 from app.compose.shop_floor import adapter_of, device_model, device_of
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
-from core.machine.hardware.model import MtconnectModel
-from core.machine.load import load_machine, named_machine
-from core.machine.model import Machine
+from core.machine.hardware_model import MtconnectModel
+from core.machine.machine_file import load_machine, named_machine
+from core.machine.machine_model import Machine
 from tests.cli.conftest import Turndesk, home, turndesk
 from tests.drivers.mtconnect.agent import FakeAgent, kinds_of
 from tests.executor.rig import Rig

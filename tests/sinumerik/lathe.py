@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from app.compose.machine import setup_for
+from app.compose.machine_setup import setup_for
 from core.interpreter.dialects import interpretation
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
-from core.machine.load import shipped_machine
-from core.machine.model import Machine
+from core.machine.machine_file import shipped_machine
+from core.machine.machine_model import Machine
 from core.proving.program_timeline import Timeline, timed_blocks
 
 MODULO = shipped_machine("sinumerik-modulo")

@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from app.compose.journal import Journal
-from app.compose.offsets import stored_offsets
-from app.compose.screen import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.stored_offsets import stored_offsets
 from app.desk.desk import Desk
 from app.desk.machine_status import status_of
 from app.desk.program_loading import Phase
 from app.desk.readouts import Readout
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 
 MAIN = """\
 N10 G54 G0 X40 Z2 C0

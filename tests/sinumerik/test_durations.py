@@ -7,7 +7,7 @@ from math import hypot, pi
 
 import pytest
 
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.program_timeline import Timeline, timed_blocks
 from tests.sinumerik.lathe import LINEAR, MODULO, refused, run, setup, source, times
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 
 import resources
-from app.compose.machine import control_limits
+from app.compose.machine_setup import control_limits
 from core.executor.raised_alarm import AlarmError
 from core.executor.read_ahead import check_block
-from core.machine.errors import MachineFileError
-from core.machine.load import load_machine, parse_machine
-from core.machine.model import Machine
+from core.machine.machine_file import load_machine, parse_machine
+from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
+from core.table_schema import MachineFileError
 from tests.sinumerik.lathe import LINEAR, MODULO, good, run, setup, source
 
 GT75 = load_machine(None)

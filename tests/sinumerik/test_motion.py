@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.compose.proof import proof_of
-from app.compose.simulated import simulated
+from app.compose.simulated_backend import simulated
+from app.compose.workshop import proof_of
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import make_job
@@ -17,10 +17,10 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ZeroOffset
 from core.language.source import Dialect, Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.program_timeline import MotionSpan, Timeline
 from core.proving.prove_program import prove
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 from tests.sinumerik.lathe import LINEAR, MODULO, setup, source
 
 HOME = (0.0, 0.0, 0.0)

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, checking, database, export
-from core.store.rows import SecondaryRow, ToolRow
+from core.store import backup, database, store_export
 from core.store.store import Store, StoreError
+from core.store.store_rows import SecondaryRow, ToolRow
 
 
 def fill(store: Store) -> None:
@@ -117,7 +117,7 @@ def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: P
     (tmp_path / "b.db.new").write_text("mine")
     (tmp_path / "out.new").mkdir()
     backup.backup(folder, tmp_path / "b.db")
-    export.export(store, tmp_path / "out")
+    store_export.export(store, tmp_path / "out")
     assert (tmp_path / "b.db.new").read_text() == "mine"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["b.db", "b.db.new", "home", "out", "out.new"]
 
@@ -126,7 +126,7 @@ def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path)
     fill(store)
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
     with pytest.raises(StoreError, match="not what was saved"):
-        export.export(store, tmp_path / "out")
+        store_export.export(store, tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["home"]
 
 
@@ -138,12 +138,12 @@ def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path)
     store.set_tool(2, "x", x=1.0).result()
     backup.backup(folder, target)
     assert sha256(target.read_bytes()).digest() != first
-    assert checking.problems(target) == ()
+    assert backup.problems(target) == ()
 
 
 def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     fill(store)
-    assert export.export(store, tmp_path / "out") == 1
+    assert store_export.export(store, tmp_path / "out") == 1
     assert (tmp_path / "out/programs/PIN.nc").read_bytes() == b"G90\r\nM30\r\n"
     offsets = tomllib.loads((tmp_path / "out/offsets.toml").read_text())
     assert offsets["tool"]["1"] == {
@@ -159,10 +159,10 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
 
 def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
     fill(store)
-    export.export(store, tmp_path / "out")
+    store_export.export(store, tmp_path / "out")
     with Store.open(tmp_path / "other") as other:
         rows = {4: SecondaryRow(-0.0127, 0.0, 0.0)}
-        other.import_all(export.program_files(tmp_path / "out"), {}, rows, "import").result()
+        other.import_all(store_export.program_files(tmp_path / "out"), {}, rows, "import").result()
         assert other.load_program("PIN.nc") == b"G90\r\nM30\r\n"
         assert other.secondary() == rows
         assert other.history()[0].who == "import"
@@ -172,9 +172,9 @@ def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_
     (tmp_path / "out").mkdir()
     (tmp_path / "out/precious").write_text("x")
     with pytest.raises(StoreError, match="not empty"):
-        export.export(store, tmp_path / "out")
+        store_export.export(store, tmp_path / "out")
     with pytest.raises(StoreError, match="no exported folder"):
-        export.program_files(tmp_path / "out")
+        store_export.program_files(tmp_path / "out")
     assert (tmp_path / "out/precious").read_text() == "x"
 
 
@@ -182,11 +182,11 @@ def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     path = folder / database.FILE_NAME
-    assert checking.problems(path) == ()
+    assert backup.problems(path) == ()
     with sqlite3.connect(path) as connection:
         connection.execute("UPDATE program_versions SET text = X'58'")
         connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '')")
     connection.close()
-    told = " ".join(checking.problems(path))
+    told = " ".join(backup.problems(path))
     assert "'PIN.nc' version 1 is not what was saved" in told
     assert "a row of programs that is not there" in told

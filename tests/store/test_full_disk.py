@@ -13,11 +13,11 @@ import pytest
 from app.cli.main import main
 from app.compose.journal import Journal
 from core.executor.snapshot import Event
-from core.store import unwritten
-from core.store.causes import Cause, cause_of
-from core.store.rows import EventRow
+from core.store import store_writer
 from core.store.store import Store, StoreError
-from core.store.unwritten import Unwritten
+from core.store.store_errors import Cause, cause_of
+from core.store.store_rows import EventRow
+from core.store.store_writer import Unwritten
 from tests.interrupted import broken_off
 from tests.store.disk import Disk, small_disk
 
@@ -75,7 +75,7 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
 
 
 def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.store.writer.AGAIN", 0.02)
+    monkeypatch.setattr("core.store.store_writer.AGAIN", 0.02)
     with Store.open(disk.path / "home") as store:
         fill_up(store, disk)
         store.count_part("pin.nc")
@@ -219,7 +219,7 @@ def test_counts_and_settings_do_not_grow_with_the_days() -> None:
 
 
 def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unwritten, "EVENTS", 10)
+    monkeypatch.setattr(store_writer, "EVENTS", 10)
     held = Unwritten()
     for number in range(25):
         held.event(EventRow("2026-01-01T00:00:00.000Z", "stop", f"{number}"))

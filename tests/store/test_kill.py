@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from core.store import checking, database
+from core.store import backup, database
 from core.store.store import Store
 
 KILLS = 5
@@ -16,17 +16,17 @@ ACKNOWLEDGED = 25  # of each process before it is killed; the next transactions 
 WRITER = """
 import sys
 from pathlib import Path
-from core.store import offsets, programs
-from core.store.rows import Kind
+from core.store import offset_tables, program_records
+from core.store.store_rows import Kind
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))
 number = len(store.versions("part"))
 
 def both(connection):
-    programs.save(connection, "part", b"%d " % number * 2000, "kill")
+    program_records.save(connection, "part", b"%d " % number * 2000, "kill")
     wanted = {"x": float(number % 1000)}
-    offsets.change(connection, Kind.TOOL, 1, offsets.Reason("kill", "test"), wanted)
+    offset_tables.change(connection, Kind.TOOL, 1, offset_tables.Reason("kill", "test"), wanted)
 
 while True:
     number += 1
@@ -50,7 +50,7 @@ def _write_and_kill(folder: Path) -> int:
 def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None:
     for _ in range(KILLS):
         last = _write_and_kill(folder)
-        assert checking.problems(folder / database.FILE_NAME) == ()
+        assert backup.problems(folder / database.FILE_NAME) == ()
         with Store.open(folder, read_only=True) as store:
             versions = store.versions("part")
             assert [row.number for row in versions] == list(range(len(versions), 0, -1))

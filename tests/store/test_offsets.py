@@ -6,8 +6,8 @@ from math import inf, nan
 
 import pytest
 
-from core.store.rows import Kind, SecondaryRow, ToolRow, inches
 from core.store.store import Store, StoreError
+from core.store.store_rows import Kind, SecondaryRow, ToolRow, inches
 
 
 def test_new_store_has_no_offsets(store: Store) -> None:

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from core.store import database
-from core.store.rows import ToolRow
 from core.store.store import Store, StoreError
+from core.store.store_rows import ToolRow
 
 
 def digest(path: Path) -> str:

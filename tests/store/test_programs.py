@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.store.rows import EventRow
 from core.store.store import Store, StoreError
+from core.store.store_rows import EventRow
 
 
 def test_every_save_is_a_version(store: Store) -> None:

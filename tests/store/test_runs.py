@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from core.store.errors import StoreError
-from core.store.export import export
 from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_export import export
 
 
 @pytest.fixture

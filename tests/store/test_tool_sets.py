@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.store import database, offsets, toolset
-from core.store.offsets import Reason
-from core.store.rows import Kind, ToolRow
-from core.store.toolset import Touch
+from core.store import database, offset_tables, touch_off
+from core.store.offset_tables import Reason
+from core.store.store_rows import Kind, ToolRow
+from core.store.touch_off import Touch
 
 WHY = Reason("try", "test")
 START = {
@@ -45,21 +45,21 @@ def distances(rows: dict[int, ToolRow]) -> dict[tuple[int, int], tuple[float, fl
 
 def step(connection: sqlite3.Connection, what: str, values: object) -> None:
     """One change, and what must hold of it."""
-    before = offsets.tools(connection)
+    before = offset_tables.tools(connection)
     if what == "master":
         assert isinstance(values, int)
-        toolset.choose_master(connection, values, WHY)
-        after = offsets.tools(connection)
+        touch_off.choose_master(connection, values, WHY)
+        after = offset_tables.tools(connection)
         assert {n: row.offset for n, row in after.items()} == {n: row.offset for n, row in before.items()}
         assert [n for n, row in after.items() if row.master] == ([values] if values else [])
     elif what == "wear":
         assert isinstance(values, tuple)
-        offsets.change(connection, Kind.TOOL, values[0], WHY, {"wear_x": values[1]})
+        offset_tables.change(connection, Kind.TOOL, values[0], WHY, {"wear_x": values[1]})
     else:
         assert isinstance(values, tuple)
         number, x, z, alone = values
-        toolset.touch_off(connection, number, Touch(x, z, alone), WHY)
-        touched(before, offsets.tools(connection), number, Touch(x, z, alone))
+        touch_off.touch_off(connection, number, Touch(x, z, alone), WHY)
+        touched(before, offset_tables.tools(connection), number, Touch(x, z, alone))
 
 
 def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, touch: Touch) -> None:
@@ -79,11 +79,11 @@ def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, 
 def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> None:
     with closing(database.empty()) as connection:
         for number, row in START.items():
-            offsets.change(connection, Kind.TOOL, number, WHY, row._asdict())
+            offset_tables.change(connection, Kind.TOOL, number, WHY, row._asdict())
         for what, values in steps:
             step(connection, what, values)
-            assert sum(row.master for row in offsets.tools(connection).values()) <= 1
+            assert sum(row.master for row in offset_tables.tools(connection).values()) <= 1
         made = connection.execute("SELECT max(step) FROM offset_changes").fetchone()[0] - len(START)
         for _ in range(made):
-            offsets.undo(connection, WHY)
-        assert offsets.tools(connection) == START
+            offset_tables.undo(connection, WHY)
+        assert offset_tables.tools(connection) == START

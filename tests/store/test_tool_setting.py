@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from core.store import database
-from core.store.rows import Kind, SecondaryRow, ToolRow
 from core.store.store import Store, StoreError
-from core.store.toolset import Touch
+from core.store.store_rows import Kind, SecondaryRow, ToolRow
+from core.store.touch_off import Touch
 
 
 def old_store(folder: Path) -> None:

@@ -25,7 +25,7 @@ from app.desk.desk import Desk
 from app.screen.keyboard import Keyboard
 from app.screen.main_window import MainWindow
 from app.screen.panel import Panel
-from drivers.simulated.machine import SimMachine
+from drivers.lookalikes.plant_hands import SimMachine
 
 LOOK = 0.01  # s
 Told = dict[str, Any]

@@ -13,9 +13,9 @@ from app.jog.jog_speeds import CONTINUOUS, Speeds
 from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
-from core.machine.hardware.model import AnalogModel
-from core.machine.load import load_machine
-from core.machine.model import InputModel
+from core.machine.hardware_model import AnalogModel
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import InputModel
 
 INCH = 25.4
 THOU = 0.001 * INCH

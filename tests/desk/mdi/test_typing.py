@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from app.desk.persistence import NoPersistence
 from app.mdi.mdi_model import KEPT, KEY, LONGEST, Typing
-from core.store.errors import StoreError
+from core.store.store_errors import StoreError
 
 
 def press(typing: Typing, keys: Iterable[str]) -> Typing:

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from app.compose.searchto import rebuilt
+from app.compose.workshop import rebuilt
 from app.desk.program_loading import Proved
 from app.searchto.searchto_cursor import Cursor
 from app.searchto.searchto_finder import Finder

@@ -6,12 +6,12 @@ import itertools
 from collections.abc import Callable
 
 import resources
-from app.compose.canopen import canopen_machine, canopen_peers
-from core.machine.load import parse_machine
-from core.machine.model import Machine
-from drivers.canopen.machine import CanopenMachine
-from drivers.canopen.peer.machine import Peers
-from drivers.simulated import StepClock
+from app.compose.canopen_backend import canopen_machine, canopen_peers
+from core.machine.machine_file import parse_machine
+from core.machine.machine_model import Machine
+from drivers.canopen.canopen_machine import CanopenMachine
+from drivers.clocks import StepClock
+from drivers.lookalikes.canopen_devices import Peers
 
 TICK = 0.005
 _channels = itertools.count()

@@ -8,12 +8,12 @@ import pytest
 
 import resources
 from app.compose.backends import connect
-from app.compose.driven import CanDriven
-from core.machine.load import load_machine, parse_machine
-from core.machine.model import Machine
+from app.compose.feeder_process import CanDriven
+from core.machine.machine_file import load_machine, parse_machine
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.panel_station import PanelStation
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.operator_station import PanelStation
 from tests.drivers.canopen.bench import can_machine
 
 

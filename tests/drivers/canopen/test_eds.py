@@ -8,10 +8,10 @@ from pathlib import Path
 import canopen
 import pytest
 
-from app.compose.canopen import canopen_config
-from core.machine.model import Machine
+from app.compose.canopen_backend import canopen_config
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.objects import drive_objects
+from drivers.canopen.canopen_objects import drive_objects
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 

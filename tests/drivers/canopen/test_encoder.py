@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.canopen import canopen_config, canopen_peers
-from core.machine.model import Machine
+from app.compose.canopen_backend import canopen_config, canopen_peers
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.encoder import CanEncoder
-from drivers.canopen.survey import survey
-from drivers.simulated import StepClock
+from drivers.canopen.canopen_encoder import CanEncoder
+from drivers.canopen.canopen_survey import survey
+from drivers.clocks import StepClock
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 OWN = (

@@ -8,10 +8,17 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from core.ports import DriverError
-from drivers.canopen.bus import Bus
-from drivers.canopen.config import BusConfig, CanopenConfig, ModuleConfig, OutputConfig, PotConfig, Terminal
-from drivers.canopen.terminals import CanopenIO
-from drivers.simulated import StepClock
+from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_config import (
+    BusConfig,
+    CanopenConfig,
+    ModuleConfig,
+    OutputConfig,
+    PotConfig,
+    Terminal,
+)
+from drivers.canopen.canopen_terminals import CanopenIO
+from drivers.clocks import StepClock
 from tests.drivers.canopen.foreign import NODE, ForeignModule
 
 TICK = 0.01

@@ -10,10 +10,10 @@ import canopen
 import pytest
 from canopen.profiles.p402 import BaseNode402
 
-from app.compose.canopen import canopen_peers
-from drivers.canopen.objects import drive_objects
-from drivers.canopen.peer.machine import Peers
-from drivers.simulated import RealClock
+from app.compose.canopen_backend import canopen_peers
+from drivers.canopen.canopen_objects import drive_objects
+from drivers.clocks import RealClock
+from drivers.lookalikes.canopen_devices import Peers
 from tests.drivers.canopen.bench import can_machine
 
 _numbers = itertools.count()

@@ -7,20 +7,19 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.inverter import ClearingAxes
+from app.compose.inverter_backend import ClearingAxes
 from core.executor.commands import Reset
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.ports import MachinePorts
-from drivers.canopen.encoder import MeasuredSpindle
-from drivers.inverter.agreement import Agreement
-from drivers.inverter.building import attendant
-from drivers.inverter.spindle import InverterSpindle
+from drivers.canopen.canopen_encoder import MeasuredSpindle
+from drivers.inverter.inverter_obedience import Agreement
+from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.lookalikes.inverters import Inverter
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
 from tests.drivers.canopen.test_executor import BusRig
 from tests.drivers.inverter.benches import Bench, config, far_end
-from tests.drivers.inverter.peers import Inverter
 from tests.drivers.inverter.wires import BenchWire
 from tests.executor.rig import INCH
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import resources
-from core.machine.load import parse_machine
-from core.machine.model import Machine
+from core.machine.machine_file import parse_machine
+from core.machine.machine_model import Machine
 from core.ports import Segments
 from tests.drivers.canopen.bench import CanBench
 

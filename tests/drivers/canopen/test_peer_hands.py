@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from app.compose.peer_hands import Typed, obey
+from app.compose.played_machine import Typed, obey
 from tests.drivers.canopen.bench import CanBench
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.canopen.pvt import deviation, hermite, packed, span, unpacked
+from drivers.canopen.pvt_mode import deviation, hermite, packed, span, unpacked
 
 Point = tuple[tuple[float, ...], tuple[float, ...]]
 

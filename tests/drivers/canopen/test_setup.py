@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import pytest
 
-from app.compose.canopen import canopen_machine, canopen_peers
-from core.machine.model import Machine
+from app.compose.canopen_backend import canopen_machine, canopen_peers
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen import objects as od
-from drivers.canopen.peer.axis import AxisDrive
-from drivers.canopen.peer.machine import Peers
-from drivers.simulated import StepClock
+from drivers.canopen import canopen_objects as od
+from drivers.clocks import StepClock
+from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from drivers.lookalikes.canopen_devices import Peers
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 

@@ -9,10 +9,10 @@ import pytest
 from app.compose.backends import connect
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset
 from core.executor.snapshot import State
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.coupling import SpindleC, Step
-from drivers.simulated import StepClock
+from drivers.canopen.spindle_as_c import SpindleC, Step
+from drivers.clocks import StepClock
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.canopen.test_executor import BusRig
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.canopen.peer.power import PowerStates
-from drivers.canopen.states import DriveState, reset_step, state_of, towards_enabled
+from drivers.canopen.canopen_objects import DriveState, reset_step, state_of, towards_enabled
+from drivers.lookalikes.canopen_axis_drive import PowerStates
 
 
 @pytest.mark.parametrize(

@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 
-from app.compose.canopen import canopen_config, canopen_peers
-from core.machine.model import Machine
+from app.compose.canopen_backend import canopen_config, canopen_peers
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.survey import Answer, survey
-from drivers.simulated import StepClock
+from drivers.canopen.canopen_survey import Answer, survey
+from drivers.clocks import StepClock
 from tests.drivers.canopen.bench import can_machine
 
 

@@ -10,11 +10,10 @@ from typing import ClassVar
 import can
 
 from core.ports import MachinePorts
-from drivers.canopen.machine import CanopenMachine
-from drivers.feeder.client import Line
-from drivers.feeder.ports import feeder_ports
-from drivers.feeder.server import Feeder
-from drivers.simulated import SimMachine
+from drivers.canopen.canopen_machine import CanopenMachine
+from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_server import Feeder
+from drivers.lookalikes.plant_hands import SimMachine
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from app.compose.machine import setup_for
-from app.compose.proof import proof_of
+from app.compose.machine_setup import setup_for
+from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from tests.drivers.contract.rig import STILL, TICK, Rig
 

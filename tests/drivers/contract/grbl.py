@@ -6,12 +6,12 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.grblhal import grblhal_config
-from core.machine.model import Machine
-from drivers.grblhal.machine import GrblMachine
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.panel_station import PanelStation
-from drivers.simulated import StepClock
+from app.compose.grblhal_backend import grblhal_config
+from core.machine.machine_model import Machine
+from drivers.clocks import StepClock
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.operator_station import PanelStation
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import Readings
 from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky

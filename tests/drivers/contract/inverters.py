@@ -9,17 +9,16 @@ from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.inverter import ClearingAxes, halt_with
-from core.machine.load import parse_machine
-from drivers.inverter.building import attendant
-from drivers.inverter.keeper import Keeper
-from drivers.inverter.spindle import InverterSpindle
+from app.compose.inverter_backend import ClearingAxes, halt_with
+from core.machine.machine_file import parse_machine
+from drivers.inverter.inverter_attendant import Keeper
+from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.lookalikes.inverters import Inverter
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
 from tests.drivers.contract.simulated import Simulated
 from tests.drivers.contract.world import SimWorld
 from tests.drivers.inverter.benches import config, far_end
-from tests.drivers.inverter.peers import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"

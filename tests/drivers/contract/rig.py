@@ -8,9 +8,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from core.machine.model import Machine
+from core.machine.machine_model import Machine
 from core.ports import BlockSink, MachinePorts
-from drivers.simulated import SimMachine, StepClock
+from drivers.clocks import StepClock
+from drivers.lookalikes.plant_hands import SimMachine
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 

@@ -7,16 +7,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from app.compose.simulated import simulated
-from core.machine.load import load_machine
-from core.machine.model import Machine
+from app.compose.simulated_backend import simulated
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
 from core.ports import DriverError, MachinePorts
-from drivers.feeder.client import Line
-from drivers.feeder.links import LoopLink
-from drivers.feeder.ports import feeder_ports
-from drivers.feeder.server import Feeder
-from drivers.feeder.wire import Message
-from drivers.simulated import SimMachine, StepClock
+from drivers.clocks import StepClock
+from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_messages import Message
+from drivers.feeder.feeder_server import Feeder
+from drivers.lookalikes.plant_hands import SimMachine
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.compose.serial_line import open_wire as open_line
+from app.compose.serial_ports import open_wire as open_line
 from core.ports import DriverError
-from drivers.grblhal.wire import open_wire as open_controller
-from drivers.wire import LineSettings
+from drivers.grblhal.grblhal_wire import open_wire as open_controller
+from drivers.serial_line import LineSettings
 from tests.drivers.ptys import open_pty
 
 Opened = Callable[[], None]  # lets it go again

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from drivers.simulated import SimMachine
+from drivers.lookalikes.plant_hands import SimMachine
 
 Readings = Mapping[str, bool]
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.canopen import canopen_peers
-from core.machine.load import load_machine
+from app.compose.canopen_backend import canopen_peers
+from core.machine.machine_file import load_machine
 from core.ports import DriverError
-from drivers.canopen.peer.machine import Peers
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.lookalikes.canopen_devices import Peers
 
 # A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
 TIMES = (

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from app.compose.feeder import FeederProcess
-from core.machine.load import load_machine
+from app.compose.feeder_process import FeederProcess
+from core.machine.machine_file import load_machine
 from core.ports import Segments
-from drivers.feeder.ports import feeder_ports
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.feeder.feeder_client import feeder_ports
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z
 TICK = 0.02

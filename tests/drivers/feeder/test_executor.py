@@ -7,10 +7,9 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
-from drivers.feeder.client import Line
-from drivers.feeder.ports import feeder_ports
-from drivers.feeder.server import Feeder
-from drivers.simulated import Simulation
+from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_server import Feeder
+from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.contract.simulated import BrokenLink, SimDriven
 from tests.executor.rig import Rig
 from tests.executor.test_threads import EXTERNAL

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.canopen.peer.machine import Peers
+from drivers.lookalikes.canopen_devices import Peers
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 
 PATIENCE = 60.0  # s of a loaded computer

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 import pytest
 
 from core.ports import DriverError
-from drivers.feeder import loop
-from drivers.feeder.client import Line
-from drivers.feeder.links import SocketLink
-from drivers.feeder.loop import serve
-from drivers.feeder.ports import feeder_ports
-from drivers.simulated import RealClock, Simulation, build_simulation
+from drivers.clocks import RealClock
+from drivers.feeder import feeder_loop
+from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder.feeder_loop import serve
+from drivers.simulated.simulated_machine import Simulation, build_simulation
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG
 
@@ -110,11 +110,11 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
             asked.append(how)
             return 0
 
-    monkeypatch.setattr(loop.ctypes, "CDLL", lambda *_a, **_k: Library())
-    monkeypatch.setattr(loop.os, "geteuid", lambda: user)
-    monkeypatch.setattr(loop.resource, "getrlimit", lambda _which: (limit, limit))
-    monkeypatch.setattr(loop.gc, "freeze", lambda: None)
-    assert loop.keep_memory() == told
+    monkeypatch.setattr(feeder_loop.ctypes, "CDLL", lambda *_a, **_k: Library())
+    monkeypatch.setattr(feeder_loop.os, "geteuid", lambda: user)
+    monkeypatch.setattr(feeder_loop.resource, "getrlimit", lambda _which: (limit, limit))
+    monkeypatch.setattr(feeder_loop.gc, "freeze", lambda: None)
+    assert feeder_loop.keep_memory() == told
     assert asked == [flags]
 
 
@@ -122,8 +122,8 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
     def refused(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 
-    monkeypatch.setattr(loop.os, "sched_setscheduler", refused)
-    (told,) = loop.real_time()
+    monkeypatch.setattr(feeder_loop.os, "sched_setscheduler", refused)
+    (told,) = feeder_loop.real_time()
     assert "without real-time priority (Operation not permitted)" in told
 
 

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, MachinePorts
-from drivers.feeder.client import Line
-from drivers.feeder.hands import FeederHands
-from drivers.feeder.links import LoopLink
-from drivers.feeder.ports import feeder_ports
-from drivers.feeder.server import Feeder
-from drivers.feeder.wire import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.simulated import Simulation, StepClock, build_simulation
+from drivers.clocks import StepClock
+from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
+from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
+from drivers.feeder.feeder_server import Feeder
+from drivers.simulated.simulated_machine import Simulation, build_simulation
 from tests.drivers.contract.simulated import SimDriven
 from tests.drivers.machines import CONFIG, ramp
 from tests.drivers.test_gear import cam

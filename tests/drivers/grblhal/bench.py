@@ -6,22 +6,22 @@ import dataclasses
 from collections.abc import Callable
 
 import resources
-from app.compose.grblhal import grblhal_config
-from app.compose.machine import setup_for
-from app.compose.proof import proof_of
+from app.compose.grblhal_backend import grblhal_config
+from app.compose.machine_setup import setup_for
+from app.compose.workshop import proof_of
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
 from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.machine.load import parse_machine
-from core.machine.model import Machine
+from core.machine.machine_file import parse_machine
+from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
-from drivers.grblhal.machine import GrblMachine
-from drivers.grblhal.peer.firmware import Firmware, Quirks
-from drivers.grblhal.wire import WireLostError
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_wire import WireLostError
+from drivers.lookalikes.grblhal_firmware import Firmware, Quirks
 
 TICK = 0.01
 SHIPPED = resources.machine_file("gt75-grblhal.toml")

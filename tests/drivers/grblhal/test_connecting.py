@@ -7,14 +7,14 @@ import threading
 
 import pytest
 
-from app.compose.grblhal import grblhal_config
+from app.compose.grblhal_backend import grblhal_config
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
 from core.ports import DriverError, LineOp
-from drivers.grblhal.machine import GrblMachine
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.grblhal.wire import TcpWire
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_wire import TcpWire
+from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import GrblBench, LoopWire, grbl_machine, quirky
 
 

@@ -6,9 +6,8 @@ import math
 
 import pytest
 
-from drivers.grblhal.peer.quirks import Quirks
-from drivers.grblhal.peer.registers import Registers
-from drivers.grblhal.peer.slides import PeerBlock, Place, Slides, straight
+from drivers.lookalikes.grblhal_settings import Quirks, Registers
+from drivers.lookalikes.grblhal_slides import PeerBlock, Place, Slides, straight
 
 STEP = 0.001
 ACCEL = 3000.0  # $120 and $122 of the look-alike, mm/s²

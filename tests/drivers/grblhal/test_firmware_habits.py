@@ -9,8 +9,8 @@ import math
 
 import pytest
 
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import quirky
 
 LATHE = b"G8G18G21G90G94G97\n"

@@ -12,17 +12,17 @@ import pytest
 
 from app.cli.main import main
 from app.compose.backends import connect
-from app.compose.grblhal import grblhal_config
-from core.machine.errors import MachineFileError
-from core.machine.load import load_machine, parse_machine
+from app.compose.grblhal_backend import grblhal_config
+from core.machine.machine_file import load_machine, parse_machine
 from core.ports import DriverError
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.grblhal.peer.serve import TcpEnd, serve
-from drivers.simulated import RealClock
-from drivers.simulated.drive_spindle import SpindleFaults
+from core.table_schema import MachineFileError
+from drivers.clocks import RealClock
+from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
+from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.lookalikes.inverters import HuanyangSlave, Inverter
+from drivers.lookalikes.spindle_motor import SpindleFaults
 from tests.drivers.grblhal.bench import SHIPPED, quirky
 from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
-from tests.drivers.inverter.peers import HuanyangSlave, Inverter
 
 Captured = pytest.CaptureFixture[str]
 _VFD = 'driver = "vfd"\nvfd = {{ family = "huanyang", port = "{}", comm_loss_s = 1.5, hz_per_rpm = 0.01667 }}'

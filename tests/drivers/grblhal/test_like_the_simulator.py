@@ -11,9 +11,9 @@ import pytest
 from app.cli.main import main
 from core.executor.commands import Reset
 from core.executor.snapshot import State
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.grblhal.peer.serve import TcpEnd, serve
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
+from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import SHIPPED, GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.grblhal import grblhal_config
+from app.compose.grblhal_backend import grblhal_config
 from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
-from drivers.grblhal.gcode import jog_line, line_of, number
-from drivers.grblhal.identity import read_identity
-from drivers.grblhal.machine import GrblMachine
-from drivers.grblhal.overrides import steps_to
-from drivers.grblhal.report import read_report
-from drivers.grblhal.stream import Stream
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.grblhal.grblhal_dialogue import Stream
+from drivers.grblhal.grblhal_gcode import jog_line, line_of, number
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_overrides import steps_to
+from drivers.grblhal.grblhal_report import read_identity, read_report
 from tests.drivers.grblhal.bench import grbl_machine
 
 FULL = (

@@ -12,10 +12,10 @@ import pytest
 
 from app.cli.main import main
 from core.ports import DriverError
-from drivers.grblhal.peer.firmware import Firmware
-from drivers.grblhal.peer.serve import PtyEnd, TcpEnd, serve
-from drivers.grblhal.wire import open_wire
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.grblhal.grblhal_wire import open_wire
+from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
+from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty
 

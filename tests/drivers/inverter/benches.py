@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from drivers.inverter.attendant import Attendant
-from drivers.inverter.building import attendant
-from drivers.inverter.config import InverterConfig
-from drivers.inverter.spindle import InverterSpindle
-from drivers.simulated import StepClock
-from tests.drivers.inverter.peers import (
+from drivers.clocks import StepClock
+from drivers.inverter.inverter_attendant import Attendant
+from drivers.inverter.inverter_config import InverterConfig
+from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.lookalikes.inverters import (
     HZ_PER_RPM,
     DeltaMemory,
     HitachiMemory,

@@ -14,8 +14,8 @@ from pymodbus.constants import ExcCodes
 from pymodbus.server import ModbusSerialServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
-from drivers.simulated import RealClock
-from tests.drivers.inverter.peers import (
+from drivers.clocks import RealClock
+from drivers.lookalikes.inverters import (
     DeltaMemory,
     HitachiMemory,
     HuanyangSlave,

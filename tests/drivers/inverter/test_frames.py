@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.inverter import frames
-from drivers.inverter.errors import NoAnswerError, RefusedError
-from drivers.inverter.modbus import Modbus
-from drivers.simulated import StepClock
-from tests.drivers.inverter.peers import DeltaMemory, HitachiMemory, Inverter, RtuSlave
+from drivers.clocks import StepClock
+from drivers.inverter import modbus_rtu
+from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
+from drivers.lookalikes.inverters import DeltaMemory, HitachiMemory, Inverter, RtuSlave
 from tests.drivers.inverter.wires import BenchWire
 
 
@@ -30,21 +29,21 @@ from tests.drivers.inverter.wires import BenchWire
     ],
 )
 def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
-    assert frames.sealed(bytes.fromhex(body)) == bytes.fromhex(body + crc)
-    assert frames.whole(bytes.fromhex(body + crc))
+    assert modbus_rtu.sealed(bytes.fromhex(body)) == bytes.fromhex(body + crc)
+    assert modbus_rtu.whole(bytes.fromhex(body + crc))
 
 
 @pytest.mark.parametrize(
     ("pdu", "expected"),
     [
-        (frames.read(3, 0x2103, 1), "03 21 03 00 01"),
-        (frames.write_coil(0, True), "05 00 00 FF 00"),
-        (frames.write_coil(1, False), "05 00 01 00 00"),
-        (frames.write_register(0x2001, 6000), "06 20 01 17 70"),
-        (frames.write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
-        (frames.write_coils(0x13, (True, False, True, True, False, False, True, True, True, False)),
+        (modbus_rtu.read(3, 0x2103, 1), "03 21 03 00 01"),
+        (modbus_rtu.write_coil(0, True), "05 00 00 FF 00"),
+        (modbus_rtu.write_coil(1, False), "05 00 01 00 00"),
+        (modbus_rtu.write_register(0x2001, 6000), "06 20 01 17 70"),
+        (modbus_rtu.write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
+        (modbus_rtu.write_coils(0x13, (True, False, True, True, False, False, True, True, True, False)),
          "0F 00 13 00 0A 02 CD 01"),  # the standard's own example
-        (frames.loopback(0xA537), "08 00 00 A5 37"),
+        (modbus_rtu.loopback(0xA537), "08 00 00 A5 37"),
     ],
 )  # fmt: skip
 def test_requests(pdu: bytes, expected: str) -> None:
@@ -52,11 +51,11 @@ def test_requests(pdu: bytes, expected: str) -> None:
 
 
 def test_an_answer_is_found_between_noise() -> None:
-    frame = frames.sealed(bytes.fromhex("01 03 02 00 10"))
-    assert frames.answer_in(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
-    assert frames.answer_in(frame[:-1], 1, 3) is None
-    assert frames.answer_in(frame, 2, 3) is None  # another unit's
-    assert frames.answer_in(frame, 1, 4) is None  # to another question
+    frame = modbus_rtu.sealed(bytes.fromhex("01 03 02 00 10"))
+    assert modbus_rtu.answer_in(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
+    assert modbus_rtu.answer_in(frame[:-1], 1, 3) is None
+    assert modbus_rtu.answer_in(frame, 2, 3) is None  # another unit's
+    assert modbus_rtu.answer_in(frame, 1, 4) is None  # to another question
 
 
 def line_to(slave: RtuSlave) -> tuple[Modbus, BenchWire, StepClock]:

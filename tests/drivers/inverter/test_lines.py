@@ -13,14 +13,14 @@ import pytest
 import resources
 from app.cli.main import main
 from app.compose.backends import Connected, connect
-from app.compose.checking import check_ports
-from core.machine.load import load_machine
-from core.machine.model import Machine
+from app.compose.machine_answers import check_ports
+from core.machine.machine_file import load_machine
+from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.simulated import RealClock, StepClock
+from drivers.clocks import RealClock, StepClock
+from drivers.lookalikes.inverters import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.benches import FAMILIES
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
-from tests.drivers.inverter.peers import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 
 
 @dataclass

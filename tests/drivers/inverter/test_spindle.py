@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.inverter.attendant import LOST
+from drivers.inverter.inverter_attendant import LOST
 from tests.drivers.inverter.benches import Bench, bench
 
 BOUND = LOST + 1.1  # s: two answers of half a second that do not come, each waited for once more

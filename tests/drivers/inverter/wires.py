@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Protocol
 
-from drivers.simulated import StepClock
-from drivers.wire import WireError
+from drivers.clocks import StepClock
+from drivers.serial_line import WireError
 
 
 class UnexpectedError(Exception):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from core.ports import Clock
-from drivers.mtconnect.probe import NAMESPACE
+from drivers.mtconnect.devices_xml import NAMESPACE
 
 UNAVAILABLE = "UNAVAILABLE"
 

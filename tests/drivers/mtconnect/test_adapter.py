@@ -7,10 +7,10 @@ import socket
 import pytest
 
 from core.ports import DriverError
-from drivers.mtconnect.adapter import MOST, Adapter, Settings
-from drivers.mtconnect.lines import Active, Report
-from drivers.mtconnect.link import BEHIND, READ, AgentLink
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.mtconnect.agent_links import BEHIND, READ, AgentLink
+from drivers.mtconnect.mtconnect_adapter import MOST, Adapter, Settings
+from drivers.mtconnect.shdr_lines import Active, Report
 from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
 
 

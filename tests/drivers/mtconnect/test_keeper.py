@@ -8,10 +8,9 @@ import threading
 import pytest
 
 from core.ports import DriverError
-from drivers.mtconnect.adapter import Adapter, Settings
-from drivers.mtconnect.keeper import Keeper
-from drivers.mtconnect.lines import Report
-from drivers.simulated import RealClock
+from drivers.clocks import RealClock
+from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, Settings
+from drivers.mtconnect.shdr_lines import Report
 from tests.drivers.mtconnect.bench import lathe
 
 HERE = "127.0.0.1"

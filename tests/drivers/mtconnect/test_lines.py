@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 
 import pytest
 
-from drivers.mtconnect.items import Category, DataItem
-from drivers.mtconnect.lines import (
+from drivers.mtconnect.mtconnect_items import Category, DataItem
+from drivers.mtconnect.shdr_lines import (
     LONGEST,
     Active,
     active_line,

@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element
 import pytest
 
 from core.ports import DriverError
-from drivers.mtconnect.items import Layout, machine_items
-from drivers.mtconnect.probe import NAMESPACE, devices_xml
+from drivers.mtconnect.devices_xml import NAMESPACE, devices_xml
+from drivers.mtconnect.mtconnect_items import Layout, machine_items
 from tests.drivers.mtconnect.bench import lathe
 
 AT = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivers.mtconnect.changes import Told
-from drivers.mtconnect.items import Category
-from drivers.mtconnect.lines import Active, Report, Value, clean, values_line
-from drivers.mtconnect.probe import devices_xml
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
+from drivers.mtconnect.devices_xml import devices_xml
+from drivers.mtconnect.mtconnect_items import Category
+from drivers.mtconnect.shdr_lines import Active, Report, Told, Value, clean, values_line
 from tests.drivers.mtconnect.agent import FakeAgent, tokens
 from tests.drivers.mtconnect.bench import BEGIN, lathe
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from drivers.simulated import StepClock
-from drivers.wire import WireError
+from drivers.clocks import StepClock
+from drivers.serial_line import WireError
 
 
 class OtherSide:

@@ -6,9 +6,9 @@ from hashlib import sha256
 
 import pytest
 
-from drivers.transfer.incoming import Incoming, IncompleteError, Phase, Program
-from drivers.transfer.settings import TransferSettings
-from drivers.wire import LineSettings
+from drivers.serial_line import LineSettings
+from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
+from drivers.transfer.transfer_settings import TransferSettings
 
 EIGHT = TransferSettings(LineSettings("bench"))
 SEVEN = TransferSettings(LineSettings("bench", bits=7, parity="E"))

@@ -6,13 +6,12 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from drivers.serial_wire import SerialWire
-from drivers.simulated import RealClock
-from drivers.transfer.incoming import Program
-from drivers.transfer.outgoing import outgoing
-from drivers.transfer.session import CancelledError, Receiving, Sending
-from drivers.transfer.settings import TransferSettings
-from drivers.wire import LineSettings, WireError
+from drivers.clocks import RealClock
+from drivers.serial_line import LineSettings, WireError
+from drivers.serial_port import SerialWire
+from drivers.transfer.program_framing import Program, outgoing
+from drivers.transfer.transfer_session import CancelledError, Receiving, Sending
+from drivers.transfer.transfer_settings import TransferSettings
 from tests.drivers.inverter.lines import WAIT, Pair, until
 from tests.drivers.transfer.far_end import FarEnd, feed
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from core.ports import DriverError
-from drivers.marks import Unmarker
-from drivers.transfer.outgoing import outgoing
-from drivers.transfer.settings import TransferSettings
-from drivers.wire import LineSettings
+from drivers.serial_line import LineSettings
+from drivers.serial_port import Unmarker
+from drivers.transfer.program_framing import outgoing
+from drivers.transfer.transfer_settings import TransferSettings
 
 LINE = LineSettings("bench")
 

@@ -7,12 +7,11 @@ import dataclasses
 import pytest
 
 from core.ports import DriverError
-from drivers.simulated import StepClock
-from drivers.transfer.incoming import IncompleteError
-from drivers.transfer.outgoing import outgoing
-from drivers.transfer.session import CancelledError, Reach, Receiving, Sending
-from drivers.transfer.settings import TransferSettings
-from drivers.wire import LineSettings, WireError
+from drivers.clocks import StepClock
+from drivers.serial_line import LineSettings, WireError
+from drivers.transfer.program_framing import IncompleteError, outgoing
+from drivers.transfer.transfer_session import CancelledError, Reach, Receiving, Sending
+from drivers.transfer.transfer_settings import TransferSettings
 from tests.drivers.transfer.bench import OtherSide
 
 SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), eol="\n")

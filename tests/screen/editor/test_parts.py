@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.compose.screen import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor, step_clock
 from app.editor.editor import Stage
 from app.editor.entering import enter
 from app.editor.heading_view import editor_places

@@ -12,8 +12,8 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.compose.offsets import offsets_of
-from app.compose.screen import desk_and_executor
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import offsets_of
 from app.desk.desk import Desk
 from app.jog.jog_view import JogPage
 from app.offsets.offset_book import OffsetBook
@@ -24,7 +24,7 @@ from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
-from drivers.simulated import StepClock
+from drivers.clocks import StepClock
 
 Key = Qt.Key
 TICK = 0.01

@@ -6,7 +6,7 @@ import pytest
 
 from app.jog.tool_setting import tip
 from core.executor.snapshot import State
-from core.store.rows import ToolRow
+from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import yes
 

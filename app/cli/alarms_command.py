@@ -1,0 +1,60 @@
+"""``turndesk alarms``: every alarm, hold and stop with its number, likely causes and what to do."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_OK, CommandError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.alarms import Code, Entry
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("alarms", help="every alarm: number, what it means, causes, what to do")
+    parser.add_argument("number", nargs="*", type=int, metavar="NUMBER", help="only these; default: all")
+    parser.add_argument("--json", action="store_true", help="a list of objects on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the catalogue, or the entries of some numbers."""
+    from core.alarms import CATALOGUE
+
+    chosen = sorted(CATALOGUE.items(), key=lambda each: each[1].number)
+    if args.number:
+        known = {entry.number for entry in CATALOGUE.values()}
+        missing = [str(number) for number in args.number if number not in known]
+        if missing:
+            raise CommandError(f"there is no alarm {', '.join(missing)}; 'turndesk alarms' lists them all")
+        chosen = [(code, entry) for code, entry in chosen if entry.number in args.number]
+    if args.json:
+        sys.stdout.write(json.dumps([_object(*each) for each in chosen], indent=1) + "\n")
+    else:
+        sys.stdout.write("\n".join(_text(entry) for _, entry in chosen))
+    return EXIT_OK
+
+
+def _object(code: Code, entry: Entry) -> dict[str, object]:
+    from core.alarms.document import kind_of
+
+    return {
+        "number": entry.number,
+        "code": code,
+        "kind": kind_of(entry.reaction),
+        "text": entry.text.upper(),
+        "causes": list(entry.causes),
+        "remedy": entry.remedy,
+    }
+
+
+def _text(entry: Entry) -> str:
+    from core.alarms.document import kind_of
+
+    causes = "".join(f"     why: {cause}\n" for cause in entry.causes)
+    head = f"{entry.number}  {entry.text.upper()}  ({kind_of(entry.reaction)})"
+    return f"{head}\n{causes}      do: {entry.remedy}\n"

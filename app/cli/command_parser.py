@@ -1,0 +1,90 @@
+"""The argument parser of ``turndesk``: no option is ignored, none is taken twice, none is guessed.
+
+Options of the screen may stand before a command, as ``turndesk --machine FILE prove …``: they act as if they
+stood behind it, or are refused where the command has no such option.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from typing import Any, NoReturn
+
+from app.cli.command_errors import EXIT_USAGE, CommandError
+
+BEFORE = ("machine", "program", "offsets")
+"""Options of the screen."""
+
+_INSTEAD: Mapping[str, str] = {
+    "program": "a command takes the program by its name alone",
+    "machine": "turndesk machine takes the file by its name alone",
+}
+
+
+class _Once(argparse.Action):
+    """An option's value; the same option a second time is an error, for one of the two would be ignored."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: str | Sequence[Any] | None,
+        option_string: str | None = None,
+    ) -> None:
+        if option_string is not None:
+            given: frozenset[str] = getattr(namespace, "given", frozenset())
+            if self.dest in given:
+                parser.error(f"{option_string} is given twice; keep one")
+            namespace.given = given | {self.dest}
+        setattr(namespace, self.dest, values)
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, takes each option in full and once."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **{"allow_abbrev": False, **kwargs})
+        self.register("action", None, _Once)
+        self.register("action", "store", _Once)
+
+    def error(self, message: str) -> NoReturn:
+        """Ends with status 2."""
+        self.exit(EXIT_USAGE, f"turndesk: {message}; see '{self.prog} --help'\n")
+
+
+def add_screen_options(parser: argparse.ArgumentParser) -> None:
+    """Those of the screen, which may also stand before a command."""
+    parser.add_argument("--version", action="store_true", help="print the version")
+    texts = {
+        "machine": "machine file (default: the shipped simulated lathe)",
+        "program": "program that the screen loads at the start",
+        "offsets": "offsets file, instead of the store's offsets",
+    }
+    for name in BEFORE:
+        # A command has its own of the same name, which would else write over this one.
+        parser.add_argument(f"--{name}", metavar="FILE", dest=f"before_{name}", help=texts[name])
+
+
+def settled(args: argparse.Namespace) -> argparse.Namespace:
+    """The arguments with the options before a command where they belong. Raises CommandError."""
+    command = args.command
+    if args.version and (command or any(getattr(args, f"before_{name}") for name in BEFORE)):
+        raise CommandError("--version stands alone")
+    for name in BEFORE:
+        before = getattr(args, f"before_{name}")
+        if not command:
+            setattr(args, name, before)
+        elif before is not None:
+            if not hasattr(args, name):
+                raise CommandError(_not_there(command, getattr(args, "action", ""), name))
+            if getattr(args, name) is not None:
+                raise CommandError(f"--{name} is given twice, before and behind {command}; keep one")
+            setattr(args, name, before)
+    return args
+
+
+def _not_there(command: str, action: str, name: str) -> str:
+    words = f"{command} {action}".strip()
+    instead = _INSTEAD.get(name) if name == "program" or command == "machine" else None
+    hint = f"; {instead}" if instead else ""
+    return f"--{name} stands before {words}, which has no such option{hint}"

@@ -1,0 +1,269 @@
+"""``turndesk machine``: is a machine file good, does everything in it answer, and what is told of it?"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from datetime import UTC, datetime
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.compose.machine_setup import read_machine
+from core.machine.machine_changes import Change
+from core.machine.machine_file import MachineFileError, named_machine
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.machine.machine_changes import Change
+    from core.machine.machine_model import Machine
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("machine", help="check a machine file")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    check = actions.add_parser("check", help="validate a machine file, connect, report each drive and input")
+    check.add_argument("file", metavar="FILE", nargs="?", help="default: the shipped simulated lathe")
+    check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    peer = actions.add_parser(
+        "peer",
+        help="play what a CANopen or grblHAL machine file connects to, for trying it without hardware",
+        description="Plays simulated drives and terminals on the bus of a CANopen machine file, or a grblHAL"
+        " controller on its TCP port or on a pseudo terminal, whose name is printed. It goes on until Ctrl-C;"
+        " start the control beside it: turndesk --machine FILE",
+    )
+    peer.add_argument("file", metavar="FILE", help="such as gt75-bench.toml")
+    accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
+    accept.add_argument("file", metavar="FILE")
+    model = actions.add_parser(
+        "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
+    )
+    model.add_argument("file", metavar="FILE")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Checks the file and what it connects to: 0 all is well, 1 something does not answer, 2 bad file."""
+    if args.action == "peer":
+        pass
+
+        return play(args.file)
+    if args.action == "mtconnect":
+        pass
+
+        return write_model(args.file)
+    if args.action == "accept":
+        pass
+
+        return accept(args.file)
+    pass
+
+    return check(args.file, json_wanted=args.json)
+
+
+# --- What ``turndesk machine check`` does.
+
+
+WIDTH = 80
+Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detail
+
+
+def check(file: str | None, *, json_wanted: bool) -> int:
+    """Validates, connects and reports; answers the exit status."""
+    from app.compose.machine_answers import check_ports
+
+    try:
+        machine = named_machine(file)
+    except MachineFileError as error:
+        errors = [finding._asdict() for finding in error.errors]
+        _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
+        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
+        return EXIT_USAGE
+    answers, told = check_ports(machine), _changed(machine)
+    _report(
+        json_wanted,
+        {
+            "file": machine.source,
+            "machine": machine.name,
+            "backend": machine.backend,
+            "errors": [],
+            "changes": [change._asdict() for change in told],
+            "ports": [row._asdict() for row in answers.rows],
+            "warnings": answers.warnings,
+            "trouble": answers.trouble,
+        },
+    )
+    if not json_wanted:
+        sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
+        sys.stdout.write("".join(f"{line}\n" for line in table(answers.rows)))
+        sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
+    said = (*answers.warnings, *answers.trouble)
+    sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
+    return EXIT_ERRORS if answers.trouble else EXIT_OK
+
+
+def _changed(machine: Machine) -> Sequence[Change]:
+    """What differs from the accepted file; nothing where no store can be read."""
+    pass
+
+    try:
+        return changed(machine)
+    except CommandError as error:
+        sys.stderr.write(f"turndesk: {error}\n")
+        return ()
+
+
+def table(rows: Rows) -> Iterator[str]:
+    """Lines of at most 80 characters; a detail that is longer goes on below itself."""
+    widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
+    start = " " * (2 + sum(width + 2 for width in widths))
+    for *cells, detail in rows:
+        head = "  " + "".join(f"{cell:<{width}}  " for cell, width in zip(cells, widths, strict=True))
+        text = textwrap.wrap(detail, max(WIDTH - len(start), 30)) or [""]
+        yield (head + text[0]).rstrip()
+        yield from (start + more for more in text[1:])
+
+
+def _report(json_wanted: bool, report: dict[str, object]) -> None:
+    if json_wanted:
+        sys.stdout.write(json.dumps(report) + "\n")
+
+
+# --- Machine files that have changed: shown and accepted from a console; a real machine does not run before.
+
+
+MOST = 5  # changes that a run tells; a check tells all
+
+
+def changed(machine: Machine) -> tuple[Change, ...]:
+    """What differs from the file that was accepted last; nothing for one that never was. CommandError."""
+    from app.cli.store_command import opened_store
+    from app.compose.accepted_machine import differences
+
+    with opened_store(read_only=True) as store:
+        return differences(machine, store) or ()
+
+
+def demand_accepted(machine: Machine) -> None:
+    """A run tells what has changed; on a machine that is not simulated it does not begin. CommandError."""
+    from app.compose.backends import real_time
+
+    try:
+        told = changed(machine)
+    except CommandError:
+        if real_time(machine):
+            raise
+        return  # a simulation needs no store
+    if not told:
+        return
+    lines = [str(change) for change in told[:MOST]]
+    if len(told) > MOST:
+        lines.append(f"… and {len(told) - MOST} more: turndesk machine check {machine.source}")
+    if real_time(machine):
+        why = f"{machine.source} has changed since it was accepted ({'; '.join(lines)})"
+        raise CommandError(f"{why}; turndesk machine accept {machine.source}, or F10 on the screen")
+    sys.stderr.write("".join(f"{machine.source} has changed: {line}\n" for line in lines))
+
+
+def accept(file: str) -> int:
+    """Shows what has changed, and takes the file as it is now. Raises CommandError."""
+    from app.cli.store_command import opened_store
+    from app.compose.accepted_machine import differences, key_of, record_of
+    from app.compose.machine_setup import read_machine
+
+    machine = read_machine(file)
+    with opened_store() as store:
+        told = differences(machine, store)
+        store.set_setting(key_of(machine), record_of(machine)).result()
+        said = "; ".join(str(change) for change in told or ())
+        store.log_event("machine", f"machine file {machine.source} accepted{': ' if said else ''}{said}")
+    sys.stdout.write("".join(f"  {change}\n" for change in told or ()))
+    how = (
+        "it was not known here" if told is None else f"{len(told)} changes" if told else "it had not changed"
+    )
+    sys.stdout.write(f"{machine.source} is accepted: {how}\n")
+    return EXIT_OK
+
+
+# --- What ``turndesk machine mtconnect`` does: the device model for an MTConnect agent.
+
+
+def write_model(file: str) -> int:
+    """Writes ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
+    from app.compose.shop_floor import device_model
+
+    machine = read_machine(file)
+    try:
+        sys.stdout.write(device_model(machine, datetime.now(UTC)))
+    except DriverError as error:
+        raise CommandError(str(error)) from error
+    model = machine.hardware.mtconnect
+    if model is not None and not model.enabled:
+        sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false: no agent will find the adapter\n")
+    return EXIT_OK
+
+
+# --- What ``turndesk machine peer`` does: the other end of a bus that has no hardware on it.
+
+
+def play(file: str) -> int:
+    """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
+    machine = read_machine(file)
+    player = {"canopen": _drives, "grblhal": _controller}.get(machine.backend)
+    if player is None:
+        why = f"machine.backend is {machine.backend}: nothing to be a peer of; canopen and grblhal have one"
+        raise CommandError(f"{file}: {why}")
+    ended = False
+
+    def end(_signal: int, _frame: FrameType | None) -> None:
+        nonlocal ended
+        ended = True
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, end)
+    try:
+        player(machine, lambda: not ended)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
+    return EXIT_OK
+
+
+def _drives(machine: Machine, going: Callable[[], bool]) -> None:
+    from app.compose.played_machine import play_peers
+
+    bus = machine.hardware.canopen
+    assert bus is not None  # a rule of the machine file
+    if bus.interface == "virtual":
+        raise DriverError(
+            "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
+        )
+    play_peers(machine, going, _say, _typed())
+
+
+def _typed() -> Callable[[], Iterable[str]]:
+    """Lines of the standard input, where there is one."""
+    from app.compose.played_machine import Typed
+
+    try:
+        return Typed(sys.stdin.fileno()).lines
+    except (OSError, ValueError, AttributeError):
+        return tuple
+
+
+def _controller(machine: Machine, going: Callable[[], bool]) -> None:
+    from app.compose.grblhal_backend import play_grblhal
+
+    play_grblhal(
+        machine, going, lambda where: _say(f"simulated grblHAL of {machine.name} on {where}; end: Ctrl-C")
+    )
+
+
+def _say(what: str) -> None:
+    sys.stdout.write(f"{what}\n")
+    sys.stdout.flush()

@@ -1,0 +1,283 @@
+"""``turndesk offsets``: the store's tool and secondary offsets, in inches."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_OK, CommandError
+from app.cli.store_command import opened_store
+from app.cli.toml_files import TABLE, out_of_range, shown, unknown
+from app.desk.arithmetic import EntryError, value_of
+from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.store_rows import MM_PER_INCH, OFFSETS, Change, Kind, Row, ToolRow, Value, inches
+from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("offsets", help="show and change tool and secondary offsets")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    show = actions.add_parser("show", help="all offsets that are set")
+    show.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    change = actions.add_parser(
+        "set", help="set T3 x=1.25 wear_x=-.0005 quadrant=3, or D4 x=-.0005 (a radius, as stored)"
+    )
+    change.add_argument("offset", metavar="T3|D4|G54")
+    change.add_argument(
+        "values",
+        metavar="KEY=VALUE",
+        nargs="+",
+        help="inches, sums such as x=.5-.002 are fine; "
+        "T: x z nose_radius wear_x wear_z quadrant remark master, D: x z r; "
+        "G54 to G59 in mm and degrees: x z c",
+    )
+    clear = actions.add_parser("clear", help="clear D: all secondary offsets")
+    clear.add_argument("table", metavar="D", choices=("D",), type=str.upper)
+    history = actions.add_parser("history", help="every change, newest first")
+    history.add_argument("--limit", type=int, default=100, metavar="N", help="default: 100")
+    history.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    undo = actions.add_parser("undo", help="take the last change back; again: the one before")
+    for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
+        action.add_argument("--why", default=why, help=f"reason, kept in the history (default: {why})")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    pass
+
+    return OFFSET_ACTIONS[args.action](args)
+
+
+# --- What ``turndesk offsets`` does with G54 to G59: mm and degrees, X a radius, as the store keeps them.
+
+
+_CODE = re.compile(r"G0*(\d{1,4})", re.IGNORECASE)
+
+
+def code_of(name: str) -> int | None:
+    """The code that a name means; None where it names no settable offset at all.
+
+    Raises CommandError for one that does not exist.
+    """
+    match = _CODE.fullmatch(name)
+    if match is None:
+        return None
+    if int(match[1]) not in ZERO_CODES:
+        raise CommandError(f"{name} is no settable offset; name G54…G59")
+    return int(match[1])
+
+
+def set_zero(code: int, entries: list[str], why: str) -> int:
+    """Set what entries such as ``z=-120`` say; the rest stays."""
+    values = _values_zero_actions(entries)
+    with opened_store() as store:
+        row = store.set_zero(code, why, values, who="command line").result()
+    sys.stdout.write(f"{line(code, row)}\n")
+    return EXIT_OK
+
+
+def line(code: int, row: ZeroRow) -> str:
+    """One offset for a person to read."""
+    return f"G{code} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
+
+
+def as_json(rows: Mapping[int, ZeroRow]) -> dict[int, dict[str, float]]:
+    """All of them, by code."""
+    return {code: row._asdict() for code, row in rows.items()}
+
+
+def _values_zero_actions(entries: list[str]) -> dict[str, float]:
+    values: dict[str, float] = {}
+    for entry in entries:
+        key, equals, text = entry.partition("=")
+        key = key.strip().lower()
+        if not equals:
+            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as z=-120")
+        if key not in ZERO_FIELDS:
+            raise CommandError(unknown(key, ZERO_FIELDS))
+        if key in values:
+            raise CommandError(f"{key} is given twice; give it once")
+        try:
+            values[key] = value_of(text)
+        except EntryError as error:
+            raise CommandError(f"{key}: {error}") from error
+    return values
+
+
+# --- What ``turndesk offsets`` does. Inches at the door, millimetres in the store.
+
+
+_OFFSET = re.compile(r"([TD])0*(\d{1,4})", re.IGNORECASE)
+_KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY}
+_LETTER = {kind: letter for letter, kind in _KIND.items()}
+
+
+_FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
+
+
+def _show(args: argparse.Namespace) -> int:
+    with opened_store(read_only=True) as store:
+        rows: dict[Kind, dict[int, Row]] = {
+            Kind.TOOL: {**store.tools()},
+            Kind.SECONDARY: {**store.secondary()},
+        }
+        zero = store.zero_offsets()
+    if args.json:
+        told: dict[str, object] = {
+            kind.value: {n: _in_inches(kind, row) for n, row in table.items()} for kind, table in rows.items()
+        }
+        if zero:
+            told[TABLE] = as_json(zero)
+        sys.stdout.write(json.dumps(told) + "\n")
+        return EXIT_OK
+    lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
+    lines += [line(code, row) for code, row in zero.items()]
+    sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
+    return EXIT_OK
+
+
+def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
+    """Every field by its name, lengths in inches."""
+    values: list[Value] = list(row)
+    return {
+        name: _typed(field, value) for (name, field), value in zip(FIELDS[kind].items(), values, strict=True)
+    }
+
+
+def _line(name: str, row: Row) -> str:
+    x, z, r = (inches(value) for value in row[:3])
+    line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
+    return line + _more(row) if isinstance(row, ToolRow) else line
+
+
+def _more(row: ToolRow) -> str:
+    """What else is set of a tool."""
+    wear = (
+        f"  wear X {inches(row.wear_x):+.5f} Z {inches(row.wear_z):+.5f}" if row.wear_x or row.wear_z else ""
+    )
+    tip = f"  tip {row.quadrant}" if row.quadrant else ""
+    return wear + tip + ("  master" if row.master else "") + (f"  {row.remark}" if row.remark else "")
+
+
+def _set(args: argparse.Namespace) -> int:
+    code = code_of(args.offset)
+    if code is not None:
+        return set_zero(code, args.values, args.why)
+    kind, number = _named(args.offset)
+    values = _values(kind, args.values)
+    with opened_store() as store:
+        new = store.set_offset(kind, number, args.why, values, who="command line").result()
+    sys.stdout.write(_line(f"{_LETTER[kind]}{number}", new) + "\n")
+    return EXIT_OK
+
+
+def _named(text: str) -> tuple[Kind, int]:
+    match = _OFFSET.fullmatch(text)
+    if not match or int(match[2]) not in OFFSETS:
+        raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
+    return _KIND[match[1].upper()], int(match[2])
+
+
+def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
+    """Fields from entries such as ``x=1.25``, lengths mm. Raises CommandError for the first mistake."""
+    values: dict[str, Value] = {}
+    for entry in entries:
+        key, equals, text = entry.partition("=")
+        key = key.strip().lower()
+        if not equals:
+            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as x=1.25")
+        if key not in FIELDS[kind]:
+            raise CommandError(unknown(key, FIELDS[kind]))
+        if key in values:
+            raise CommandError(f"{key} is given twice; give it once")
+        values[key] = _entered(FIELDS[kind][key], text)
+    return values
+
+
+def _entered(field: Field, text: str) -> Value:
+    value = _value(field, text)
+    if mistake := out_of_range(field, value):
+        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
+    return value
+
+
+def _typed(field: Field, value: Value) -> Value:
+    """The value again in the unit of the entry."""
+    return inches(value) if field.sort is Sort.LENGTH and not isinstance(value, str) else value
+
+
+def _value(field: Field, text: str) -> Value:
+    """What the text comes to; lengths mm. Raises CommandError."""
+    if field.sort is Sort.TEXT:
+        return text.strip()
+    if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
+        raise CommandError(f"{field.name} = {text} is neither 1 nor 0")
+    if field.sort is Sort.FLAG:
+        return _FLAGS[text.strip().lower()]
+    try:
+        value = value_of(text)
+    except EntryError as error:
+        raise CommandError(f"{field.name}: {error}") from error
+    if field.sort is Sort.WHOLE:
+        return int(value) if value.is_integer() else value
+    return value * MM_PER_INCH
+
+
+def _clear(args: argparse.Namespace) -> int:
+    with opened_store() as store:
+        count = store.clear_secondary(args.why, who="command line").result()
+    sys.stdout.write(f"secondary offsets cleared: {count}; 'turndesk offsets undo' brings them back\n")
+    return EXIT_OK
+
+
+def _history(args: argparse.Namespace) -> int:
+    if args.limit < 1:
+        raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more")
+    with opened_store(read_only=True) as store:
+        changes = store.history(limit=args.limit)
+    if args.json:
+        sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
+    else:
+        sys.stdout.write(
+            "".join(f"{_told(change)}\n" for change in changes) or "no offset was ever changed\n"
+        )
+    return EXIT_OK
+
+
+def _change(change: Change) -> dict[str, object]:
+    """One change for a program to read, inches."""
+    fields: dict[str, object] = change._asdict()
+    for side, row in (("old", change.old), ("new", change.new)):
+        fields[side] = row and _in_inches(change.kind, row)
+    return fields
+
+
+def _told(change: Change) -> str:
+    """One change for a person to read."""
+    sides = ["not set" if row is None else _line("", row).strip() for row in (change.old, change.new)]
+    name = f"{_LETTER[change.kind]}{change.number}"
+    return f"{change.at}  {name:<3} {' → '.join(sides)}  {change.why} ({change.who})"
+
+
+def _undo(args: argparse.Namespace) -> int:
+    with opened_store() as store:
+        changes = store.undo_offset(args.why, who="command line").result()
+    sys.stdout.write("".join(f"{_told(change)}\n" for change in changes))
+    return EXIT_OK
+
+
+OFFSET_ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "show": _show,
+    "set": _set,
+    "clear": _clear,
+    "history": _history,
+    "undo": _undo,
+}

@@ -1,0 +1,97 @@
+"""The options that every command about a program shares, and what they make of it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import CommandError
+from core.language.source import Dialect, dialect_of
+
+if TYPE_CHECKING:
+    from core.interpreter.job_setup import Setup
+    from core.language.source import Source
+    from core.machine.machine_model import Machine
+
+    SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+
+def add_program_options(parser: argparse.ArgumentParser) -> None:
+    """Machine, dialect, offsets, inputs and switches, as interfaces.md names them."""
+    parser.add_argument(
+        "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
+    )
+    parser.add_argument(
+        "--dialect", choices=[str(each) for each in Dialect], help="default: by file ending, else omniturn"
+    )
+    parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
+    parser.add_argument("--inputs", metavar="FILE", help="input states for M91 to M97")
+    parser.add_argument("--optional-stop", action="store_true", help="M01 stops")
+    parser.add_argument("--block-delete", action="store_true", help="lines that begin with / are skipped")
+    parser.add_argument("--strict", action="store_true", help="what the control only tolerates is an error")
+    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def add_ideal_option(parser: argparse.ArgumentParser) -> None:
+    """Times by feeds and limits of speed alone."""
+    parser.add_argument("--ideal", action="store_true", help="times without accelerations and waits")
+
+
+@dataclass(frozen=True, slots=True)
+class Circumstances:
+    """Machine and setup of one command call."""
+
+    machine: Machine
+    setup: Setup
+
+
+def circumstances(args: argparse.Namespace) -> Circumstances:
+    """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
+    from app.compose.machine_setup import read_machine, setup_for
+    from app.compose.stored_offsets import chosen_offsets, chosen_zero
+
+    machine = read_machine(args.machine)
+    tools, secondary = chosen_offsets(args.offsets)()
+    inputs = input_states(args.inputs, machine.inputs)
+    setup = setup_for(
+        machine,
+        tools=tools,
+        secondary=secondary,
+        zero=chosen_zero(args.offsets)(),
+        inputs=inputs,
+        block_delete=args.block_delete,
+        strict=args.strict,
+    )
+    return Circumstances(machine, setup)
+
+
+def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
+    """The inputs file of the options, empty without one; with ``known`` no others. Raises CommandError."""
+    if path is None:
+        return {}
+    from app.cli.toml_files import read_inputs
+
+    return read_inputs(Path(path), known)
+
+
+def read_source(path: Path, args: argparse.Namespace) -> Source:
+    """The program text; raises CommandError when the file cannot be read."""
+    from core.language.source import SourceError, load_source
+
+    dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
+    for option, what in (("strict", "they have no tolerated lines"), ("inputs", "they ask no inputs")):
+        if getattr(args, option) and dialect is not Dialect.OMNITURN:
+            raise CommandError(f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}")
+    try:
+        source = load_source(path, dialect)
+    except SourceError as error:
+        # The screen calls a program by its name; a script that proves many needs the folder too.
+        raise CommandError(str(error).replace(path.name, str(path), 1)) from error
+    if dialect is not Dialect.SINUMERIK:
+        return source
+    from core.language.sinumerik.subprogram_files import with_subprograms
+
+    return with_subprograms(source, [path.parent])

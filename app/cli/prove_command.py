@@ -1,0 +1,110 @@
+"""``turndesk prove FILE…``: proves programs without moving anything."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.cli.program_options import (
+    Circumstances,
+    add_ideal_option,
+    add_program_options,
+    circumstances,
+    read_source,
+)
+from app.cli.progress_bar import Progress
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.proving.proof_report import Report
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("prove", help="prove programs: errors, limits, cycle time; nothing moves")
+    parser.add_argument("files", nargs="+", metavar="FILE")
+    add_program_options(parser)
+    add_ideal_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Prove each file; 1 when any has errors, 2 when one cannot be read."""
+    around = circumstances(args)
+    return max(_status(Path(name), around, args) for name in args.files)
+
+
+def _status(path: Path, around: Circumstances, args: argparse.Namespace) -> int:
+    """Prove one file; one that cannot be read does not keep the others from their proof."""
+    try:
+        return EXIT_ERRORS if _prove(path, around, args).errors else EXIT_OK
+    except CommandError as error:
+        sys.stderr.write(f"turndesk: {error}\n")
+        return EXIT_USAGE
+
+
+def _prove(path: Path, around: Circumstances, args: argparse.Namespace) -> Report:
+    from app.cli.omniturn_figures import report_json, stops_of
+    from core.proving.prove_program import prove
+
+    source = read_source(path, args)
+    with Progress(f"proving {path.name}") as progress:
+        report = prove(source, around.setup, around.machine, progress.reach, ideal=args.ideal)
+    if args.json:
+        sys.stdout.write(json.dumps(report_json(str(path), report, optional_stop=args.optional_stop)) + "\n")
+    else:
+        sys.stdout.write(_sheet(path, report))
+        stops = stops_of(report, optional_stop=args.optional_stop)
+        sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
+    return report
+
+
+def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:
+    """What the program reaches: of a lathe X and Z of the program, of a mill all axes of the machine."""
+    if report.mill is not None:
+        from app.cli.klartext_figures import machine_reach
+
+        return machine_reach(report.mill)
+    (x0, x1), (z0, z1) = report.reach.x, report.reach.z
+    return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
+
+
+def _ways(report: Report) -> str:
+    """What else the program may do: by its inputs, and by block delete."""
+    ways = report.ways
+    if ways.gone + ways.left <= 1:
+        return ""
+    left = f", {ways.left} not" if ways.left else ""
+    low, high = ways.cycle
+    return f"  {ways.gone} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
+
+
+def _sheet(path: Path, report: Report) -> str:
+    """The proof as a person reads it."""
+    from app.cli.omniturn_figures import MM_PER_INCH, inches, millimetres, per_minute
+    from core.language.source import Dialect
+
+    inch = report.dialect is Dialect.OMNITURN
+    length, unit, scale = (inches, "in", 1.0) if inch else (millimetres, "mm", MM_PER_INCH)
+
+    findings = "".join(f"{d.shown(str(path))}\n" for d in report.diagnostics)
+    times, reach = report.times, report.reach
+    slow, fast = (per_minute(speed) * scale for speed in reach.feed)
+    tools = " ".join(f"T{n}" for n in report.tools) or "no tool"
+    count = len(report.errors)
+    verdict = f"{count} error{'s' * (count > 1)}: will not run" if count else "proved"
+    return findings + (
+        f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
+        f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"
+        f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
+        f"{_ways(report)}"
+        f"  path {length(report.cutting_length):.4f} {unit} cutting,"
+        f" {length(report.rapid_length):.4f} {unit} rapid\n"
+        f"{_reached(report, length, unit)}"
+        f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
+        f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"
+    )

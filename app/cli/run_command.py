@@ -1,0 +1,178 @@
+"""``turndesk run FILE --headless``: runs a program through the real executor and drivers without a screen."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.cli.program_options import (
+    Circumstances,
+    add_program_options,
+    circumstances,
+    input_states,
+    read_source,
+)
+from app.cli.progress_bar import Progress
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.desk.headless_run import Outcome
+    from core.executor.job import Job
+    from core.language.source import Dialect
+    from core.proving.proof_report import Report
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("run", help="run a program through executor and drivers")
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--headless", action="store_true", help="without a screen (the screen: turndesk)")
+    parser.add_argument(
+        "--realtime", action="store_true", help="at the machine's pace, not as fast as it goes"
+    )
+    parser.add_argument(
+        "--anew", action="store_true", help="begin at the first line although a job was interrupted"
+    )
+    add_program_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Prove, then run one cycle; 1 when the program or the run has errors."""
+    from core.executor.job import make_job
+    from core.proving.prove_program import prove
+
+    path = Path(args.file)
+    if not args.headless:
+        raise CommandError(f"add --headless, or open the screen with: turndesk --program {path}")
+    around = circumstances(args)
+    job = make_job(read_source(path, args), around.setup)
+    report = prove(job.reading, around.setup, around.machine)
+    sys.stderr.write("".join(f"{d.shown(str(path))}\n" for d in report.diagnostics))
+    if report.errors:
+        return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
+    if report.missing_tools:
+        names = ", ".join(f"T{n}" for n in report.missing_tools)
+        why = f"{path}: no offset was ever set for {names}; set it with: turndesk offsets set, or --offsets"
+        return _refused(args, why, report)
+    return _run(args, around, job, report)
+
+
+def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
+    from app.cli.machine_command import demand_accepted
+    from app.compose.headless_run import EventLog, headless
+    from app.compose.workshop import proof_of
+
+    demand_accepted(around.machine)
+    inputs = input_states(args.inputs, around.machine.inputs)
+    path = Path(args.file)
+    with (
+        EventLog.new(path.name) as log,
+        Progress(f"running {path.name}", report.times.cycle) as progress,
+        headless(
+            around.machine,
+            inputs=inputs,
+            realtime=args.realtime,
+            anew=args.anew,
+            log=log,
+            say=lambda text: _say(path, text),
+            progress=progress.reach,
+        ) as play,
+    ):
+        outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)
+    if outcome.why:
+        sys.stderr.write(f"turndesk: {path}: {outcome.state}: {outcome.why}\n")
+    _write(args, path, outcome, report, str(log.path))
+    return EXIT_OK if outcome.state == "complete" else EXIT_ERRORS
+
+
+def _say(path: Path, text: str) -> None:
+    sys.stderr.write(f"{path}: {text}\n")
+
+
+def _refused(args: argparse.Namespace, why: str, report: Report) -> int:
+    sys.stderr.write(f"turndesk: {why}\n")
+    if args.json:
+        _write_line(
+            {
+                "state": "refused",
+                "final": _place(report, None),
+                **_figures(None, report.dialect),
+                "events": "",
+            }
+        )
+    return EXIT_ERRORS
+
+
+def _write(args: argparse.Namespace, path: Path, outcome: Outcome, report: Report, events: str) -> None:
+    final = _place(report, outcome)
+    figures = _figures(outcome, report.dialect)
+    if args.json:
+        _write_line({"state": outcome.state, "final": final, **figures, "events": events})
+        return
+    unit = "in" if report.dialect == "omniturn" else "mm"
+    sys.stdout.write(
+        f"{path}: {outcome.state} after {outcome.elapsed:.2f} s (proved: {report.times.cycle:.2f} s)\n"
+        f"  at {_shown_place(final, mill=report.mill is not None)} {unit};"
+        f" following error at most {figures['max_following_error']:.5f} {unit},"
+        f" {figures['underruns']} underruns; log {events}\n"
+    )
+
+
+def _write_line(line: dict[str, object]) -> None:
+    sys.stdout.write(json.dumps(line) + "\n")
+
+
+def _shown_place(final: dict[str, float], *, mill: bool) -> str:
+    if mill:
+        return "  ".join(f"{name[-1].upper()} {at:.3f}" for name, at in final.items() if name[0] in "mabc")
+    return f"X radius {final['x']:.5f}  Z {final['z']:.5f}"
+
+
+def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
+    """Where the tip stands in the frame of the last move; X as a radius, inches or mm by the language."""
+    from app.cli.omniturn_figures import degrees, length_of
+    from core.language.source import Dialect
+
+    if report.mill is not None:
+        from app.cli.klartext_figures import place
+
+        complete = outcome is not None and outcome.state == "complete"
+        return place(report.mill, outcome.snapshot.demand if outcome else (), complete=complete)
+    if outcome is None:
+        return {"x": 0.0, "z": 0.0, "c": 0.0}
+    demand = outcome.snapshot.demand
+    x, z, c = demand[0], demand[1], demand[-1]
+    shift_x = report.machine_final[0] - report.final[0]
+    shift_z = report.machine_final[1] - report.final[1]
+    if report.dialect is Dialect.SINUMERIK:
+        c -= report.machine_final[2] - report.final[2]
+    length = length_of(report.dialect)
+    return {"x": length(x - shift_x), "z": length(z - shift_z), "c": degrees(c)}
+
+
+def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
+    from app.cli.omniturn_figures import length_of, seconds
+
+    if outcome is None:
+        return {"elapsed_s": 0.0, "alarms": [], "underruns": 0, "max_following_error": 0.0}
+    snapshot = outcome.snapshot
+    return {
+        "elapsed_s": seconds(outcome.elapsed),
+        "alarms": [
+            {
+                "number": a.number,
+                "code": a.code,
+                "text": a.text,
+                "cause": a.cause,
+                "remedy": a.remedy,
+                "line": a.line,
+            }
+            for a in snapshot.alarms
+        ],
+        "underruns": snapshot.underruns,
+        "max_following_error": length_of(dialect)(snapshot.max_following_error),
+    }

@@ -1,0 +1,122 @@
+"""``turndesk store``: backup, restore, export, import and verify of the store."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.cli.toml_files import read_rows, read_zero
+from app.desk.data_folder import data_folder
+from core.store import backup, database, store_export
+from core.store.store import Store, StoreError
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("store", help="back up, restore, export, import, verify the store")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    for name, what, text in (
+        ("backup", "FILE", "copy the whole store to FILE, also while it is in use"),
+        ("restore", "FILE", "put a backup in the store's place; the replaced store is kept beside it"),
+        ("export", "DIR", "write programs, offsets.toml, events.csv and runs.csv as plain files"),
+        ("import", "DIR", "take the programs and offsets of an exported folder"),
+    ):
+        actions.add_parser(name, help=text).add_argument("path", metavar=what)
+    verify = actions.add_parser("verify", help="look at every page, reference and program text")
+    verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    pass
+
+    return STORE_ACTIONS[args.action](args)
+
+
+# --- The store of this installation, opened for one command.
+
+
+@contextmanager
+def told() -> Iterator[None]:
+    """What the store refuses ends the command with its sentence."""
+    try:
+        yield
+    except StoreError as error:
+        raise CommandError(str(error)) from error
+
+
+@contextmanager
+def opened_store(*, read_only: bool = False) -> Iterator[Store]:
+    """The store, closed at the end. Raises CommandError for whatever the store refuses."""
+    with told(), Store.open(data_folder(), read_only=read_only) as store:
+        yield store
+
+
+# --- What ``turndesk store`` does.
+
+
+def _backup(args: argparse.Namespace) -> int:
+    with told():
+        backup.backup(data_folder(), Path(args.path))
+    sys.stdout.write(f"{args.path} holds the store of {data_folder()}\n")
+    return EXIT_OK
+
+
+def _restore(args: argparse.Namespace) -> int:
+    with told():
+        kept = backup.restore(data_folder(), Path(args.path))
+    beside = f"; the replaced store is kept as {kept}" if kept else ""
+    sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
+    return EXIT_OK
+
+
+def _export(args: argparse.Namespace) -> int:
+    with opened_store(read_only=True) as store:
+        count = store_export.export(store, Path(args.path))
+    sys.stdout.write(f"{args.path} holds programs: {count}, the offsets, the events and the runs\n")
+    return EXIT_OK
+
+
+def _import(args: argparse.Namespace) -> int:
+    folder = Path(args.path)
+    offsets_file = folder / store_export.OFFSETS
+    tools, secondary = read_rows(offsets_file) if offsets_file.exists() else ({}, {})
+    zero = read_zero(offsets_file) if offsets_file.exists() else {}
+    with opened_store() as store:
+        programs = store_export.program_files(folder)
+        store.import_all(programs, tools, secondary, f"import of {folder.name}", zero).result()
+    counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
+    sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
+    return EXIT_OK
+
+
+def _verify(args: argparse.Namespace) -> int:
+    path = data_folder() / database.FILE_NAME
+    with told():
+        problems = backup.problems(path) if path.exists() else ()
+    if args.json:
+        sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
+    elif not problems:
+        sys.stdout.write(
+            f"{path} is whole\n" if path.exists() else f"there is no store in {data_folder()} yet\n"
+        )
+    sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))
+    return EXIT_ERRORS if problems else EXIT_OK
+
+
+STORE_ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "backup": _backup,
+    "restore": _restore,
+    "export": _export,
+    "import": _import,
+    "verify": _verify,
+}

@@ -1,0 +1,211 @@
+"""Files that a person writes by hand, in TOML: offsets and input states. Every mistake is named at once."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Collection, Iterable, Iterator
+from difflib import get_close_matches
+from math import isfinite
+from pathlib import Path
+
+from app.cli.command_errors import CommandError
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.store.offset_fields import FIELDS, Field, Sort
+from core.store.store_rows import MM_PER_INCH, OFFSETS, Kind, SecondaryRow, ToolRow, Value
+from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow, reach
+
+
+def read_toml(path: Path) -> dict[str, object]:
+    """The parsed file. Raises CommandError when it cannot be read or is no TOML."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+    except UnicodeDecodeError as error:
+        raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
+    except tomllib.TOMLDecodeError as error:
+        raise CommandError(f"{path} is no TOML: {error}") from error
+
+
+def unknown(key: str, known: Iterable[str]) -> str:
+    """The sentence for a key that nobody reads, with the nearest that somebody does."""
+    names = list(known)
+    near = get_close_matches(key, names, n=1)
+    return f"{key} is unknown; " + (f"did you mean {near[0]}?" if near else f"known here: {', '.join(names)}")
+
+
+def refuse(path: Path, mistakes: list[str]) -> None:
+    """Raises CommandError when there are mistakes."""
+    if mistakes:
+        raise CommandError(f"{path}: " + "; ".join(mistakes))
+
+
+# --- The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal.
+
+
+def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
+    """Input states by name. With ``known`` only these names are taken.
+
+    Raises CommandError naming every mistake.
+    """
+    data = read_toml(path)
+    mistakes = [unknown(key, ("inputs",)) for key in data if key != "inputs"]
+    table = data.get("inputs")
+    if not isinstance(table, dict):
+        refuse(path, [*mistakes, "the table [inputs] is missing"])
+        return {}
+    mistakes += [
+        f"inputs.{name} must be true (closed) or false (open)"
+        for name, state in table.items()
+        if not isinstance(state, bool)
+    ]
+    mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
+    refuse(path, mistakes)
+    also = "7" in table and (not known or "TB2-9" in known)
+    return {"TB2-9": table["7"], **table} if also else dict(table)
+
+
+# --- Settable offsets in an offsets file: [zero.54] to [zero.59], x and z in mm (X a radius), c in degrees.
+
+
+TABLE = "zero"
+_CODES = {str(code): code for code in ZERO_CODES}
+
+
+def read_zero(path: Path) -> dict[int, ZeroRow]:
+    """Those that the file holds; a missing key is 0. Raises CommandError naming every mistake."""
+    table, mistakes = read_toml(path).get(TABLE, {}), list[str]()
+    found = dict(_rows(table, mistakes)) if isinstance(table, dict) else {}
+    if not isinstance(table, dict):
+        mistakes.append(f"{TABLE} must hold tables such as [{TABLE}.54]")
+    refuse(path, mistakes)
+    return found
+
+
+def _rows(table: dict[str, object], mistakes: list[str]) -> Iterator[tuple[int, ZeroRow]]:
+    for name, entry in table.items():
+        if name not in _CODES:
+            mistakes.append(f"[{TABLE}.{name}] does not exist; settable offsets are 54…59")
+        elif not isinstance(entry, dict):
+            mistakes.append(f"{TABLE}.{name} must be a table, [{TABLE}.{name}]")
+        else:
+            yield _CODES[name], ZeroRow(**_values_zero_file(name, entry, mistakes))
+
+
+def _values_zero_file(name: str, entry: dict[str, object], mistakes: list[str]) -> dict[str, float]:
+    values: dict[str, float] = {}
+    for key, value in entry.items():
+        where, unit = f"{TABLE}.{name}.{key}", "degrees" if key == "c" else "mm"
+        if key not in ZERO_FIELDS:
+            mistakes.append(f"[{TABLE}.{name}] {unknown(key, FIELDS)}")
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            mistakes.append(f"{where} must be a number of {unit}")
+        elif not (isfinite(value) and abs(value) <= reach(key)):
+            mistakes.append(
+                f"{where} = {value:g} is out of range; expected {-reach(key):g}…{reach(key):g} {unit}"
+            )
+        else:
+            values[key] = float(value)
+    return values
+
+
+# --- The offsets file: [tool.1] x z nose_radius …, [secondary.1] x z r, in inches; also part of an export.
+
+
+_NUMBERS = {str(number): number for number in OFFSETS}
+_KINDS = {kind.value: kind for kind in Kind}
+_EXPECTED = {
+    Sort.LENGTH: "a number of inches",
+    Sort.WHOLE: "a whole number",
+    Sort.TEXT: "a text",
+    Sort.FLAG: "true or false",
+}
+
+
+def read_offsets(path: Path) -> tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]:
+    """Tool (geometry and wear together) and secondary offsets in mm by number, for the interpreter.
+
+    Raises CommandError naming every mistake.
+    """
+    tools, secondary = read_rows(path)
+    return (
+        {n: ToolOffset(*row.offset, row.nose_radius) for n, row in tools.items()},
+        {n: SecondaryOffset(*row) for n, row in secondary.items()},
+    )
+
+
+def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
+    """Every field of the file as the store keeps it, lengths in mm; a missing key is 0 or empty.
+
+    Raises CommandError naming every mistake.
+    """
+    data = read_toml(path)
+    mistakes = [unknown(key, _KINDS) for key in data if key not in {*_KINDS, TABLE}]
+    tools = {n: ToolRow(**values) for n, values in _table(data, Kind.TOOL, mistakes)}  # type: ignore[arg-type]
+    secondary = {
+        n: SecondaryRow(**values)  # type: ignore[arg-type]
+        for n, values in _table(data, Kind.SECONDARY, mistakes)
+    }
+    masters = [f"tool.{n}" for n, row in tools.items() if row.master]
+    if len(masters) > 1:
+        mistakes.append(f"{' and '.join(masters)} are both master; one tool at most is")
+    refuse(path, mistakes)
+    return tools, secondary
+
+
+def _table(
+    data: dict[str, object], kind: Kind, mistakes: list[str]
+) -> Iterator[tuple[int, dict[str, Value]]]:
+    table = data.get(kind.value, {})
+    if not isinstance(table, dict):
+        mistakes.append(f"{kind} must hold tables such as [{kind}.1]")
+        return
+    for name, entry in table.items():
+        if name not in _NUMBERS:
+            mistakes.append(f"[{kind}.{name}] does not exist; offsets are 1…32")
+        elif not isinstance(entry, dict):
+            mistakes.append(f"{kind}.{name} must be a table, [{kind}.{name}]")
+        else:
+            yield _NUMBERS[name], _values(entry, kind, name, mistakes)
+
+
+def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[str]) -> dict[str, Value]:
+    known, values = FIELDS[kind], {}
+    for key, value in entry.items():
+        where = f"{kind}.{name}.{key}"
+        if key not in known:
+            mistakes.append(f"[{kind}.{name}] {unknown(key, known)}")
+            continue
+        field = known[key]
+        if not _fits(field, value):
+            mistakes.append(f"{where} must be {_EXPECTED[field.sort]}")
+        elif mistake := out_of_range(field, kept := _kept(field, value)):
+            mistakes.append(f"{where} = {shown(value)} {mistake}")
+        else:
+            values[key] = kept
+    return values
+
+
+def _fits(field: Field, value: object) -> bool:
+    """Whether TOML gave the sort of value that this field is."""
+    if isinstance(value, bool):
+        return field.sort is Sort.FLAG
+    if isinstance(value, str):
+        return field.sort is Sort.TEXT
+    return isinstance(value, int | float) and field.sort in {Sort.LENGTH, Sort.WHOLE}
+
+
+def _kept(field: Field, value: object) -> Value:
+    if field.sort is Sort.LENGTH and isinstance(value, int | float):
+        return value * MM_PER_INCH
+    return value if isinstance(value, int | float | str) else 0.0
+
+
+def shown(value: object) -> str:
+    """A value as a sentence repeats it."""
+    return f"{value:g}" if isinstance(value, int | float) else repr(value)
+
+
+def out_of_range(field: Field, value: Value) -> str:
+    """What is wrong with a value (lengths mm), or nothing; NaN is out of every range."""
+    return "" if field.takes(value) else f"is out of range; expected {field.range}"

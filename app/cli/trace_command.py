@@ -1,0 +1,124 @@
+"""``turndesk trace FILE --out FILE.csv``: the time-stamped setpoints that the drives would get."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import CommandError
+from app.cli.expand_command import report_diagnostics
+from app.cli.program_options import add_program_options, circumstances, read_source
+from app.cli.progress_bar import Progress
+from core.language.source import Dialect
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.machine.machine_model import Machine
+    from core.proving.program_timeline import Timeline
+
+
+def _interval(text: str) -> float:
+    """A setpoint interval in seconds, .0001 to 1."""
+    try:
+        dt = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds") from None
+    if not 1e-4 <= dt <= 1.0:
+        raise argparse.ArgumentTypeError(f"{text} s: an interval from .0001 to 1 second")
+    return dt
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("trace", help="write the time-stamped setpoints that the drives would get")
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--dt", type=_interval, default=0.001, metavar="S", help="interval, s (default .001)")
+    parser.add_argument("--out", metavar="FILE.csv", help="where to (default: stdout)")
+    add_program_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the setpoints as CSV: slides under OmniTurn in inches (X a radius), otherwise in mm; degrees.
+
+    1 when the program has errors.
+    """
+    from core.proving.program_timeline import Timeline
+
+    path = Path(args.file)
+    if args.json and args.out is None:
+        raise CommandError("--json needs --out FILE: without it the setpoints themselves go to stdout")
+    around = circumstances(args)
+    source = read_source(path, args)
+    timeline = Timeline.of(source, around.setup, around.machine)
+    table = _Table(around.machine, inch=source.dialect is Dialect.OMNITURN)
+    if args.out is None:
+        _write(timeline, table, args.dt, sys.stdout.write, path)
+    else:
+        _write_file(timeline, table, args, path)
+    if args.json:
+        _write_json(timeline, args, path)
+    return report_diagnostics(path, timeline)
+
+
+def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
+    """What was written, in one object."""
+    from app.cli.omniturn_figures import diagnostic_json, seconds
+
+    told = {
+        "file": str(path),
+        "out": None if timeline.errors else args.out,
+        "dt": args.dt,
+        "cycle_time_s": seconds(timeline.t),
+        "diagnostics": [diagnostic_json(each) for each in timeline.diagnostics],
+    }
+    sys.stdout.write(json.dumps(told) + "\n")
+
+
+class _Table:
+    """The columns of a machine: time, its axes in their order, the spindle, the line."""
+
+    def __init__(self, machine: Machine, *, inch: bool) -> None:
+        from app.cli.omniturn_figures import MM_PER_INCH
+
+        names = ",".join(axis.name.lower() for axis in machine.axes)
+        self.header = f"t,{names},spindle_deg,line\n"
+        self._scales = [1.0 if axis.rotary or not inch else MM_PER_INCH for axis in machine.axes]
+        self._places = [5 if axis.rotary else 7 if inch else 6 for axis in machine.axes]
+
+    def row(self, t: float, at: tuple[float, ...], turned: float, line: int) -> str:
+        """One setpoint."""
+        axes = ",".join(
+            f"{value / scale:.{places}f}"
+            for value, scale, places in zip(at, self._scales, self._places, strict=True)
+        )
+        return f"{t:.6f},{axes},{turned:.4f},{line}\n"
+
+
+def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, path: Path) -> None:
+    """Whole or not at all: a program with errors leaves no setpoints behind, nor does a full disk."""
+    out = Path(args.out)
+    partial = out.with_name(out.name + ".part")
+    try:
+        with partial.open("w", encoding="ascii", newline="") as file:
+            _write(timeline, table, args.dt, file.write, path)
+        if timeline.errors:
+            partial.unlink()
+        else:
+            partial.replace(out)
+    except OSError as error:
+        raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
+
+
+def _write(timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], path: Path) -> None:
+    from core.proving.setpoint_trace import setpoints
+
+    write(table.header)
+    with Progress(f"tracing {path.name}") as progress:
+        for chunk in setpoints(timeline, dt):
+            write("".join(table.row(*row) for row in chunk))
+            if chunk:
+                progress.reach(chunk[-1][0])

@@ -1,0 +1,199 @@
+"""The CAN bus as the machine file describes it. Loads python-can and canopen, which not everybody has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from core.machine.can_addresses import PLAIN_MODULE, can_terminal
+from core.machine.hardware_model import CanNode, CanopenModel
+from core.machine.machine_model import Axis, Machine
+from core.ports import Clock, DriverError
+from drivers.canopen.canopen_config import (
+    AxisConfig,
+    BusConfig,
+    CanopenConfig,
+    EncoderConfig,
+    ModuleConfig,
+    Objects,
+    OutputConfig,
+    PotConfig,
+    SpindleConfig,
+    Terminal,
+)
+
+if TYPE_CHECKING:
+    from drivers.canopen.canopen_machine import CanopenMachine
+    from drivers.canopen.canopen_survey import Answer
+    from drivers.lookalikes.canopen_devices import Peers
+
+_LIBRARIES = frozenset(("can", "canopen", "msgpack"))
+
+
+def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | None = None) -> CanopenMachine:
+    """Connect to the bus of a machine file. Raises DriverError; one that names a library that is missing."""
+    try:
+        from drivers.canopen.canopen_machine import CanopenMachine
+    except ImportError as error:
+        raise DriverError(lacking(error)) from error
+    return CanopenMachine(canopen_config(machine), clock, idle)
+
+
+def canopen_peers(machine: Machine, clock: Clock) -> Peers:
+    """Simulated drives and terminals for the other end of that bus. Raises DriverError."""
+    from app.compose.simulated_backend import sim_config
+
+    try:
+        from drivers.lookalikes.canopen_devices import Peers
+    except ImportError as error:
+        raise DriverError(lacking(error)) from error
+    return Peers(canopen_config(machine), sim_config(machine), clock)
+
+
+def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
+    """Each node of that bus asked what it is. Raises DriverError."""
+    try:
+        from drivers.canopen.canopen_survey import survey
+    except ImportError as error:
+        raise DriverError(lacking(error)) from error
+    return survey(canopen_config(machine), clock)
+
+
+def lacking(error: ImportError) -> str:
+    """One sentence for a library that is not there."""
+    name = (error.name or "").partition(".")[0]
+    library = {"can": "python-can"}.get(name, name) if name in _LIBRARIES else str(error)
+    return f"backend canopen needs {library}: pip install 'turndesk[canopen]'"
+
+
+def canopen_config(machine: Machine) -> CanopenConfig:
+    """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
+    bus = machine.hardware.canopen
+    if bus is None:
+        raise DriverError(f"{machine.source}: there is no [canopen] table")
+    nodes = {node.name: node for node in bus.nodes}
+    modules = [node for node in bus.nodes if node.profile == 401]
+    first = modules[0].name if modules else ""
+    return CanopenConfig(
+        bus=BusConfig(bus.interface, bus.channel, bus.bitrate, bus.host_id, bus.sync, bus.heartbeat),
+        axes=tuple(_axis(axis, machine, nodes) for axis in machine.axes),
+        spindle=_spindle(machine, nodes),
+        encoder=_encoder(machine, nodes),
+        modules=tuple(
+            ModuleConfig(node.name, node.id, _eds(node, machine), _objects(node)) for node in modules
+        ),
+        outputs={
+            name: OutputConfig(_terminal(output.terminal, first), output.safe)
+            for name, output in machine.outputs.items()
+        },
+        inputs={
+            name: _terminal(wired.terminal, first, active_low=wired.active_low)
+            for name, wired in machine.inputs.items()
+        },
+        pots={
+            name: PotConfig(_terminal(pot.terminal, first), pot.low, pot.high, pot.switch)
+            for name, pot in machine.hardware.analog.items()
+        },
+        mode=bus.mode,
+        commit=machine.timing.commit,
+        record=bus.record,
+    )
+
+
+def own_process(bus: CanopenModel) -> bool:
+    """Whether the bus can be owned by another process; python-can's virtual bus lives in one."""
+    return bus.interface != "virtual"
+
+
+def _axis(axis: Axis, machine: Machine, nodes: dict[str, CanNode]) -> AxisConfig:
+    node = nodes.get(axis.name)
+    home = machine.hardware.homes.get(axis.name)
+    return AxisConfig(
+        name=axis.name,
+        node=node.id if node else 0,
+        count=axis.count,
+        vmax=axis.vmax,
+        amax=axis.amax,
+        following_window=axis.following_window,
+        following_time=axis.following_time,
+        corner=axis.amax * machine.timing.setpoint,
+        travel=axis.travel,
+        absolute=axis.absolute,
+        home_method=home.method if home else 0,
+        home_speed=axis.home_speed,
+        home_latch=home.latch if home else 0.0,
+        home_offset=home.offset if home else 0.0,
+        counts_per_rev=node.counts_per_rev if node else 0,
+        eds=_eds(node, machine) if node else "",
+        objects=_objects(node) if node else (),
+    )
+
+
+def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | None:
+    node = nodes.get("spindle")
+    if node is None or machine.hardware.spindle_driver != "cia402":
+        return None
+    model = machine.spindle
+    return SpindleConfig(
+        node=node.id,
+        rpm_max=model.rpm_max,
+        accel=model.accel,
+        decel=model.decel,
+        counts_per_rev=node.counts_per_rev,
+        eds=_eds(node, machine),
+        objects=_objects(node),
+        is_c=machine.c_enabled and machine.spindle_is_c and "C" not in nodes,
+    )
+
+
+def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
+    """A drive's node is its own: its second input is mapped there."""
+    model = machine.hardware.encoder
+    if model is None:
+        return None
+    node = nodes[model.node]
+    own = node.profile != 402
+    return EncoderConfig(
+        name=node.name,
+        node=node.id if own else 0,
+        index=model.index,
+        sub=model.sub,
+        counts_per_rev=model.counts_per_rev,
+        rpm_max=machine.spindle.rpm_max,
+        eds=_eds(node, machine) if own else "",
+        objects=_objects(node) if own else (),
+    )
+
+
+def _objects(node: CanNode) -> tuple[tuple[int, int, int], ...]:
+    return tuple((entry.index, entry.sub, entry.value) for entry in node.sdo)
+
+
+def _eds(node: CanNode, machine: Machine) -> str:
+    """An EDS file lies beside the machine file unless its path says otherwise."""
+    return str(Path(machine.source).parent / node.eds) if node.eds else ""
+
+
+def _terminal(text: str, first: str, *, active_low: bool = False) -> Terminal:
+    found = can_terminal(text)
+    if found is None:
+        raise DriverError(f"terminal {text!r} is no address on the bus")
+    node = first if found.node == PLAIN_MODULE else found.node
+    return Terminal(node, found.index, found.sub, found.bit, active_low)
+
+
+# --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.
+
+
+def written_at_start(machine: Machine) -> dict[str, Objects]:
+    """Every object that each node is told at a start, by the node's name. Raises DriverError."""
+    try:
+        from drivers.canopen.canopen_setup import standing, stopping, watching
+    except ImportError as error:
+        raise DriverError(lacking(error)) from error
+    config = canopen_config(machine)
+    told = {axis.name: (*standing(axis, config.bus), *axis.objects) for axis in config.axes if axis.node}
+    if config.spindle is not None:
+        told["spindle"] = (*stopping(config.bus), *config.spindle.objects)
+    return told | {module.name: (*watching(config.bus), *module.objects) for module in config.modules}

@@ -1,0 +1,181 @@
+"""Starts the feeder, and is it: ``python -m app.compose.feeder_process FD ZERO``, machine on stdin."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+import socket
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+from app.compose.canopen_backend import canopen_machine, canopen_peers, own_process
+from app.compose.inverter_backend import WithInverter, has_inverter
+from app.compose.simulated_backend import simulated
+from core.machine.machine_model import Machine
+from core.ports import Clock, DriverError, MachinePorts
+from drivers.clocks import RealClock
+from drivers.feeder.feeder_client import Line
+from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder.feeder_loop import keep_memory, real_time, serve
+from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed, text
+from drivers.feeder.feeder_server import Driven
+from drivers.operator_station import PanelStation
+
+if TYPE_CHECKING:
+    from drivers.lookalikes.canopen_devices import Peers
+
+# --- Drivers as one loop owns them: the simulated machine, or a bus with or without simulated peers on it.
+
+
+STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
+
+
+def driven(machine: Machine, clock: Clock) -> Driven:
+    """What the machine file's backend and its spindle are driven by. Raises DriverError."""
+    inner = _backend(machine, clock)
+    return WithInverter(inner, machine, clock) if has_inverter(machine) else inner
+
+
+def _backend(machine: Machine, clock: Clock) -> Driven:
+    if machine.backend == "sim":
+        return SimDriven(machine, clock)
+    if machine.backend == "canopen":
+        return CanDriven(machine, clock)
+    raise DriverError(f"{machine.source}: the feeder has no backend {machine.backend}")
+
+
+def has_station(machine: Machine) -> bool:
+    """Whether the machine has buttons of its own, or is operated by those on the screen."""
+    return any(name in machine.inputs for name in STATION)
+
+
+class SimDriven:
+    """The simulated machine."""
+
+    def __init__(self, machine: Machine, clock: Clock) -> None:
+        simulation = simulated(machine, clock)
+        self.ports: MachinePorts = simulation.ports
+        self.hands: object | None = simulation.machine
+
+    def tick(self) -> None:
+        """The plant goes on also when nobody looks."""
+        self.ports.axes.sample()
+
+    def close(self) -> None:
+        """Nothing to let go."""
+
+
+class CanDriven:
+    """The machine on its bus. On a virtual bus the other end is here too: there is none elsewhere."""
+
+    def __init__(self, machine: Machine, clock: Clock) -> None:
+        bus = machine.hardware.canopen
+        self._peers: Peers | None = None
+        if bus is not None and not own_process(bus):
+            self._peers = canopen_peers(machine, clock)
+        # A clock that stands waits for nobody: the peers are looked after in between.
+        idle = self._peers.pump if self._peers is not None else None
+        try:
+            self._machine = canopen_machine(machine, clock, idle)
+        except DriverError:
+            if self._peers is not None:
+                self._peers.close()
+            raise
+        ports = self._machine.ports
+        self.hands: object | None = self._peers.machine if self._peers is not None else None
+        if not has_station(machine):
+            wired = ports.station if "handwheel" in machine.hardware.analog else None
+            panel = PanelStation(clock, lambda: bool(ports.io.inputs().get("estop")), wired)
+            self.hands, ports = self.hands or panel, dataclasses.replace(ports, station=panel)
+        self.ports: MachinePorts = ports
+
+    def tick(self) -> None:
+        """One round of the bus."""
+        if self._peers is not None:
+            self._peers.pump()
+        self._machine.tick()
+        if self._peers is not None:
+            self._peers.pump()
+
+    def close(self) -> None:
+        """Power off, and let the bus go."""
+        self._machine.close()
+        if self._peers is not None:
+            self._peers.close()
+
+
+_START = 20.0  # s for the first answer: the process has to start and to configure every drive
+_END = 10.0
+
+
+class FeederProcess:
+    """A feeder in its own process, and the line to it."""
+
+    def __init__(self, machine: Machine, clock: RealClock) -> None:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            command = [
+                sys.executable,
+                "-m",
+                "app.compose.feeder_process",
+                str(theirs.fileno()),
+                repr(clock.zero),
+            ]
+            # A session of its own: Ctrl-C is for the control, which then ends the feeder in good order.
+            self.process = subprocess.Popen(
+                command, stdin=subprocess.PIPE, pass_fds=(theirs.fileno(),), start_new_session=True
+            )
+        assert self.process.stdin is not None
+        with self.process.stdin as pipe:
+            pipe.write(pickle.dumps(machine))
+        self._link = SocketLink(ours)
+        ready = self._first(ours)
+        if why := text(ready.head, "error"):
+            self.close()
+            raise DriverError(why)
+        self.line = Line(self._link, clock)
+
+    def close(self) -> None:
+        """The feeder stops what is left and ends."""
+        self._link.close()
+        try:
+            self.process.wait(_END)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+    def _first(self, sock: socket.socket) -> Message:
+        """The feeder's own first word: it is ready, or why not."""
+        inbox = Inbox()
+        sock.settimeout(_START)
+        try:
+            while data := sock.recv(1 << 16):
+                for message in inbox.feed(data):
+                    return message
+        except TimeoutError:
+            return Message({"error": "the feeder's process does not come up"}, NOTHING)
+        return Message(
+            {"error": "the feeder's process has ended at its start; see its message above"}, NOTHING
+        )
+
+
+def main(arguments: list[str]) -> int:
+    """The process: connect, say so, serve until the control has gone."""
+    sock = socket.socket(fileno=int(arguments[0]))
+    clock: Clock = RealClock(float(arguments[1]))
+    machine = pickle.load(sys.stdin.buffer)  # of our own parent, over a pipe that nobody else has
+    warnings = real_time()
+    try:
+        machine_driven = driven(machine, clock)
+    except DriverError as error:
+        sock.sendall(packed(Message({"error": str(error)}, NOTHING)))
+        return 1
+    warnings += keep_memory()
+    sock.sendall(packed(Message({"ready": True}, NOTHING)))
+    serve(sock, machine_driven, warnings, machine.hardware.refresh)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

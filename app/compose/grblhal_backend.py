@@ -1,0 +1,101 @@
+"""The grblHAL controller as the machine file describes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from app.compose.inverter_backend import has_inverter, with_inverter
+from app.desk.operator_station import StationPanel
+from core.machine.machine_model import Axis, Machine
+from core.ports import Clock, DriverError, MachinePorts
+from drivers.clocks import RealClock
+from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
+from drivers.grblhal.grblhal_machine import GrblMachine
+from drivers.grblhal.grblhal_wire import tcp_address
+from drivers.inverter.inverter_spindle import InverterSpindle
+from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
+from drivers.lookalikes.grblhal_firmware import Firmware
+
+_WIRED = frozenset(("X", "Z"))
+_HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
+
+
+class Controlled(Protocol):
+    """A connected controller, with what else drives this machine. ``panel`` is the station on the screen."""
+
+    @property
+    def ports(self) -> MachinePorts: ...
+
+    @property
+    def panel(self) -> StationPanel: ...
+
+    def close(self) -> None: ...
+
+
+def grblhal_machine(machine: Machine, clock: Clock) -> Controlled:
+    """Connect to the controller of a machine file, and to its inverter. Raises DriverError."""
+    controller = GrblMachine(grblhal_config(machine), clock)
+    return BesideInverter(controller, machine, clock) if has_inverter(machine) else controller
+
+
+class BesideInverter:
+    """``Controlled``: an inverter turns the spindle; the controller's encoder, if any, measures it."""
+
+    def __init__(self, inner: GrblMachine, machine: Machine, clock: Clock) -> None:
+        self._inner = inner
+        self.panel: StationPanel = inner.panel
+        encoder = inner.encoder
+        try:
+            self.ports, self._let_go = with_inverter(
+                machine, inner.ports, clock, encoder if encoder.there else None
+            )
+        except DriverError:
+            inner.close()
+            raise
+        assert isinstance(self.ports.spindle, InverterSpindle)
+        spindle = self.ports.spindle
+        encoder.way = lambda: spindle.given
+
+    def close(self) -> None:
+        """Spindle first."""
+        self._let_go()
+        self._inner.close()
+
+
+def grblhal_config(machine: Machine) -> GrblConfig:
+    """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
+    model = machine.hardware.grblhal
+    if model is None:
+        raise DriverError(f"{machine.source}: there is no [grblhal] table")
+    if model.x_mode != "G8":
+        raise DriverError(f"{machine.source}: grblhal.x_mode: expected G8; a reset would change what X means")
+    if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
+        raise DriverError(
+            f"{machine.source}: spindle.driver: beside backend grblhal the controller turns the spindle"
+            " (grblhal) or an inverter does (vfd)"
+        )
+    return GrblConfig(
+        port=model.port,
+        baud=model.baud,
+        settings=model.settings,
+        axes=tuple(_axis(axis, machine) for axis in machine.axes),
+        rpm_max=machine.spindle.rpm_max,
+        outputs={name: GrblOutput(out.terminal, out.safe) for name, out in machine.outputs.items()},
+        inputs={name: GrblInput(wired.terminal, wired.active_low) for name, wired in machine.inputs.items()},
+        own_spindle=not has_inverter(machine),
+    )
+
+
+def play_grblhal(machine: Machine, going: Callable[[], bool], say: Callable[[str], None]) -> None:
+    """A look-alike of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
+    address = tcp_address(grblhal_config(machine).port)
+    end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
+    say(end.name)
+    serve(end, Firmware(RealClock()), going)
+
+
+def _axis(axis: Axis, machine: Machine) -> GrblAxis:
+    home = machine.hardware.homes.get(axis.name)
+    here = home.offset if home is not None and home.method in _HERE else None
+    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED, here)

@@ -1,0 +1,178 @@
+"""A run without a screen: the executor on the simulated lathe, on a clock that moves as fast as it can."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import TextIO
+
+from app.cli.command_errors import CommandError
+from app.compose.backends import Connected, connect, played, real_time
+from app.compose.journal import Journal
+from app.compose.shop_floor import open_shop_floor
+from app.desk.data_folder import data_folder
+from app.desk.headless_run import HeadlessRun
+from core.executor.executor import Executor
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.interruption_watch import Note
+from core.executor.snapshot import Event
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+from drivers.clocks import RealClock, StepClock
+
+
+class EventLog:
+    """The events of one run, a JSON object a line."""
+
+    def __init__(self, path: Path, file: TextIO) -> None:
+        self.path = path
+        self._file = file
+
+    @classmethod
+    def new(cls, program: str) -> EventLog:
+        """A log in the product's folder, named after the time and the program."""
+        folder = data_folder() / "logs"
+        stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
+        path = folder / f"{stamp}-{Path(program).stem}.jsonl"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            return cls(path, path.open("x", encoding="utf-8"))
+        except OSError as error:
+            raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
+
+    def __enter__(self) -> EventLog:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    def add(self, event: Event) -> None:
+        """One more line."""
+        line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
+        self._file.write(json.dumps(line) + "\n")
+
+
+@contextmanager
+def headless(
+    machine: Machine,
+    *,
+    inputs: Mapping[str, bool],
+    realtime: bool,
+    anew: bool = False,
+    log: EventLog,
+    say: Callable[[str], None],
+    progress: Callable[[float], None],
+) -> Iterator[HeadlessRun]:
+    """An executor on the machine with these inputs, and somebody to press its buttons.
+
+    A machine that is not simulated runs at its own pace. Raises CommandError for one that does not answer,
+    for inputs that it does not have or that are wires and not to be set, and for one on which a job was
+    interrupted, unless the program is to begin ``anew`` all the same.
+    """
+    with (
+        _remembered(machine, anew=anew, say=say) as note,
+        _connected(machine, realtime) as (clock, connected),
+    ):
+        _set_inputs(connected, inputs)
+        executor = Executor(machine, connected.ports, log.add, note=note)
+        close_floor = _shop_floor(machine, executor, say, paced=isinstance(clock, RealClock))
+        try:
+            yield HeadlessRun(executor, clock, say, progress, _palms(machine, connected, say))
+        finally:
+            executor.shut()  # also on Ctrl-C: the slides brake at once
+            close_floor()
+
+
+@contextmanager
+def _connected(machine: Machine, realtime: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
+    """The machine and the clock that it goes by."""
+    paced = realtime or machine.hardware.sim.realtime or real_time(machine)
+    clock = RealClock() if paced else StepClock()
+    try:
+        connected = connect(machine, clock)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
+    try:
+        yield clock, connected
+    finally:
+        connected.close()
+
+
+@contextmanager
+def _remembered(machine: Machine, *, anew: bool, say: Callable[[str], None]) -> Iterator[Note]:
+    """Where what a power cut would leave interrupted is kept: with the screen's store, if the metal is real.
+
+    Simulated slides cut nothing, and forget.
+    """
+    if played(machine):
+        if anew:
+            raise CommandError("--anew: a simulated run remembers no interrupted job")
+        yield lambda _what: None
+        return
+    journal = Journal.at_home()
+    try:
+        if journal.trouble:
+            say(f"an interruption of this run would not be kept: {journal.trouble}")
+        if journal.left is not None:
+            _demand_anew(journal.left, anew=anew)
+            journal.hear(Event(0.0, "cleared", f"{journal.left.words}; begun anew from the command line"))
+        yield journal.note
+    finally:
+        journal.close()
+
+
+def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
+    if not anew:
+        raise CommandError(
+            f"a job was interrupted, {left.words}; T{left.tool} may stand in the part. Go on there with the"
+            " screen (SEARCHTO), or clear the tool and give --anew to begin at the first line"
+        )
+
+
+def _shop_floor(
+    machine: Machine, executor: Executor, say: Callable[[str], None], *, paced: bool
+) -> Callable[[], None]:
+    """A run that takes less than its time would tell the shop floor of parts that nobody has made."""
+
+    def tell(why: str) -> None:
+        say(f"no shop-floor data: {why}")
+
+    model = machine.hardware.mtconnect
+    if model is not None and model.enabled and not paced:
+        tell("this run is faster than its time; give --realtime")
+        return lambda: None
+    return open_shop_floor(machine, lambda: executor.snapshot, tell)
+
+
+def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:
+    """How a cycle is started where no command may: by the station on the screen, or by a person."""
+    panel = connected.panel
+    if machine.backend == "sim" or not machine.interlocks.two_hand_start:
+        return None
+    if panel is None:
+        return lambda: say("press both palm buttons")
+
+    def press() -> None:
+        panel.press_left()
+        panel.press_right()
+        panel.release_left()
+        panel.release_right()
+
+    return press
+
+
+def _set_inputs(connected: Connected, inputs: Mapping[str, bool]) -> None:
+    if inputs and connected.set_input is None:
+        raise CommandError("--inputs: this machine is not simulated; its inputs are wires")
+    try:
+        for name, on in inputs.items():
+            assert connected.set_input is not None
+            connected.set_input(name, on)
+    except DriverError as error:
+        raise CommandError(f"--inputs: {error}") from error

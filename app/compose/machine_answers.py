@@ -1,0 +1,170 @@
+"""Connects to a machine and asks everything in it how it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from app.compose.backends import connect, played, real_time
+from app.compose.inverter_backend import has_inverter
+from app.compose.shop_floor import try_shop_floor
+from core.machine.machine_model import Axis, Machine
+from core.ports import Clock, DriverError, MachinePorts, StationState
+from core.table_schema import Unit, shown
+from drivers.clocks import RealClock, StepClock
+from drivers.inverter.inverter_spindle import InverterSpindle
+
+MISSING = "missing"
+FAILED = (
+    "fault",
+    "no answer",
+    "wrong",
+    MISSING,
+)  # states that are trouble; an E-stop that is pressed is none
+_SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
+_LONGEST = 3.0  # s for inputs that are read in turns
+_LOOK = 0.02  # s
+
+
+class Row(NamedTuple):
+    """One thing of the machine: where it hangs, how it is, and what it says."""
+
+    name: str
+    at: str
+    state: str
+    detail: str
+
+
+@dataclass(slots=True)
+class Answers:
+    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is."""
+
+    rows: list[Row] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    trouble: list[str] = field(default_factory=list)
+
+
+def check_ports(machine: Machine) -> Answers:
+    """Each node of a bus, each drive, spindle, station, input, output and pot. Raises nothing of its own.
+
+    Nothing is switched on and nothing moves.
+    """
+    clock: Clock = RealClock() if real_time(machine) else StepClock()
+    answers = Answers()
+    try:
+        _ask_nodes(machine, clock, answers)
+        if not answers.trouble:
+            _ask_ports(machine, clock, answers)
+    except DriverError as error:
+        answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
+        answers.trouble.append(str(error))
+    _ask_shop_floor(machine, answers)
+    return answers
+
+
+def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
+    """Whether agents would find the adapter, and take its model."""
+    model = machine.hardware.mtconnect
+    if model is None or not model.enabled:
+        return
+    at = f"{model.bind}:{model.port}"
+    try:
+        try_shop_floor(machine, model)
+    except DriverError as error:
+        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
+        answers.trouble.append(str(error))
+    else:
+        answers.rows.append(Row("mtconnect", at, "ok", f"device {model.device}"))
+
+
+def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
+    """On a real bus every node by itself, so that one that is missing does not hide the others."""
+    if machine.backend != "canopen" or played(machine):
+        return
+    from app.compose.canopen_backend import canopen_survey
+
+    for name, node, trouble, detail in canopen_survey(machine, clock):
+        state = "no answer" if "no answer" in trouble else "wrong" if trouble else "ok"
+        answers.rows.append(Row(f"node {name}", str(node), state, detail))
+        if trouble:
+            answers.trouble.append(trouble)
+
+
+def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
+    connected = connect(machine, clock)
+    try:
+        if real_time(machine):
+            _settle(clock, connected.ports, machine)
+        rows = list(_rows(machine, connected.ports))
+        answers.warnings += connected.ports.warnings
+    finally:
+        connected.close()
+    answers.rows += rows
+    answers.trouble += [
+        f"{row.name}: {row.state} {row.detail}".rstrip() for row in rows if row.state in FAILED
+    ]
+
+
+def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
+    """Look on like a control that is awake; a controller reads its auxiliary inputs one after the other."""
+    began = clock.now()
+    while (waited := clock.now() - began) < _LONGEST:
+        ports.axes.sample()
+        if waited >= _SETTLED and machine.inputs.keys() <= ports.io.inputs().keys():
+            return
+        clock.sleep_until(clock.now() + _LOOK)
+
+
+def _blamed(machine: Machine) -> str:
+    """What it was that could not be reached."""
+    if machine.backend == "sim":
+        return "spindle" if has_inverter(machine) else "feeder"
+    return "bus" if machine.backend == "canopen" else "controller"
+
+
+def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
+    sample, terminals = ports.axes.sample(), _terminals(machine)
+    for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
+        detail = f"{'homed' if homed else 'not homed'}, at {_place(machine.axis(name), at, machine)}"
+        yield Row(name, _node(machine, name), "fault" if sample.fault else "ok", sample.fault or detail)
+    yield _spindle(machine, ports)
+    station = ports.station.snapshot()
+    yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
+    for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
+        for name, on in states.items():
+            yield Row(f"{kind} {name}", terminals.pop(f"{kind} {name}", ""), "on" if on else "off", "")
+    for name, terminal in terminals.items():
+        yield Row(name, terminal, MISSING, "the machine has no such terminal")
+
+
+def _spindle(machine: Machine, ports: MachinePorts) -> Row:
+    fault, spindle = ports.spindle.fault(), ports.spindle
+    told = f"{spindle.speed():.0f} rpm"
+    if isinstance(spindle, InverterSpindle):
+        told = f"{told}, {spindle.status()}"
+    return Row("spindle", _node(machine, "spindle"), "fault" if fault else "ok", fault or told)
+
+
+def _hands(station: StationState) -> str:
+    spindle = f"spindle {'AUTO' if station.spindle_auto else 'OFF'} {station.spindle_pot:.0%}"
+    return f"feed pot {station.feed_pot:.0%}, {spindle}"
+
+
+def _place(axis: Axis, at: float, machine: Machine) -> str:
+    return shown(at, Unit.DEGREES if axis.rotary else Unit.LENGTH, machine.inch)
+
+
+def _node(machine: Machine, name: str) -> str:
+    """The node of a drive, or the port of an inverter."""
+    hardware = machine.hardware
+    if name == "spindle" and hardware.spindle_driver == "vfd" and hardware.vfd is not None:
+        return hardware.vfd.port
+    if machine.backend != "canopen" or hardware.canopen is None:
+        return ""
+    return next((f"node {node.id}" for node in hardware.canopen.nodes if node.name == name), "")
+
+
+def _terminals(machine: Machine) -> dict[str, str]:
+    wired = {f"input {name}": each.terminal for name, each in machine.inputs.items()}
+    return wired | {f"output {name}": each.terminal for name, each in machine.outputs.items()}

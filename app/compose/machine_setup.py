@@ -1,0 +1,77 @@
+"""The machine file and the circumstances of one pass through a program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from app.cli.command_errors import CommandError
+from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+
+if TYPE_CHECKING:
+    from core.machine.machine_model import Machine
+
+
+def read_machine(path: str | None) -> Machine:
+    """The machine that a file describes, one that is shipped by its name, or the shipped lathe.
+
+    Raises CommandError naming every mistake.
+    """
+    from core.machine.machine_file import MachineFileError, named_machine
+
+    try:
+        return named_machine(path)
+    except MachineFileError as error:
+        raise CommandError(str(error)) from error
+
+
+def control_limits(machine: Machine) -> ControlLimits:
+    """What the interpreter must know of a machine."""
+    c_axis = machine.axes[2]
+    return ControlLimits(
+        max_feed=machine.max_feed,
+        max_rpm=machine.spindle.rpm_max,
+        resolution=machine.resolution,
+        slide_accel=machine.axes[1].amax,
+        unclamp_while_turning=machine.interlocks.unclamp_while_turning,
+        start_with_collet_open=machine.interlocks.spindle_with_collet_open,
+        m_outputs=machine.m_codes,
+        m_disabled=machine.m_disabled,
+        c_enabled=machine.c_enabled,
+        c_feedback=machine.c_feedback,
+        c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
+        c_accel=c_axis.amax,
+        c_step=c_axis.count,
+        c_modulo=machine.c_modulo,
+        spindle_controlled=machine.spindle.controlled,
+        speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
+    )
+
+
+def setup_for(
+    machine: Machine,
+    *,
+    tools: Mapping[int, ToolOffset],
+    secondary: Mapping[int, SecondaryOffset],
+    zero: Mapping[int, ZeroOffset] | None = None,
+    inputs: Mapping[str, bool] | None = None,
+    block_delete: bool = False,
+    strict: bool = False,
+) -> Setup:
+    """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
+    from app.compose.kinematics_chain import kinematics_of
+
+    states = dict(inputs or {})
+    return Setup(
+        start=(0.0,) * len(machine.axes),
+        kinematics=kinematics_of(machine),
+        tools=tools,
+        secondary=secondary,
+        zero=zero or {},
+        limits=control_limits(machine),
+        block_delete=block_delete,
+        strict=strict,
+        metric=not machine.inch,
+        last_rapid=machine.manual_rapid,
+        inputs=lambda terminal: states.get(terminal, False),
+    )

@@ -1,0 +1,146 @@
+"""Simulated drives and terminals on a real bus, and hands for them: words typed where they play."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import signal
+import time
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from app.compose.canopen_backend import canopen_peers
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+from drivers.clocks import StepClock
+from drivers.feeder.feeder_loop import keep_memory, real_time
+
+if TYPE_CHECKING:
+    from drivers.lookalikes.canopen_devices import Peers
+    from drivers.lookalikes.plant_hands import SimMachine
+
+# --- Hands at a simulated machine that runs in another process: words typed where it plays.
+
+
+HELP = (
+    "start (both palms), hold, estop, release, auto on|off, feed 0…150, spindle 0…100, input NAME on|off,"
+    " jam AXIS on|off, cable on|off"
+)
+_CHUNK = 4096
+
+
+class Typed:
+    """Whole lines from a descriptor, without ever waiting for one."""
+
+    def __init__(self, source: int) -> None:
+        self._source = source
+        self._open = True
+        self._text = b""
+        # In the background of a shell a read would stop this process; so it fails, and that is the end.
+        signal.signal(signal.SIGTTIN, signal.SIG_IGN)
+
+    def lines(self) -> Iterator[str]:
+        """What has been typed since."""
+        if self._open and select.select([self._source], [], [], 0)[0]:
+            data = b""
+            with contextlib.suppress(OSError):
+                data = os.read(self._source, _CHUNK)
+            self._open = bool(data)
+            self._text += data
+        while b"\n" in self._text:
+            line, _, self._text = self._text.partition(b"\n")
+            if words := line.decode(errors="replace").strip():
+                yield words
+
+
+def obey(line: str, peers: Peers) -> str:
+    """Do what one line says; what was done or why not, in words."""
+    name, *values = line.split()
+    try:
+        act = _ACTS[name]
+        act(peers, *values)
+    except (KeyError, TypeError, ValueError):
+        return f"{line}: not understood; known: {HELP}"
+    except DriverError as error:
+        return f"{line}: {error}"
+    return f"{line}: done"
+
+
+def _start(peers: Peers) -> None:
+    hands = peers.machine
+    hands.press_left()
+    hands.press_right()
+    hands.release_left()
+    hands.release_right()
+
+
+def _hold(peers: Peers) -> None:
+    peers.machine.press_hold()
+    peers.machine.release_hold()
+
+
+def _on(word: str) -> bool:
+    return {"on": True, "off": False}[word]
+
+
+def _percent(word: str) -> float:
+    return float(word) / 100.0
+
+
+def _hand(act: Callable[[SimMachine, str], None]) -> Callable[[Peers, str], None]:
+    return lambda peers, word: act(peers.machine, word)
+
+
+def _jam(peers: Peers, axis: str, word: str) -> None:
+    if axis not in peers.plant.drives:
+        raise DriverError(f"no drive is called {axis}: {', '.join(peers.plant.drives)}")
+    peers.machine.jam(axis, _on(word))
+
+
+_ACTS: dict[str, Callable[..., None]] = {
+    "start": _start,
+    "hold": _hold,
+    "estop": lambda peers: peers.machine.press_estop(),
+    "release": lambda peers: peers.machine.release_estop(),
+    "auto": _hand(lambda hands, word: hands.set_spindle_auto(_on(word))),
+    "feed": _hand(lambda hands, word: hands.set_feed_pot(_percent(word))),
+    "spindle": _hand(lambda hands, word: hands.set_spindle_pot(_percent(word))),
+    "input": lambda peers, name, word: peers.machine.set_input(name, _on(word)),
+    "jam": _jam,
+    "cable": lambda peers, word: peers.cable(out=not _on(word)),
+}
+
+_ROUND = 0.001  # s
+_STEP = 0.005  # s; a peer that was away catches up in such steps, frame by frame
+
+
+def play_peers(
+    machine: Machine,
+    going: Callable[[], bool],
+    say: Callable[[str], None],
+    typed: Callable[[], Iterable[str]] = tuple,
+) -> None:
+    """Answer on the machine file's bus while ``going``; ``say`` tells what it is and what was ``typed``.
+
+    Raises DriverError when it cannot be opened.
+    """
+    bus = machine.hardware.canopen
+    assert bus is not None  # a rule of the machine file
+    clock, zero, epoch = StepClock(), time.monotonic(), time.time()
+    peers = canopen_peers(machine, clock)
+    keep_memory()
+    real_time()  # drives are punctual; where this is refused the feeder has said so already
+    peers.arrival = lambda stamp: stamp - epoch
+    say(f"simulated drives of {machine.name} on {bus.interface} {bus.channel}; end: Ctrl-C")
+    try:
+        while going():
+            while (late := time.monotonic() - zero - clock.now()) > _STEP:
+                clock.advance(_STEP)
+                peers.pump()
+            clock.advance(max(late, 0.0))
+            peers.pump(_ROUND)
+            for line in typed():
+                say(obey(line, peers))
+    finally:
+        peers.close()

@@ -1,0 +1,143 @@
+"""Programs over the serial line of a machine file: out of a file, and in as a program that was looked at."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from app.compose.serial_ports import open_wire, serial_ports
+from app.desk.program_loading import LoadingSteps
+from app.programs.file_changes import FileError
+from app.transfer.serial_line import Received
+from core.language.source import Source, SourceError, load_source
+from core.machine.hardware_model import DncModel
+from core.ports import Clock, DriverError
+from drivers.clocks import RealClock
+from drivers.serial_line import LineSettings
+from drivers.transfer.program_framing import Program, outgoing
+from drivers.transfer.transfer_session import Reach, Receiving, Sending
+from drivers.transfer.transfer_settings import TransferSettings
+
+# A line as most controls have it; the port is for the operator to choose.
+PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
+Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time in s
+
+
+class SerialLines:
+    """``app.transfer.serial_line.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
+
+    def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
+        self._check, self._ending, self._clock = check, ending, clock or RealClock()
+
+    def ports(self) -> Sequence[tuple[str, str]]:
+        """Those of this computer."""
+        return serial_ports()
+
+    def send(self, settings: DncModel, path: Path) -> SendingFile:
+        """The program in a file."""
+        return SendingFile(settings_of(settings), path, self._clock)
+
+    def receive(self, settings: DncModel) -> ReceivingProgram:
+        """Whatever program comes."""
+        return ReceivingProgram(settings_of(settings), self._clock, self._check, self._ending)
+
+
+class _Carried:
+    """A transfer whose line is opened by the worker: until then there is only the wish to give it up."""
+
+    def __init__(self) -> None:
+        self._inner: Sending | Receiving | None = None
+        self._cancelled = False
+
+    @property
+    def reach(self) -> Reach:
+        """How far it has come."""
+        return self._inner.reach if self._inner is not None else Reach()
+
+    def cancel(self) -> None:
+        """Give it up."""
+        self._cancelled = True
+        if self._inner is not None:
+            self._inner.cancel()
+
+    def _begin(self, inner: Sending | Receiving) -> None:
+        self._inner = inner
+        if self._cancelled:
+            inner.cancel()
+
+
+class SendingFile(_Carried):
+    """``Carrying[int]``."""
+
+    def __init__(self, settings: TransferSettings, path: Path, clock: Clock) -> None:
+        super().__init__()
+        self._settings, self._path, self._clock = settings, path, clock
+
+    def run(self) -> int:
+        """Read, open, send. Raises FileError, DriverError."""
+        try:
+            text = self._path.read_bytes()
+        except OSError as error:
+            raise FileError(f"{self._path.name} CANNOT BE READ: {error.strerror}") from error
+        data = outgoing(text, self._settings)
+        wire = open_wire(self._settings.sending)
+        inner = Sending(wire, self._clock, self._settings, data)
+        self._begin(inner)
+        return inner.run()
+
+
+class ReceivingProgram(_Carried):
+    """``Carrying[Received]``."""
+
+    def __init__(self, settings: TransferSettings, clock: Clock, check: Check, ending: str) -> None:
+        super().__init__()
+        self._settings, self._clock, self._check, self._ending = settings, clock, check, ending
+
+    def run(self) -> Received:
+        """Open, receive, read as a program, prove. Raises FileError, DriverError; then nothing is kept."""
+        inner = Receiving(open_wire(self._settings.receiving, watch=True), self._clock, self._settings)
+        self._begin(inner)
+        return self._looked_at(inner.run())
+
+    def _looked_at(self, program: Program) -> Received:
+        name = program.name or "RECEIVED"
+        source = _read(program.text, name if Path(name).suffix else name + self._ending)
+        findings, cycle = self._check(source)
+        return Received(
+            text=source.text.encode("utf-8"),
+            name=program.name,
+            lines=program.lines,
+            digest=program.digest,
+            seven=program.seven,
+            skipped=program.skipped,
+            findings=findings,
+            cycle=cycle,
+        )
+
+
+def settings_of(model: DncModel) -> TransferSettings:
+    """The line and the frame."""
+    line = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop, model.flow)
+    return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
+
+
+def proving(workshop: LoadingSteps) -> Check:
+    """The check of the desk: its machine, its offsets of that moment."""
+
+    def check(source: Source) -> tuple[tuple[str, ...], float]:
+        proved = workshop.prove(workshop.make_job(source, False), lambda _count: None)
+        return proved.proof.errors, proved.proof.cycle_time
+
+    return check
+
+
+def _read(text: bytes, name: str) -> Source:
+    """As a file would be read, with all that a file is refused for."""
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as folder:
+        path = Path(folder) / name
+        path.write_bytes(text)
+        try:
+            return load_source(path)
+        except SourceError as error:
+            raise DriverError(f"what came is no program: {error}") from error

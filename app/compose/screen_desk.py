@@ -1,0 +1,228 @@
+"""The desk of the operator screen: machine, simulated lathe, executor thread, loading, folders."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from app.cli.command_errors import CommandError
+from app.compose.accepted_machine import file_changes, guarded
+from app.compose.backends import Connected, connect, played
+from app.compose.error_log import Log
+from app.compose.inverter_backend import has_inverter
+from app.compose.journal import Journal
+from app.compose.machine_setup import read_machine
+from app.compose.shop_floor import keep_status, open_shop_floor
+from app.compose.special_functions import furnish
+from app.compose.stored_offsets import Offsets, Zero, book_of, stored_offsets, stored_zero, zero_book
+from app.compose.workshop import drawer, give_mdi, give_searchto, samples, workshop
+from app.desk.alarm_log import KEPT, KINDS
+from app.desk.data_folder import data_folder
+from app.desk.desk import Desk
+from app.desk.persistence import NoPersistence
+from app.desk.program_folder import ProgramFile, ProgramFolders
+from app.desk.program_loading import LoadingSteps, ProgramLoader
+from app.desk.translation import tr
+from app.editor.editor import Editor
+from app.editor.versions import Bench, NoArchive
+from app.offsets.effect import Effect
+from core.executor.executor import Executor
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.snapshot import Event, Snapshot
+from core.executor.watchdog import ExecutorThread, Watchdog
+from core.interpreter.modal_state import Modal
+from core.machine.machine_model import Machine
+from core.ports import Clock, DriverError
+from core.store.store_errors import StoreError
+from core.store.store_rows import EventRow
+from drivers.clocks import RealClock, StepClock
+
+# Threads beside the executor, and what an operator misses when they end.
+SUPERVISED = {
+    "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
+    "status": "STATUS.JSON",
+    "mtconnect": "MTCONNECT",
+    "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
+    "inverter": "WHAT TALKS TO THE INVERTER",
+}
+GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
+
+
+def build_desk(
+    machine_file: str | None = None,
+    offsets: Callable[[], Offsets] = stored_offsets,
+    zero: Callable[[], Zero] = stored_zero,
+) -> Desk:
+    """The desk on the machine that a file describes, its executor running. Close it with ``Desk.close``.
+
+    Raises CommandError for a bad machine file and for a machine that does not answer.
+    """
+    sys.setswitchinterval(GIVE_WAY)
+    clock, journal = RealClock(), Journal.at_home()
+    desk, executor = desk_and_executor(machine_file, offsets, clock, journal, zero=zero)
+    thread, log = ExecutorThread(executor, clock), Log()
+    close_floor = _shop_floor(desk, executor, journal)
+    file = ProgramFile(lambda: desk.session.now)
+
+    watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
+    let_go = desk.shut
+
+    def shut() -> None:
+        watchdog.close()
+        file.close()
+        thread.close()  # first of what can stop the machine: nothing may keep the machine from being stopped
+        close_floor()
+        let_go()
+        lost = journal.close()
+        if lost:
+            sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")
+        log.close()
+
+    desk.shut = shut
+    desk.differs = lambda: file.differs
+    desk.unkept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
+    gc.freeze()  # modules and the like: collections need not look at them again
+    thread.start()
+    watchdog.start()
+    file.start()
+    return desk
+
+
+def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
+    """On the watchdog's thread: the machine goes on, but what that thread did is not done any more."""
+    text = tr("{what} HAS ENDED: SAVE THE LOG, END TURNDESK AND START IT AGAIN").format(
+        what=tr(SUPERVISED[name])
+    )
+    desk.say(text)
+    journal.hear(Event(desk.snapshot().t, "warning", text))
+
+
+def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[], None]:
+    """Told to agents, and kept in the status file; what is in the way goes to the prompt line and to the log.
+
+    A folder that another TurnDesk has, as its store tells, has that one's status.
+    """
+
+    def tell(why: str) -> None:
+        desk.say(tr("NO SHOP-FLOOR DATA: {why}").format(why=why))
+        journal.hear(Event(executor.snapshot.t, "warning", why))
+
+    def snapshot() -> Snapshot:
+        return executor.snapshot
+
+    assert desk.lathe is not None
+    open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
+    if not journal.trouble:
+        open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
+
+    def close() -> None:
+        for each in open_ones:
+            each()
+
+    return close
+
+
+def desk_and_executor(
+    machine_file: str | None,
+    offsets: Callable[[], Offsets],
+    clock: Clock,
+    journal: Journal | None = None,
+    *,
+    zero: Callable[[], Zero] = stored_zero,
+) -> tuple[Desk, Executor]:
+    """Both, with nobody ticking the executor yet; what happens goes to the journal, where there is one."""
+    machine = read_machine(machine_file)
+    connected = _connected(machine, clock)
+    heard: list[Desk] = []
+    keep = journal or NoPersistence()
+
+    def hear(event: Event) -> None:
+        for desk in heard:
+            desk.hear(event)
+        if journal is not None:
+            journal.hear(event)
+
+    executor = Executor(
+        machine,
+        connected.ports,
+        hear,
+        note=journal.note if journal is not None else _kept_nowhere,
+        left=journal.left if journal is not None else None,
+    )
+
+    def say(kind: str, text: str) -> None:
+        hear(Event(clock.now(), kind, text))
+
+    def left() -> Modal:
+        return executor.snapshot.modal
+
+    changed = file_changes(machine, keep, partial(say, "machine"))
+    desk = Desk(
+        post=guarded(executor.post, changed, partial(say, "refused")),
+        snapshot=lambda: executor.snapshot,
+        session=ProgramLoader(
+            workshop(machine, offsets, journal, zero=zero, left=left),
+            executor.post,
+        ),
+        shelf=ProgramFolders((data_folder() / "programs", samples())),
+        station=connected.panel,
+        two_hand=machine.interlocks.two_hand_start,
+        with_c=machine.c_enabled,
+        lathe=machine,
+        effect=Effect(drawer(machine)),
+        machine=f"{machine.name} · {_drives(machine)}",
+        changes=changed,
+        book=book_of(offsets, journal),
+        zero=zero_book(zero, journal),
+        editor=_editor(workshop(machine, offsets, zero=zero, left=left), journal),
+    )
+    furnish(desk, machine, keep, workshop(machine, offsets, zero=zero, left=left))
+    give_mdi(desk, machine, offsets, keep)
+    give_searchto(desk, machine)
+    heard.append(desk)
+    if journal is not None:
+        desk.log.recall(_stops(journal))
+    desk.shut = connected.close
+    for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in changed.changes)):
+        say("warning", warning)
+    if changed.barred:
+        desk.say(changed.barred)
+    return desk, executor
+
+
+def _stops(journal: Journal) -> Sequence[EventRow]:
+    """Alarms and stops of the days before; without a store nobody knows of any."""
+    try:
+        return journal.events("", KINDS, KEPT)
+    except StoreError:
+        return ()
+
+
+def _kept_nowhere(_what: InterruptedJob | None) -> None:
+    """A desk without a store remembers nothing."""
+
+
+def _connected(machine: Machine, clock: Clock) -> Connected:
+    try:
+        return connect(machine, clock)
+    except DriverError as error:
+        raise CommandError(str(error)) from error
+
+
+def _drives(machine: Machine) -> str:
+    """What an operator must never be in doubt about: what of it is real."""
+    if not played(machine):
+        return machine.backend.upper()
+    return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
+
+
+def _editor(work: LoadingSteps, journal: Journal | None) -> Editor:
+    """The editor proves what is being typed without keeping a version of every key."""
+    return Editor(Bench(work, journal or NoArchive(), data_folder() / "programs", samples()))
+
+
+def step_clock() -> StepClock:
+    """A clock for scripts that move time themselves."""
+    return StepClock()

@@ -1,0 +1,52 @@
+"""The simulated lathe as the machine file describes it."""
+
+from __future__ import annotations
+
+from core.machine.machine_model import Axis, Machine
+from core.ports import Clock
+from drivers.lookalikes.plant_config import PlannedFault, SimAxis, SimCollet, SimConfig, SimOutput, SimSpindle
+from drivers.simulated.simulated_machine import Simulation, build_simulation
+
+
+def simulated(machine: Machine, clock: Clock) -> Simulation:
+    """Ports and handle of a simulated lathe on this clock."""
+    return build_simulation(sim_config(machine), clock)
+
+
+def sim_config(machine: Machine) -> SimConfig:
+    """The plant's figures from the machine file's."""
+    spindle = machine.spindle
+    return SimConfig(
+        axes=tuple(_axis(axis, machine) for axis in machine.axes),
+        spindle=SimSpindle(
+            rpm_max=spindle.rpm_max, accel=spindle.accel, decel=spindle.decel, ppr=spindle.encoder_ppr
+        ),
+        collet=SimCollet(open_time=machine.timing.collet_open, close_time=machine.timing.collet_close),
+        outputs={
+            name: SimOutput(safe=output.safe, initial=name == "collet")
+            for name, output in machine.outputs.items()
+        },
+        inputs=tuple(machine.inputs),
+        commit=machine.timing.commit,
+        faults=tuple(
+            PlannedFault(f.at, f.what, f.axis, f.value, f.seconds, f.text)
+            for f in machine.hardware.sim.faults
+        ),
+        seed=machine.hardware.sim.seed,
+    )
+
+
+def _axis(axis: Axis, machine: Machine) -> SimAxis:
+    return SimAxis(
+        name=axis.name,
+        vmax=axis.vmax,
+        amax=axis.amax,
+        count=axis.count,
+        following_window=axis.following_window,
+        following_time=axis.following_time,
+        travel=axis.travel,
+        absolute=axis.absolute,
+        home_speed=axis.home_speed or 10.0,
+        corner=axis.amax * machine.timing.setpoint,
+        own_drive=not machine.spindle_is_c,
+    )

@@ -1,0 +1,261 @@
+"""A snapshot in the words of MTConnect: execution, conditions, items in mm, degrees, mm/s, rpm, per cent."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.machine_status import SilenceWatch
+from core.alarms import CATALOGUE, Code, Reaction
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.snapshot import Alarm, Snapshot, Starts, State
+from core.machine.machine_model import Machine
+
+# --- Which alarm is a condition of what: slide, spindle drive, wires, interlocks, program, control.
+
+
+FAULT, WARNING = "FAULT", "WARNING"
+Condition = tuple[str, str, str]  # level, code, text
+SPINDLE, COMMS, LOGIC, SYSTEM, MOTION = "Sdrive", "comms", "logic", "system", "motion"
+
+# By the first digit of the alarm's number, which is its subject; and those that belong elsewhere. A slide's
+# own condition ends in ``servo`` or ``travel`` and begins with its name.
+_SERVO, _TRAVEL = "servo", "travel"
+SUBJECTS = {1: _SERVO, 2: SPINDLE, 3: LOGIC, 4: MOTION, 5: COMMS}
+PLACES: dict[Code, str] = {
+    **{"driver": COMMS, "travel": _TRAVEL},
+    **{"spindle-still": MOTION, "c-is-spindle": MOTION},
+}
+_NOWHERE = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # where the alarm names no axis
+
+
+def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[Condition, ...]]:
+    """What is active of each of these conditions; nothing of it: normal.
+
+    A hold that nobody pressed is a warning of the system, with the reason that the screen shows.
+    """
+    active: dict[str, list[Condition]] = {key: [] for key in keys}
+    for alarm in snapshot.alarms:
+        active[_place(alarm, keys)].append((FAULT, str(alarm.number), f"{alarm.text}: {alarm.cause}"))
+    if snapshot.interrupted is not None:
+        active[SYSTEM].append((WARNING, "interrupted", snapshot.interrupted.words))
+    stop = snapshot.stop
+    if snapshot.state is State.HOLD and stop is not None and CATALOGUE[stop.code].reaction is Reaction.HOLD:
+        active[SYSTEM].append((WARNING, str(stop.number), stop.text))
+    return {key: tuple(found) for key, found in active.items()}
+
+
+def _place(alarm: Alarm, keys: frozenset[str]) -> str:
+    place = PLACES.get(alarm.code) or SUBJECTS.get(alarm.number // 100, SYSTEM)
+    if place not in _NOWHERE:
+        return place
+    for word in re.findall(r"\b[A-Z]\b", alarm.cause):
+        if f"{word}{place}" in keys:
+            return f"{word}{place}"
+        if word == "C" and place == _SERVO:
+            return SPINDLE  # the spindle is this axis
+    return _NOWHERE[place]
+
+
+# --- Execution and controller mode in the words of MTConnect, from successive snapshots.
+
+
+AUTOMATIC, MANUAL, MDI, SINGLE = "AUTOMATIC", "MANUAL", "MANUAL_DATA_INPUT", "SEMI_AUTOMATIC"
+READY, ACTIVE, WAIT, STOPPED = "READY", "ACTIVE", "WAIT", "STOPPED"
+FEED_HOLD, INTERRUPTED = "FEED_HOLD", "INTERRUPTED"
+PROGRAM_STOPPED, OPTIONAL_STOP, COMPLETED = "PROGRAM_STOPPED", "OPTIONAL_STOP", "PROGRAM_COMPLETED"
+
+_COLLET = "COLLET"  # a wait for a device that handles the material, as the inputs of bar feed and loader are
+# An operator keeps it from going on, and has to do something before it does.
+_KEPT = {
+    "FEED OVERRIDE AT 0": FEED_HOLD,
+    "SPINDLE SWITCH OFF": INTERRUPTED,
+    "GUARD OPEN": INTERRUPTED,
+    "SPINDLE OVERRIDE AT 0": INTERRUPTED,
+    "SPINDLE STOPPED": INTERRUPTED,
+}
+_BY_STATE = {
+    State.ESTOP: STOPPED,
+    State.FAULT: STOPPED,
+    State.DISABLED: STOPPED,  # it is not ready: nothing can be started
+    State.RUN: ACTIVE,
+    State.HOLDING: FEED_HOLD,
+    State.BLOCK_END: INTERRUPTED,
+    State.JOG: READY,
+    State.HOME: READY,
+}
+
+
+@dataclass(slots=True)
+class Execution:
+    """Remembers whether the last thing that happened was the end of a program.
+
+    ``inputs`` are the names and terminals for which a program can wait; whatever else a cycle waits for (a
+    dwell, the spindle, a proof) is its own work.
+    """
+
+    inputs: frozenset[str] = frozenset()
+    _ends: int | None = None
+    _program: str = ""
+    _lines: int = 0
+    _completed: bool = False
+
+    def look(self, snapshot: Snapshot) -> str:
+        """The execution state; call it with every snapshot that is told of."""
+        ended = self._ends is not None and snapshot.ends > self._ends
+        elsewhere = (snapshot.program, snapshot.lines) != (self._program, self._lines)
+        if ended:
+            self._completed = True
+        elif snapshot.state is not State.IDLE or elsewhere:
+            self._completed = False
+        self._ends, self._program, self._lines = snapshot.ends, snapshot.program, snapshot.lines
+        return self._of(snapshot)
+
+    def _of(self, snapshot: Snapshot) -> str:
+        match snapshot.state:
+            case State.WAIT:
+                return self._waiting(snapshot.waiting_for)
+            case State.HOLD:
+                return INTERRUPTED if snapshot.waiting_for else FEED_HOLD
+            case State.PROGRAM_STOP:
+                return OPTIONAL_STOP if snapshot.optionally_stopped else PROGRAM_STOPPED
+            case State.IDLE:
+                if self._completed:
+                    return COMPLETED
+                return STOPPED if snapshot.interrupted_line else READY
+            case state:
+                return _BY_STATE[state]
+
+    def _waiting(self, what: str) -> str:
+        if what == _COLLET or what in self.inputs:
+            return WAIT
+        return _KEPT.get(what, ACTIVE)
+
+
+def mode_of(snapshot: Snapshot) -> str:
+    """What Cycle Start begins, and how; this control has no mode switch."""
+    if snapshot.state in {State.JOG, State.HOME}:
+        return MANUAL
+    if snapshot.starts is Starts.LINE:
+        return MDI
+    return SINGLE if snapshot.single_block else AUTOMATIC
+
+
+Value = str | float | None  # None: not known
+
+_STANDS = 0.2  # mm/s; an encoder that trembles by a count within a tick reads as .13
+_STILL = 1.0  # rpm
+_AVAILABLE, _UNAVAILABLE = "AVAILABLE", "UNAVAILABLE"
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One look at the machine; without ``conditions`` and values nothing is known of it."""
+
+    values: Mapping[str, Value]
+    conditions: Mapping[str, tuple[Condition, ...]] = field(default_factory=dict)
+    interrupted: InterruptedJob | None = None
+    alarms: tuple[Alarm, ...] = ()  # what the catalogue says of what is active
+
+    def alarm(self, code: str) -> Alarm | None:
+        """Of a condition, by its code; None: it is none of the catalogue."""
+        return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
+
+    @property
+    def available(self) -> bool:
+        """Whether the control speaks."""
+        return self.values.get("avail") == _AVAILABLE
+
+
+UNKNOWN = Reading({"avail": _UNAVAILABLE})
+
+
+@dataclass(slots=True)
+class FloorReader:
+    """Looks at snapshots of one machine; ``clock`` in s tells when they no longer come."""
+
+    machine: Machine
+    keys: frozenset[str]  # of the conditions that there are
+    clock: Callable[[], float]
+    _execution: Execution = field(init=False)
+    _pulse: SilenceWatch = field(default_factory=SilenceWatch)
+
+    def __post_init__(self) -> None:
+        wired = self.machine.inputs
+        terminals = (each.terminal for each in wired.values() if each.terminal)
+        self._execution = Execution(frozenset((*wired, *terminals)))
+
+    def look(self, snapshot: Snapshot) -> Reading:
+        """What is true now. Of a control that is silent nothing is known but that."""
+        if self._pulse.silent(snapshot.t, self.clock()):
+            return UNKNOWN
+        values: dict[str, Value] = {
+            "avail": _AVAILABLE,
+            "estop": "TRIGGERED" if snapshot.state is State.ESTOP else "ARMED",
+            "mode": mode_of(snapshot),
+            "execution": self._execution.look(snapshot),
+            **_program(snapshot),
+            **self._axes(snapshot),
+            **_motion(snapshot),
+            **self._spindle(snapshot),
+            **self._wired(snapshot),
+        }
+        stop = (snapshot.stop,) if snapshot.stop is not None else ()
+        alarms = (*snapshot.alarms, *stop)
+        return Reading(values, conditions_of(snapshot, self.keys), snapshot.interrupted, alarms)
+
+    def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
+        """Machine frame, X a radius; an axis that has no home does not know where it is."""
+        at = zip(snapshot.axes, snapshot.actual, snapshot.homed, strict=True)
+        return {
+            f"{name}abs": actual if homed and (name != "C" or self.machine.c_enabled) else None
+            for name, actual, homed in at
+        }
+
+    def _spindle(self, snapshot: Snapshot) -> dict[str, Value]:
+        turning = abs(snapshot.rpm_actual)
+        held = (
+            turning >= self.machine.spindle.stop_below and not self.machine.interlocks.unclamp_while_turning
+        )
+        return {
+            "Srpm": turning if turning >= _STILL else 0.0,
+            "Scmd": abs(snapshot.spindle_asked),
+            "Sovr": 100.0 * snapshot.spindle_override,
+            "rotmode": "CONTOUR" if snapshot.modal.c_locked and self.machine.spindle_is_c else "SPINDLE",
+            "chuckil": "ACTIVE" if held else "INACTIVE",
+        }
+
+    def _wired(self, snapshot: Snapshot) -> dict[str, Value]:
+        """Of what is a switch; where none is wired nothing is known."""
+
+        def told(name: str, on: str, off: str) -> Value:
+            if name not in self.machine.inputs:
+                return None
+            return on if name in snapshot.inputs else off
+
+        opened = "UNLATCHED" if "collet" in snapshot.outputs else "OPEN"  # told to close and not there yet
+        return {
+            "chuck": told("collet_closed", "CLOSED", opened),
+            "door": told("guard", "CLOSED", "OPEN"),
+            "endbar": told("end_of_bar", "YES", "NO"),
+            "part": told("part", "PRESENT", "NOT_PRESENT"),
+        }
+
+
+def _program(snapshot: Snapshot) -> dict[str, Value]:
+    return {
+        "program": Path(snapshot.program).name or None,
+        "line": str(snapshot.line) if snapshot.line else None,
+        "block": snapshot.block_text.strip() or None,
+        "toolnum": str(snapshot.modal.tool),
+        "pcount": str(snapshot.parts),
+    }
+
+
+def _motion(snapshot: Snapshot) -> dict[str, Value]:
+    return {
+        "Fact": snapshot.velocity if snapshot.velocity >= _STANDS else 0.0,
+        "Fovr": 100.0 * snapshot.feed_override,
+    }

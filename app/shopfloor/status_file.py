@@ -1,0 +1,119 @@
+"""The machine in one small JSON file, for a shop without an agent: for a script or a spreadsheet."""
+
+from __future__ import annotations
+
+import json
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from app.shopfloor.floor_reading import Reading
+from core.executor.interrupted_job import InterruptedJob
+from core.executor.snapshot import Alarm
+
+NAME = "status.json"
+_LOOK = 1.0  # s
+_AGAIN = 10  # looks without a change after which it is written all the same: an old file is a dead control
+_log = logging.getLogger(__name__)
+
+Status = dict[str, object]
+
+
+def status_of(machine: str, reading: Reading) -> Status:
+    """What a shop asks first: running or not and why, which program, how many parts."""
+    values = reading.values
+    return {
+        "machine": machine,
+        "available": reading.available,
+        "execution": values.get("execution"),
+        "mode": values.get("mode"),
+        "estop": values.get("estop"),
+        "program": values.get("program"),
+        "parts": int(values["pcount"] or 0) if reading.available else None,
+        "interrupted": _interrupted(reading.interrupted),
+        "alarms": [
+            {"of": key, "level": level, "code": code, "text": text, **_entry(reading.alarm(code))}
+            for key, active in reading.conditions.items()
+            for level, code, text in active
+        ],
+    }
+
+
+def _interrupted(found: InterruptedJob | None) -> Status | None:
+    """The job that did not come to its end; ``at`` is UTC, ISO 8601."""
+    if found is None:
+        return None
+    return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
+
+
+def _entry(alarm: Alarm | None) -> Status:
+    """Number, cause and remedy, as the screen tells them."""
+    if alarm is None:
+        return {"number": None, "cause": "", "remedy": "", "line": None}
+    line = alarm.line or None
+    return {"number": alarm.number, "cause": alarm.cause, "remedy": alarm.remedy, "line": line}
+
+
+class StatusFile:
+    """Replaced whole: a reader sees the old one or the new one. ``utc`` is the time of day as text."""
+
+    def __init__(self, path: Path, utc: Callable[[], str]) -> None:
+        self._path, self._utc = path, utc
+        self._written: Status = {}
+        self._since = ""
+        self._looks = 0
+        self._failed = False
+
+    def show(self, status: Status) -> None:
+        """Write it when it is new, or when the last one is getting old; a disk that fails is tried again."""
+        self._looks += 1
+        if status == self._written and self._looks < _AGAIN:
+            return
+        now = self._utc()
+        if not self._since or status.get("execution") != self._written.get("execution"):
+            self._since = now
+        text = json.dumps({"updated": now, "since": self._since, **status}, indent=1) + "\n"
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            new = self._path.with_name(f"{self._path.name}.new")
+            new.write_text(text, encoding="utf-8")
+            new.replace(self._path)
+        except OSError as error:
+            if not self._failed:
+                _log.warning("%s cannot be written: %s", self._path, error.strerror or error)
+            self._failed = True
+            return
+        self._written, self._looks, self._failed = status, 0, False
+
+
+class StatusKeeper:
+    """Shows the status once a second, by a thread of its own: a slow disk keeps nothing else waiting."""
+
+    def __init__(self, file: StatusFile, look: Callable[[], Status], gone: Status) -> None:
+        """``gone`` is written last."""
+        self._file, self._look, self._gone = file, look, gone
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="status", daemon=True)
+
+    def start(self) -> None:
+        """Once."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """The file says that the control has ended; the thread has ended too."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _keep(self) -> None:
+        last: Status = {}
+        try:
+            self._file.show(last := self._look())
+            while not self._closing.wait(_LOOK):
+                self._file.show(last := self._look())
+            last = self._look()  # what closing has interrupted stays so
+        finally:
+            if not self._closing.is_set():
+                _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)
+            self._file.show({**self._gone, "interrupted": last.get("interrupted")})

@@ -1,0 +1,206 @@
+"""Machine file to machine: one pass, all errors, no half-built machine."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import resources
+from core.machine import hardware_rules, machine_defaults, machine_rules, machine_tables, signal_rules
+from core.machine.hardware_build import hardware_of
+from core.machine.hardware_tables import HardwareReading
+from core.machine.machine_model import (
+    Axis,
+    InputModel,
+    Interlocks,
+    Machine,
+    OutputModel,
+    SpindleModel,
+    Timing,
+)
+from core.machine.machine_reading import Reading
+from core.machine.mill_kinematics import KinematicsReading
+from core.table_schema import Finding, MachineFileError
+
+__all__ = ["MachineFileError", "load_machine", "named_machine", "parse_machine", "shipped_machine"]
+
+SHIPPED = "gt75.toml"
+_NONE = (-math.inf, math.inf)
+_ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
+
+
+def load_machine(path: Path | None = None) -> Machine:
+    """The machine that ``path`` describes; None: the shipped simulated lathe.
+
+    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
+    """
+    if path is None:
+        return parse_machine(resources.machine_file(SHIPPED), SHIPPED)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        reason = error.strerror or "cannot be read"
+        raise MachineFileError(
+            [Finding("file", "", f"{reason}; check name and rights")], str(path)
+        ) from error
+    except UnicodeDecodeError as error:
+        raise MachineFileError(
+            [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
+        ) from error
+    return parse_machine(text, str(path))
+
+
+def named_machine(name: str | None) -> Machine:
+    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
+    if name and name in resources.machine_names() and not Path(name).exists():
+        return shipped_machine(name)
+    return load_machine(Path(name) if name else None)
+
+
+def shipped_machine(name: str) -> Machine:
+    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
+    return parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
+
+
+def parse_machine(text: str, source: str) -> Machine:
+    """The machine that the TOML ``text`` describes; ``source`` names it. Raises MachineFileError."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise MachineFileError([Finding("TOML", "", str(error))], source) from error
+    reading = Reading(data)
+    untold = [*machine_defaults.fill(reading)]
+    hardware = HardwareReading(data, reading.values)
+    rotary = [name for name in _axis_names(reading) if name not in machine_tables.SLIDES[reading.kind]]
+    kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
+    findings = [
+        *reading.findings,
+        *untold,
+        *hardware.findings,
+        *kinematics.findings,
+        *machine_rules.broken(reading.values),
+        *signal_rules.broken(reading),
+        *hardware_rules.broken(hardware, _axis_names(reading), signal_rules.terminals(reading)),
+    ]
+    if findings:
+        raise MachineFileError(findings, source)
+    return replace(_machine(reading, hardware, kinematics, source), text=text)
+
+
+def _machine(
+    reading: Reading, hardware: HardwareReading, kinematics: KinematicsReading, source: str
+) -> Machine:
+    values = reading.values
+    return Machine(
+        name=values.text("machine.name"),
+        backend=values.text("machine.backend"),
+        axes=_axes(reading),
+        c_enabled=reading.kind == "lathe" and values.flag("axis.C.enabled"),
+        c_feedback=values.flag("c_axis.feedback"),
+        spindle=_spindle(reading),
+        timing=_timing(reading),
+        interlocks=Interlocks(
+            spindle_with_collet_open=values.flag("interlocks.spindle_with_collet_open"),
+            unclamp_while_turning=values.flag("interlocks.unclamp_while_turning"),
+            two_hand_start=values.flag("interlocks.two_hand_start"),
+            guard_stops=values.flag("interlocks.guard_stops"),
+        ),
+        max_feed=values.number("limits.max_feed"),
+        manual_rapid=values.number("limits.manual_rapid"),
+        resolution=values.number("limits.resolution"),
+        outputs={name: _output(reading, name) for name in reading.outputs},
+        inputs={name: _input(reading, name) for name in reading.inputs},
+        m_codes={code: (output, on) for code, output, on in signal_rules.enabled_codes(reading)},
+        m_disabled=frozenset(signal_rules.disabled_codes(reading)),
+        source=source,
+        clearance=values.number("limits.clearance"),
+        inch=bool(values.inch),
+        kind=reading.kind,
+        c_modulo=_of_c(reading, "modulo"),
+        c_own_drive=_of_c(reading, "own_drive"),
+        hardware=hardware_of(hardware, _axis_names(reading), reading.outputs),
+        kinematics=kinematics.model(),
+    )
+
+
+def _axis_names(reading: Reading) -> tuple[str, ...]:
+    rotary = ("C",) if reading.kind == "lathe" else machine_tables.ROTARY[reading.kind]
+    return (
+        *machine_tables.SLIDES[reading.kind],
+        *(name for name in rotary if reading.values.said(f"axis.{name}.vmax")),
+    )
+
+
+def _of_c(reading: Reading, key: str) -> bool:
+    """A flag of a lathe's C."""
+    return reading.kind == "lathe" and reading.values.flag(f"axis.C.{key}")
+
+
+def _axes(reading: Reading) -> tuple[Axis, ...]:
+    return tuple(_axis(reading, name) for name in _axis_names(reading))
+
+
+def _axis(reading: Reading, name: str) -> Axis:
+    values, path = reading.values, f"axis.{name}"
+    homed = values.has(f"{path}.home.order")
+    whole = _ONE_TURN if name == "C" and reading.kind == "lathe" and not _of_c(reading, "modulo") else _NONE
+    travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else whole
+    return Axis(
+        name=name,
+        travel=travel if math.isfinite(travel[0]) else None,
+        vmax=values.number(f"{path}.vmax"),
+        amax=values.number(f"{path}.amax"),
+        count=values.number(f"{path}.count"),
+        following_window=values.number(f"{path}.fe_window"),
+        following_time=values.number(f"{path}.fe_time_ms"),
+        in_position=values.number(f"{path}.in_pos"),
+        absolute=values.flag(f"{path}.absolute"),
+        home_order=int(values.number(f"{path}.home.order")) if homed else 0,
+        home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
+        rotary=name not in machine_tables.SLIDES[reading.kind],
+        still_window=values.number(f"{path}.still_window"),
+        still_time=values.number(f"{path}.still_ms"),
+    )
+
+
+def _spindle(reading: Reading) -> SpindleModel:
+    values = reading.values
+    low, high = values.pair("spindle.rpm")
+    return SpindleModel(
+        rpm_min=low,
+        rpm_max=high,
+        accel=values.number("spindle.accel_rpm_s"),
+        decel=values.number("spindle.decel_rpm_s"),
+        at_speed=values.number("spindle.at_speed_pct"),
+        at_speed_time=values.number("spindle.at_speed_s"),
+        timeout=values.number("spindle.timeout_s"),
+        stop_below=values.number("spindle.stop_below"),
+        encoder_ppr=int(values.number("spindle.encoder_ppr")),
+        controlled=values.flag("spindle.controlled"),
+    )
+
+
+def _timing(reading: Reading) -> Timing:
+    values = reading.values
+    return Timing(
+        commit=values.number("machine.commit_ms"),
+        lookahead=values.number("machine.lookahead_ms"),
+        low_water=values.number("machine.low_water_ms"),
+        lease=values.number("machine.lease_ms"),
+        setpoint=values.number("machine.setpoint_ms"),
+        collet_open=values.number("collet.open_s"),
+        collet_close=values.number("collet.close_s"),
+    )
+
+
+def _output(reading: Reading, name: str) -> OutputModel:
+    path = f"io.out.{name}"
+    safe = reading.values.found[f"{path}.safe"]
+    return OutputModel(name, None if safe == "keep" else bool(safe), reading.values.text(f"{path}.at"))
+
+
+def _input(reading: Reading, name: str) -> InputModel:
+    values, path = reading.values, f"io.in.{name}"
+    return InputModel(name, values.text(f"{path}.at"), values.text(f"{path}.active") == "low")

@@ -1,0 +1,133 @@
+"""The machine as its file describes it: frozen, in mm, seconds, degrees; X a radius."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from core.machine.hardware_model import Hardware
+from core.machine.mill_kinematics import KinematicsModel
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis. Lengths mm and mm/s; for a rotary axis degrees and degrees/s."""
+
+    name: str
+    travel: tuple[float, float] | None  # from home; None: endless
+    vmax: float
+    amax: float
+    count: float  # encoder and command step
+    following_window: float
+    following_time: float
+    in_position: float
+    absolute: bool  # knows its position at power-up: no homing needed
+    home_order: int = 0
+    home_speed: float = 0.0
+    rotary: bool = False
+    still_window: float = 0.2  # how far it may be off where it rests
+    still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
+
+    def following_limit(self, speed: float) -> float:
+        """How far it may be off its setpoint at a commanded speed: as at rest, and what a drive trails."""
+        share = min(abs(speed) / self.vmax, 1.0)
+        return self.still_window + (self.following_window - self.still_window) * share
+
+
+@dataclass(frozen=True, slots=True)
+class SpindleModel:
+    """The main spindle, rpm and rpm/s."""
+
+    rpm_min: float
+    rpm_max: float
+    accel: float
+    decel: float
+    at_speed: float  # fraction of the command
+    at_speed_time: float
+    timeout: float
+    stop_below: float
+    encoder_ppr: int
+    controlled: bool = True  # false: one speed, rpm_max, and no S
+
+
+@dataclass(frozen=True, slots=True)
+class OutputModel:
+    """One output: ``safe`` is what E-stop makes of it, None keeps."""
+
+    name: str
+    safe: bool | None
+    terminal: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class InputModel:
+    """One input: the names by which a program or interlock asks for it."""
+
+    name: str
+    terminal: str
+    active_low: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Times of the control itself, seconds."""
+
+    commit: float
+    lookahead: float
+    low_water: float
+    lease: float
+    setpoint: float  # interval in which a corner may change a velocity by amax * interval
+    collet_open: float
+    collet_close: float
+
+
+@dataclass(frozen=True, slots=True)
+class Interlocks:
+    """Omniturn section 10 and the two-hand start."""
+
+    spindle_with_collet_open: bool
+    unclamp_while_turning: bool
+    two_hand_start: bool
+    guard_stops: bool = False  # the input ``guard``, off while open, holds the cycle and stops the spindle
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """The whole machine. ``axes``: slides first, then rotary axes; on a lathe X, Z, C."""
+
+    name: str
+    backend: str
+    axes: tuple[Axis, ...]
+    c_enabled: bool
+    c_feedback: bool
+    spindle: SpindleModel
+    timing: Timing
+    interlocks: Interlocks
+    max_feed: float  # mm/s, what an F word may ask for
+    manual_rapid: float  # mm/s
+    resolution: float  # mm of radius
+    outputs: Mapping[str, OutputModel]
+    inputs: Mapping[str, InputModel]
+    m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
+    m_disabled: frozenset[int] = frozenset()  # defined with enabled = false
+    source: str = ""  # the file it came from
+    clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
+    inch: bool = True  # what its builder counts in
+    kind: str = "lathe"  # or "mill"
+    c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
+    c_own_drive: bool = False  # C is no second use of the spindle
+    hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
+    kinematics: KinematicsModel | None = None  # of a mill with rotary axes
+    text: str = field(default="", compare=False, repr=False)  # the file as it was read
+
+    @property
+    def spindle_is_c(self) -> bool:
+        """Whether C is a second use of the spindle, so that it cannot be positioned while that turns."""
+        return self.kind == "lathe" and not self.c_own_drive
+
+    def axis(self, name: str) -> Axis:
+        """The axis of this name. Raises KeyError where the machine has none."""
+        for axis in self.axes:
+            if axis.name == name:
+                return axis
+        raise KeyError(name)

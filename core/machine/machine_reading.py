@@ -1,0 +1,116 @@
+"""Reads a parsed machine file against the declared tables: every value by its path, every finding at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from core.machine import machine_tables
+from core.table_schema import Field, Finding, Values, joined, read_table, unknown_keys, written
+
+
+class Reading:
+    """Values and findings of one file, and the names that its owner gave to signals and M codes."""
+
+    def __init__(self, data: Mapping[str, object]) -> None:
+        self.data = data
+        self.values = Values(_inch(data))
+        self.kind = _kind(data)
+        self.outputs: list[str] = []
+        self.inputs: list[str] = []
+        self.m_codes: list[str] = []
+        self.findings = _unknown_tables(data)
+        self._read()
+
+    def _read(self) -> None:
+        self._table("machine", machine_tables.MACHINE)
+        for path, keys in machine_tables.TABLES:
+            if path in machine_tables.TABLES_OF_A_LATHE and self.kind != "lathe":
+                self._of_a_lathe(path)
+            else:
+                self._table(path, keys)
+        self._axes()
+        io = self._parent("io", ("in", "out", "analog"))
+        self.outputs = self._named(io.get("out"), "io.out", machine_tables.OUTPUT)
+        self.inputs = self._named(io.get("in"), "io.in", machine_tables.INPUT)
+        self.m_codes = self._named(self.data.get("m_codes", {}), "m_codes", machine_tables.M_CODE)
+
+    def _table(self, path: str, keys: tuple[Field, ...]) -> None:
+        table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
+        self._keys(table, path, keys, machine_tables.CHILDREN.get(path, ()))
+
+    def _keys(
+        self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()
+    ) -> None:
+        if table is None:
+            self.findings.append(
+                Finding(f"[{path}]", "", "missing; the control cannot do without this table")
+            )
+        else:
+            self.findings += read_table(table, keys, path, self.values, children)
+
+    def _parent(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
+        """A table that holds tables; an empty one where it is none."""
+        table = self.data.get(path, {})
+        if not isinstance(table, dict):
+            self.findings.append(Finding(path, written(table), f"expected a table, [{path}]"))
+            return {}
+        self.findings += unknown_keys(table, list(known), path)
+        return table
+
+    def _axes(self) -> None:
+        lathe, rotary = self.kind == "lathe", machine_tables.ROTARY[self.kind]
+        axes = self._parent("axis", (*machine_tables.SLIDES[self.kind], *(("C",) if lathe else rotary)))
+        for name in machine_tables.SLIDES[self.kind]:
+            self._homed(axes.get(name), f"axis.{name}", machine_tables.SLIDE, machine_tables.HOME)
+        if lathe:
+            self._keys(axes.get("C", {}), "axis.C", machine_tables.C_AXIS)  # most have none: no table, no C
+        for name in rotary:
+            if name in axes:
+                self._homed(
+                    axes[name], f"axis.{name}", machine_tables.ROTARY_AXIS, machine_tables.ROTARY_HOME
+                )
+
+    def _homed(self, table: object, path: str, keys: tuple[Field, ...], home: tuple[Field, ...]) -> None:
+        """The table of an axis, and in it how it is homed."""
+        self._keys(table, path, keys, ("home",))
+        if isinstance(table, dict) and "home" in table:
+            self._keys(table["home"], f"{path}.home", home)
+
+    def _of_a_lathe(self, path: str) -> None:
+        if path in self.data:
+            self.findings.append(Finding(f"[{path}]", "", "only a lathe has this; take it out"))
+        else:  # what the control asks of every machine stands still on this one
+            self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
+
+    def _named(self, table: object, path: str, keys: tuple[Field, ...]) -> list[str]:
+        """Reads tables under names of the owner's choice; returns those names."""
+        if not isinstance(table, dict):
+            self._keys(table, path, ())
+            return []
+        for name, entry in table.items():
+            self._keys(entry, joined(path, name), keys)
+        return list(table)
+
+
+def _inch(data: Mapping[str, object]) -> bool | None:
+    """Whether the file counts in inches; None where it does not say so rightly: a finding elsewhere."""
+    machine = data.get("machine")
+    units = machine.get("units") if isinstance(machine, dict) else None
+    return units == "inch" if units in ("inch", "mm") else None
+
+
+def _kind(data: Mapping[str, object]) -> str:
+    """Lathe or mill; where the file says neither rightly, which is a finding elsewhere, a lathe."""
+    machine = data.get("machine")
+    kind = machine.get("kind") if isinstance(machine, dict) else None
+    return kind if isinstance(kind, str) and kind in machine_tables.KINDS else "lathe"
+
+
+def _unknown_tables(data: Mapping[str, object]) -> list[Finding]:
+    findings = []
+    for found in unknown_keys(data, list(machine_tables.TOP), ""):
+        known = f"this version knows {', '.join(f'[{name}]' for name in machine_tables.TOP)}"
+        guess = found.expected.removeprefix("unknown key; ")
+        near = f"{guess} " if guess.startswith("did") else ""
+        findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}"))
+    return findings

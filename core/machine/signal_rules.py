@@ -1,0 +1,90 @@
+"""What must hold between outputs, inputs, interlocks and M codes of a machine file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from core.machine.machine_reading import Reading
+from core.machine.machine_tables import FIXED_M_CODES
+from core.table_schema import Finding, written
+
+# Codes of the language and the outputs they switch.
+NEEDED_OUTPUTS = {"coolant": "M08 and M09 switch it", "collet": "M12 and M13 switch it"}
+ESTOP = "estop"
+_NUMBERS = frozenset(str(number) for number in range(100))
+
+
+def broken(reading: Reading) -> Iterator[Finding]:
+    """Every finding about signals."""
+    yield from _needed(reading)
+    yield from _m_codes(reading)
+    yield from _never_off(reading)
+
+
+def terminals(reading: Reading) -> dict[str, str]:
+    """The terminal of each signal, by the signal's path."""
+    paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
+    values = reading.values
+    return {path: values.text(f"{path}.at") for path in paths if values.has(f"{path}.at")}
+
+
+def _needed(reading: Reading) -> Iterator[Finding]:
+    for name, why in NEEDED_OUTPUTS.items():
+        if name not in reading.outputs and not (name == "collet" and reading.kind != "lathe"):
+            yield Finding(f"io.out.{name}", "", f"missing; {why}")
+    needed = {ESTOP: "the control mirrors it"}
+    values = reading.values
+    if values.has("interlocks.two_hand_start") and values.flag("interlocks.two_hand_start"):
+        needed["start"] = "interlocks.two_hand_start needs the two-hand relay's output"
+    if values.has("interlocks.spindle_with_collet_open") and not values.flag(
+        "interlocks.spindle_with_collet_open"
+    ):
+        needed["collet_closed"] = "refusing a spindle start with the collet open needs it"
+    for name, why in needed.items():
+        if name not in reading.inputs:
+            yield Finding(f"io.in.{name}", "", f"missing; {why}")
+
+
+def _m_codes(reading: Reading) -> Iterator[Finding]:
+    for code in reading.m_codes:
+        path = f"m_codes.{code}"
+        if code not in _NUMBERS:
+            yield Finding(path, "", "expected the number of an M code, 0…99 without a leading zero")
+        elif int(code) in FIXED_M_CODES:
+            yield Finding(path, "", f"M{int(code):02d} has a meaning of its own; expected a free M code")
+        elif reading.values.has(f"{path}.output"):
+            output = reading.values.text(f"{path}.output")
+            if output not in reading.outputs:
+                known = ", ".join(reading.outputs)
+                yield Finding(f"{path}.output", written(output), f"expected an output of [io.out]: {known}")
+
+
+def enabled_codes(reading: Reading) -> Iterator[tuple[int, str, bool]]:
+    """M code, output and state of every code that is whole and enabled."""
+    values = reading.values
+    for code in reading.m_codes:
+        path = f"m_codes.{code}"
+        whole = code in _NUMBERS and values.has(f"{path}.output", f"{path}.on", f"{path}.enabled")
+        if whole and values.flag(f"{path}.enabled"):
+            yield int(code), values.text(f"{path}.output"), values.flag(f"{path}.on")
+
+
+def disabled_codes(reading: Reading) -> Iterator[int]:
+    """M codes that are defined and not enabled."""
+    values = reading.values
+    for code in reading.m_codes:
+        path = f"m_codes.{code}.enabled"
+        if code in _NUMBERS and values.has(path) and not values.flag(path):
+            yield int(code)
+
+
+def _never_off(reading: Reading) -> Iterator[Finding]:
+    """An output that some code switches on must have one that switches it off; M12 closes the collet."""
+    if any(path.startswith("m_codes.") for path in reading.values.wrong):
+        return  # it may be the one that is wrong
+    codes = list(enabled_codes(reading))
+    off = {output for _, output, on in codes if not on} | set(NEEDED_OUTPUTS)
+    for code, output, on in codes:
+        if on and output not in off:
+            expected = f"switches {output} on and no M code switches it off; expected one with on = false"
+            yield Finding(f"m_codes.{code}", "", expected)

@@ -1,0 +1,61 @@
+"""What must hold between a handwheel and the switches beside it; palm buttons are refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from core.machine.hardware_tables import HardwareReading
+from core.table_schema import Finding, written
+
+WHEEL = "handwheel"
+ENABLE = "wheel_enable"  # held down while the wheel may move anything
+FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
+
+
+def selector(axis: str) -> str:
+    """The input that is on while the station's switch selects an axis."""
+    return f"wheel_{axis.lower()}"
+
+
+def wrong_wheel(reading: HardwareReading, axes: tuple[str, ...]) -> Iterator[Finding]:
+    """Every finding."""
+    values, there = reading.values, WHEEL in reading.analog
+    wired = reading.data.get("io")
+    inputs = wired.get("in") if isinstance(wired, dict) else None
+    if there and values.has("machine.backend") and values.text("machine.backend") == "grblhal":
+        yield Finding(f"io.analog.{WHEEL}", "", "this backend has no input that counts; take it out")
+    for name in reading.analog:
+        path = f"io.analog.{name}.counts_per_click"
+        if values.has(path) and name == WHEEL and values.number(path) == 0:
+            yield Finding(path, "0", "expected counts, negative where the wheel turns the other way round")
+        if values.has(path) and name != WHEEL and values.number(path) != 1:
+            yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out")
+    known = [ENABLE, *FACTORS, *(selector(axis) for axis in axes)]
+    for name in inputs if isinstance(inputs, dict) else ():
+        if name.startswith("wheel_") and name not in known:
+            yield Finding(f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}")
+        elif name.startswith("wheel_") and not there:
+            at = written(values.text(f"io.in.{name}.at")) if values.has(f"io.in.{name}.at") else ""
+            yield Finding(f"io.in.{name}", at, "a switch of the handwheel; expected [io.analog] handwheel")
+
+
+# --- Palm buttons that are wired to the control: refused, because two hands are told apart by a relay alone.
+
+
+_PALM = re.compile(
+    r"(left|right)?_?palms?_?(left|right|\d)?|(left|right)_start|start_?(left|right|\d)", re.IGNORECASE
+)
+WHY = (
+    "palm buttons are not wired to the control: a two-hand relay tells whether both came within 0.5 s and"
+    " were let go in between; its one output is the input start"
+)
+
+
+def wrong_palms(reading: HardwareReading) -> Iterator[Finding]:
+    """A finding for every input that is one button of two."""
+    wired = reading.data.get("io")
+    inputs = wired.get("in") if isinstance(wired, dict) else None
+    for name in inputs if isinstance(inputs, dict) else ():
+        if _PALM.fullmatch(name):
+            yield Finding(f"io.in.{name}", "", WHY)

@@ -1,0 +1,57 @@
+"""The event log and the settings."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Collection, Iterable
+
+from core.store.store_errors import StoreError
+from core.store.store_rows import EventRow
+
+
+def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> int:
+    """Adds to the log; answers how many."""
+    rows = tuple(events)
+    connection.executemany("INSERT INTO events (at, kind, text, line) VALUES (?, ?, ?, ?)", rows)
+    return len(rows)
+
+
+def events(
+    connection: sqlite3.Connection, search: str, limit: int, kinds: Collection[str] = ()
+) -> tuple[EventRow, ...]:
+    """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
+    rows = connection.execute(
+        "SELECT at, kind, text, line FROM events"
+        " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
+        " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
+        " ORDER BY id DESC LIMIT ?3",
+        (search, json.dumps(sorted(kinds)), limit),
+    )
+    return tuple(EventRow(*row) for row in rows)
+
+
+def setting(connection: sqlite3.Connection, key: str) -> object:
+    """What was stored under ``key``, None: nothing."""
+    row = connection.execute("SELECT value FROM settings WHERE key = ?", (key,)).fetchone()
+    return json.loads(row[0]) if row else None
+
+
+def set_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
+    """Stores anything that JSON can hold; None forgets the key. Raises StoreError for what it cannot."""
+    if value is None:
+        connection.execute("DELETE FROM settings WHERE key = ?", (key,))
+        return
+    text = setting_text(key, value)
+    connection.execute(
+        "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
+        (key, text),
+    )
+
+
+def setting_text(key: str, value: object) -> str:
+    """As it is stored. Raises StoreError for what JSON cannot hold."""
+    try:
+        return json.dumps(value, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise StoreError(f"the setting {key} cannot be stored: {error}") from error

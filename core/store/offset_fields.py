@@ -1,0 +1,81 @@
+"""The fields of an offset: what they are called, where they are kept, and which values they take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isfinite
+
+from core.store.store_rows import (
+    MM_PER_INCH,
+    RADIUS_MAX,
+    REMARK_LONGEST,
+    SECONDARY_REACH,
+    TOOL_REACH,
+    WEAR_REACH,
+    Kind,
+)
+
+_ROUNDING = 1e-9  # in
+
+
+class Sort(StrEnum):
+    """What a value is."""
+
+    LENGTH = "length"  # mm
+    WHOLE = "whole number"
+    TEXT = "text"
+    FLAG = "yes or no"
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One field: ``low`` and ``high`` are mm for a length, characters for a text."""
+
+    name: str  # as commands and files call it
+    column: str
+    word: str  # as a sentence calls it
+    low: float
+    high: float
+    sort: Sort = Sort.LENGTH
+
+    @property
+    def range(self) -> str:
+        """What it takes, in the unit of the door."""
+        if self.sort is Sort.LENGTH:
+            return f"{self.low / MM_PER_INCH:g}…{self.high / MM_PER_INCH:g} in"
+        if self.sort is Sort.TEXT:
+            return f"up to {self.high:g} characters in one line"
+        return f"{self.low:g}…{self.high:g}"
+
+    def takes(self, value: object) -> bool:
+        """Whether the store keeps this value; a NaN is out of every range."""
+        if isinstance(value, str):
+            return self.sort is Sort.TEXT and len(value) <= self.high and (value.isprintable() or not value)
+        if self.sort is Sort.TEXT or not isinstance(value, int | float):
+            return False
+        rounding = _ROUNDING * MM_PER_INCH if self.sort is Sort.LENGTH else 0.0
+        whole = self.sort is Sort.LENGTH or float(value).is_integer()
+        return isfinite(value) and whole and self.low - rounding <= value <= self.high + rounding
+
+
+_TOOL = (
+    Field("x", "x", "X", -TOOL_REACH, TOOL_REACH),
+    Field("z", "z", "Z", -TOOL_REACH, TOOL_REACH),
+    Field("nose_radius", "r", "nose radius", 0.0, RADIUS_MAX),
+    Field("wear_x", "wear_x", "wear X", -WEAR_REACH, WEAR_REACH),
+    Field("wear_z", "wear_z", "wear Z", -WEAR_REACH, WEAR_REACH),
+    Field("quadrant", "quadrant", "tip quadrant", 0, 9, Sort.WHOLE),
+    Field("remark", "remark", "remark", 0, REMARK_LONGEST, Sort.TEXT),
+    Field("master", "master", "master", 0, 1, Sort.FLAG),
+)
+_SECONDARY = (
+    Field("x", "x", "X", -SECONDARY_REACH, SECONDARY_REACH),
+    Field("z", "z", "Z", -SECONDARY_REACH, SECONDARY_REACH),
+    Field("r", "r", "nose radius", 0.0, RADIUS_MAX),
+)
+FIELDS: Mapping[Kind, Mapping[str, Field]] = {
+    Kind.TOOL: {field.name: field for field in _TOOL},
+    Kind.SECONDARY: {field.name: field for field in _SECONDARY},
+}

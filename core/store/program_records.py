@@ -1,0 +1,203 @@
+"""What is kept of each program: every version of its text, part counts, runs, cycle times, the last proof."""
+
+from __future__ import annotations
+
+import sqlite3
+from hashlib import sha256
+
+from core.store.store_errors import StoreError
+from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
+
+_NAME_BYTES = 200
+_FORBIDDEN = frozenset('/\\:*?"<>|')
+
+
+def check_name(name: str) -> None:
+    """Raises StoreError for a name that could not be a file's on every disk it may be exported to."""
+    clean = name.strip() == name and name not in ("", ".", "..")
+    if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
+        raise StoreError(f"{name!r} cannot name a program; take letters, digits, dot, dash and blank")
+
+
+def save(connection: sqlite3.Connection, name: str, text: bytes, why: str) -> int:
+    """Keeps ``text`` as the newest version; answers its number. The same text again makes no new version."""
+    check_name(name)
+    now, digest = utc_now(), sha256(text).hexdigest()
+    connection.execute(
+        "INSERT INTO programs (name, created) VALUES (?, ?) ON CONFLICT DO NOTHING", (name, now)
+    )
+    program = connection.execute("SELECT id FROM programs WHERE name = ?", (name,)).fetchone()[0]
+    last = connection.execute(
+        "SELECT number, sha256 FROM program_versions WHERE program = ? ORDER BY number DESC LIMIT 1",
+        (program,),
+    ).fetchone()
+    if last is not None and last[1] == digest:
+        return int(last[0])
+    number = int(last[0]) + 1 if last else 1
+    connection.execute(
+        "INSERT INTO program_versions (program, number, text, sha256, saved, why) VALUES (?, ?, ?, ?, ?, ?)",
+        (program, number, text, digest, now, why),
+    )
+    return number
+
+
+def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
+    """All programs by name, with their newest version."""
+    rows = connection.execute(
+        "SELECT name, created, max(number), saved"
+        " FROM programs JOIN program_versions ON program = programs.id"
+        " GROUP BY programs.id ORDER BY name"
+    )
+    return tuple(ProgramRow(*row) for row in rows)
+
+
+def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
+    """Every version of a program, newest first; none of a program that is not there."""
+    rows = connection.execute(
+        "SELECT number, sha256, saved, why, length(text) FROM program_versions"
+        " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
+        (name,),
+    )
+    return tuple(VersionRow(*row) for row in rows)
+
+
+def load(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
+    """The text of a version, None: the newest. Raises StoreError for one that is not there or spoilt."""
+    row = connection.execute(
+        "SELECT number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
+        " WHERE name = ? AND (number = ? OR ? IS NULL) ORDER BY number DESC LIMIT 1",
+        (name, version, version),
+    ).fetchone()
+    if row is None:
+        which = "" if version is None else f" version {version}"
+        raise StoreError(f"the store has no program {name!r}{which}; see the list of programs and versions")
+    number, text, digest = row
+    if sha256(text).hexdigest() != digest:
+        raise StoreError(f"{name!r} version {number} is not what was saved; load another version or a backup")
+    return bytes(text)
+
+
+def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
+    """Name and number of every version whose text is not what was saved."""
+    rows = connection.execute(
+        "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
+    )
+    return tuple(
+        f"{name!r} version {number}"
+        for name, number, text, digest in rows
+        if sha256(text).hexdigest() != digest
+    )
+
+
+def count_part(connection: sqlite3.Connection, program: str) -> int:
+    """One part more; answers the new count."""
+    return add_parts(connection, program, 1, utc_now())
+
+
+def parts(connection: sqlite3.Connection, program: str) -> int:
+    """Parts made since the count was last put to nought."""
+    row = connection.execute("SELECT count FROM part_counts WHERE program = ?", (program,)).fetchone()
+    return int(row[0]) if row else 0
+
+
+def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> int:
+    """Parts made, added or taken away, never below nought; answers the new count."""
+    count = max(0, parts(connection, program) + by)
+    connection.execute(
+        "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
+        " ON CONFLICT (program) DO UPDATE SET count = ?2, last = ?3",
+        (program, count, last),
+    )
+    return count
+
+
+def reset_parts(connection: sqlite3.Connection, program: str) -> None:
+    """The count of one program to nought."""
+    connection.execute("DELETE FROM part_counts WHERE program = ?", (program,))
+
+
+# --- What each program has done: last run, cycle times, last proof. One row a program.
+
+
+def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
+    """Every program that was run, proved or counted, by name."""
+    rows = connection.execute(
+        "SELECT names.program, coalesce(count, 0), started, coalesce(outcome, ''), coalesce(cycles, 0),"
+        " best, latest, proved, coalesce(proof, ''), planned"
+        " FROM (SELECT program FROM runs UNION SELECT program FROM part_counts) AS names"
+        " LEFT JOIN runs ON runs.program = names.program"
+        " LEFT JOIN part_counts ON part_counts.program = names.program ORDER BY names.program"
+    )
+    return tuple(RunRow(*row) for row in rows)
+
+
+def started(connection: sqlite3.Connection, program: str, at: str = "") -> None:
+    """A run begins, now if not said otherwise."""
+    _row(connection, program)
+    connection.execute(
+        "UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at or utc_now(), program)
+    )
+
+
+def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
+    """How the run ended."""
+    _row(connection, program)
+    connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, program))
+
+
+def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
+    """Runs that began and never ended get this outcome; their programs."""
+    rows = connection.execute(
+        "UPDATE runs SET outcome = ? WHERE started IS NOT NULL AND coalesce(outcome, '') = ''"
+        " RETURNING program",
+        (outcome,),
+    )
+    return tuple(sorted(program for (program,) in rows))
+
+
+def finished(
+    connection: sqlite3.Connection,
+    program: str,
+    seconds: float,
+    *,
+    count: int = 1,
+    best: float | None = None,
+) -> None:
+    """Whole cycles: the time of the last one, and the best of all of them."""
+    _row(connection, program)
+    connection.execute(
+        "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(best, ?4), ?4)"
+        " WHERE program = ?2",
+        (seconds, program, count, seconds if best is None else best),
+    )
+
+
+def proved(
+    connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str = ""
+) -> None:
+    """What proving found, and the cycle time that it reckons with; None: none."""
+    _row(connection, program)
+    connection.execute(
+        "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
+        (at or utc_now(), result, planned, program),
+    )
+
+
+def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
+    """Versions, count and record go with a program that gets another name.
+
+    Versions that are kept under the new name already stay, and then those of the old name stay too.
+    """
+    check_name(new)
+    connection.execute(
+        "UPDATE programs SET name = ?2 WHERE name = ?1 AND NOT EXISTS"
+        " (SELECT 1 FROM programs WHERE name = ?2)",
+        (old, new),
+    )
+    for table in ("runs", "part_counts"):
+        connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
+        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
+
+
+def _row(connection: sqlite3.Connection, program: str) -> None:
+    connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (program,))

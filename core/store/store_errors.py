@@ -1,0 +1,101 @@
+"""Why a store cannot be read or written: a full disk is called full, a locked file locked, damage damage."""
+
+from __future__ import annotations
+
+import errno
+import sqlite3
+import tempfile
+from enum import Enum
+from pathlib import Path
+
+# --- The one error of the store.
+
+
+class StoreError(Exception):
+    """The store cannot do what it was asked; the sentence says what, where and what to do.
+
+    ``passing``: what is in the way may go by itself, as a full disk or another program's lock does.
+    """
+
+    passing = False
+
+
+_ROOM = 64 * 1024  # bytes: more than SQLite's index needs
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_GONE = frozenset({errno.ENOENT, errno.ENOTDIR})
+_FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
+
+
+class Cause(Enum):
+    """What is wrong, and what to do about it."""
+
+    FULL = "the disk is full: {path} takes nothing more; make room on that disk"
+    LOCKED = "{path} is locked by another program; close that one, then try again"
+    FORBIDDEN = "{path} may not be used so by this user ({error}); check its rights and those of its folder"
+    GONE = "{path} is not there: look at the name, or put it back and start turndesk again"
+    FAILING = "{path}: the disk fails ({error}); check that it is there and sound"
+    DAMAGED = (
+        "{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE"
+    )
+    OTHER = "{path} cannot be used ({error}); it is left as it is"
+
+    def told(self, path: Path, error: object) -> StoreError:
+        """The sentence for it."""
+        made = StoreError(self.value.format(path=path, error=" ".join(str(error).split())))
+        made.passing = self in {Cause.FULL, Cause.LOCKED}
+        return made
+
+
+_BY_CODE = {
+    sqlite3.SQLITE_FULL: Cause.FULL,
+    sqlite3.SQLITE_BUSY: Cause.LOCKED,
+    sqlite3.SQLITE_LOCKED: Cause.LOCKED,
+    sqlite3.SQLITE_PERM: Cause.FORBIDDEN,
+    sqlite3.SQLITE_AUTH: Cause.FORBIDDEN,
+    sqlite3.SQLITE_READONLY: Cause.FORBIDDEN,
+    sqlite3.SQLITE_CANTOPEN: Cause.FORBIDDEN,
+    sqlite3.SQLITE_IOERR: Cause.FAILING,
+    sqlite3.SQLITE_CORRUPT: Cause.DAMAGED,
+    sqlite3.SQLITE_NOTADB: Cause.DAMAGED,
+}
+
+
+def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
+    """What has made SQLite or the system refuse; where that tells too little, the disk is looked at."""
+    if isinstance(error, OSError):
+        return _of_system(error)
+    code = getattr(error, "sqlite_errorcode", None)
+    if code == sqlite3.SQLITE_READONLY_DBMOVED:
+        return Cause.GONE
+    cause = _BY_CODE.get(code & 0xFF, Cause.OTHER) if isinstance(code, int) else Cause.OTHER
+    if cause in {Cause.FAILING, Cause.FORBIDDEN}:
+        tried = _trial(path.parent)
+        return _of_system(tried) if tried is not None else cause
+    return cause
+
+
+def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
+    """The sentence for what went wrong with the store in ``path``."""
+    said = error.strerror or str(error) if isinstance(error, OSError) else str(error)
+    return cause_of(path, error).told(path, said)
+
+
+def _trial(folder: Path) -> OSError | None:
+    """SQLite does not hand on what the system said; a file of our own beside the store asks it again."""
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(_ROOM))
+            file.flush()
+    except OSError as error:
+        return error
+    return None
+
+
+def _of_system(error: OSError) -> Cause:
+    if error.errno in _FULL:
+        return Cause.FULL
+    if error.errno in _FORBIDDEN:
+        return Cause.FORBIDDEN
+    if error.errno in _GONE:
+        return Cause.GONE
+    return Cause.FAILING if error.errno == errno.EIO else Cause.OTHER

@@ -1,0 +1,311 @@
+"""The one thread that writes. Whoever wants something stored posts it and need not wait for the disk."""
+
+from __future__ import annotations
+
+import queue
+import sqlite3
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple, TypeVar
+
+from core.store import event_log, program_records
+from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_rows import EventRow, utc_now
+
+# --- What is still to be written: events, part counts, runs and settings, held until the disk takes them.
+
+
+EVENTS = 20_000  # more than a week of them; beyond that the oldest go, and how many is told
+Deferred = Callable[[sqlite3.Connection], object]
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """How much waits in memory, and why."""
+
+    why: str
+    events: int = 0
+    parts: int = 0
+    others: int = 0
+    dropped: int = 0  # events for which there was no room in memory either
+    counts: Mapping[str, tuple[bool, int]] = field(
+        default_factory=dict
+    )  # by program: put to nought first, and so many more
+
+    @property
+    def words(self) -> str:
+        """What would be lost if the control ended now."""
+        counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
+        found = [f"{count} {_many(name, count)}" for count, name in counts if count]
+        return ", ".join(found) or "nothing"
+
+
+class _Parts(NamedTuple):
+    """Of one program: put to nought first, then so many more."""
+
+    reset: bool = False
+    more: int = 0
+    last: str = ""
+
+
+class _Cycles(NamedTuple):
+    """Of one program: whole cycles, and their times in seconds."""
+
+    made: int
+    best: float
+    latest: float
+
+
+class Unwritten:
+    """Takes what happens and writes all of it in one transaction. On the writer's thread alone.
+
+    Counts add up and of settings only the last stays, so that what is held does not grow with the days.
+    """
+
+    def __init__(self) -> None:
+        self._events: deque[EventRow] = deque()
+        self._dropped = 0
+        self._parts: dict[str, _Parts] = {}
+        self._cycles: dict[str, _Cycles] = {}
+        self._latest: dict[tuple[str, str], Deferred] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
+
+    def event(self, row: EventRow) -> None:
+        """One line of the log."""
+        if len(self._events) >= EVENTS:
+            self._events.popleft()
+            self._dropped += 1
+        self._events.append(row)
+
+    def count_parts(self, program: str, by: int) -> None:
+        """Parts made, or added and taken away by hand."""
+        before = self._parts.get(program, _Parts())
+        self._parts[program] = before._replace(more=before.more + by, last=utc_now())
+
+    def reset_parts(self, program: str) -> None:
+        """The count begins again at nought."""
+        self._parts[program] = _Parts(reset=True, last=utc_now())
+
+    def cycle(self, program: str, seconds: float) -> None:
+        """One whole cycle and its time."""
+        before = self._cycles.get(program, _Cycles(0, seconds, seconds))
+        self._cycles[program] = _Cycles(before.made + 1, min(before.best, seconds), seconds)
+
+    def latest(self, name: tuple[str, str], operation: Deferred) -> None:
+        """Of several under one name only the last counts."""
+        self._latest.pop(name, None)  # what comes last is written last
+        self._latest[name] = operation
+
+    def held(self, why: str) -> Held:
+        """How much there is of everything."""
+        parts = sum(abs(each.more) for each in self._parts.values())
+        others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
+        counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
+        return Held(why, len(self._events), parts, others, self._dropped, counts)
+
+    def write(self, connection: sqlite3.Connection) -> None:
+        """Everything, inside the caller's transaction. What the store would never take is told in its log."""
+        refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
+        if self._dropped:
+            refused.append(f"{self._dropped} events had no room while nothing could be written")
+        now = utc_now()
+        event_log.log(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
+
+    def clear(self) -> None:
+        """All of it is on the disk."""
+        self._events.clear()
+        self._dropped = 0
+        self._parts.clear()
+        self._cycles.clear()
+        self._latest.clear()
+
+    def _operations(self) -> list[Deferred]:
+        return [
+            *(_writing_parts(program, each) for program, each in self._parts.items()),
+            *(_writing_cycles(program, each) for program, each in self._cycles.items()),
+            *self._latest.values(),
+        ]
+
+
+def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
+    """Why it can never be written; a disk that takes nothing now raises, and all of it is tried again."""
+    try:
+        operation(connection)
+    except (StoreError, sqlite3.IntegrityError) as error:
+        return f"not kept: {error}"
+    return ""
+
+
+def _writing_parts(program: str, parts: _Parts) -> Deferred:
+    def write(connection: sqlite3.Connection) -> None:
+        if parts.reset:
+            program_records.reset_parts(connection, program)
+        if parts.more:
+            program_records.add_parts(connection, program, parts.more, parts.last)
+
+    return write
+
+
+def _writing_cycles(program: str, cycles: _Cycles) -> Deferred:
+    return lambda connection: program_records.finished(
+        connection, program, cycles.latest, count=cycles.made, best=cycles.best
+    )
+
+
+def _many(name: str, count: int) -> str:
+    if count == 1:
+        return name
+    return name.replace("entry", "entries") if name.endswith("entry") else f"{name}s"
+
+
+T = TypeVar("T")
+Operation = Callable[[sqlite3.Connection], T]
+Keeping = Callable[[Unwritten], None]
+AGAIN = 2.0  # s after which what the disk did not take is tried again
+
+
+class _Answering:
+    """Whatever an operation raises becomes its future's answer; the thread itself goes on."""
+
+    def __init__(self, fail: Callable[[Exception], None]) -> None:
+        self._fail = fail
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        if not isinstance(error, Exception):
+            return False
+        self._fail(error)
+        return True
+
+
+class StoreWriter:
+    """Runs operations one after the other, each in a transaction of its own.
+
+    The future of ``post`` is answered only when its transaction is on the disk. It answers with StoreError
+    when it is not; the store is then as before. What is given to ``keep`` nobody waits for: what the disk
+    does not take stays in memory and is written as soon as it does. ``trouble`` is the sentence of the last
+    write that failed, until one succeeds; ``held`` what waits, None while nothing has to.
+    """
+
+    def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
+        self.trouble = ""
+        self.held: Held | None = None
+        self._connection, self._path = connection, path
+        self._unwritten = Unwritten()
+        self._waiting: list[Future[None]] = []  # for what is not on the disk yet
+        self._queue: queue.SimpleQueue[Keeping | None] = queue.SimpleQueue()
+        self._closing = threading.Lock()
+        self._closed = False
+        self._thread = threading.Thread(target=self._work, name="store-writer", daemon=True)
+        self._thread.start()
+
+    def post(self, operation: Operation[T]) -> Future[T]:
+        """Queue ``operation``; it gets the connection inside a transaction. Raises StoreError once closed."""
+        future: Future[T] = Future()
+        self._put(lambda _unwritten: self._answer(operation, future))
+        return future
+
+    def keep(self, keeping: Keeping) -> Future[None]:
+        """Queue something that must be written, sooner or later. Raises StoreError once closed.
+
+        The future is answered when it is on the disk, and with StoreError when it is held for later.
+        """
+        future: Future[None] = Future()
+
+        def take(unwritten: Unwritten) -> None:
+            keeping(unwritten)
+            self._waiting.append(future)
+            if self._queue.empty():
+                self._write_held()
+
+        self._put(take)
+        return future
+
+    def _put(self, task: Keeping) -> None:
+        with self._closing:
+            if self._closed:
+                raise StoreError("the store is closed; nothing can be written any more")
+            self._queue.put(task)
+
+    def close(self) -> None:
+        """Writes what is queued, then ends the thread; ``held`` tells what could not be written."""
+        with self._closing:
+            if not self._closed:
+                self._closed = True
+                self._queue.put(None)
+        self._thread.join()
+
+    def _work(self) -> None:
+        while True:
+            try:
+                task = self._queue.get(timeout=AGAIN if self._unwritten else None)
+            except queue.Empty:
+                self._write_held()
+                continue
+            if task is None:
+                break
+            task(self._unwritten)
+        self._write_held()
+
+    def _write_held(self) -> None:
+        """All that waits, in one transaction: on the disk, or held as before."""
+        if not self._unwritten:
+            return
+
+        def fail(error: Exception) -> None:
+            told = self._failed(error)
+            self.held = self._unwritten.held(self.trouble or str(told))
+            self._tell(lambda future: future.set_exception(told))
+
+        with _Answering(fail):
+            self._connection.execute("BEGIN IMMEDIATE")
+            self._unwritten.write(self._connection)
+            self._connection.execute("COMMIT")
+            self._unwritten.clear()
+            self.trouble, self.held = "", None
+            self._tell(lambda future: future.set_result(None))
+
+    def _tell(self, answer: Callable[[Future[None]], None]) -> None:
+        waiting, self._waiting = self._waiting, []
+        for future in waiting:
+            if future.set_running_or_notify_cancel():
+                answer(future)
+
+    def _answer(self, operation: Operation[T], future: Future[T]) -> None:
+        self._write_held()  # what happened before it stands before it
+        if not future.set_running_or_notify_cancel():
+            return
+
+        def fail(error: Exception) -> None:
+            future.set_exception(self._failed(error))
+
+        with _Answering(fail):
+            self._connection.execute("BEGIN IMMEDIATE")
+            answer = operation(self._connection)
+            self._connection.execute("COMMIT")
+            self.trouble = self.trouble if self._unwritten else ""
+            future.set_result(answer)
+
+    def _failed(self, error: Exception) -> Exception:
+        """The transaction is taken back; a failure of the store becomes its sentence."""
+        with suppress(sqlite3.Error):
+            self._connection.rollback()
+        if not isinstance(error, sqlite3.Error):
+            return error
+        if isinstance(error, sqlite3.IntegrityError):
+            return StoreError(f"nothing was stored ({error})")  # nothing is wrong with the disk
+        self.trouble = str(why(self._path, error))
+        told = StoreError(f"nothing was stored: {self.trouble}, then enter it again")
+        return StoreError(self.trouble) if cause_of(self._path, error) is Cause.DAMAGED else told

@@ -1,0 +1,293 @@
+"""How a table of the machine file is declared, and the one reader that checks any of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from enum import Enum, StrEnum
+from math import inf
+from typing import NamedTuple, TypeGuard
+
+# --- Units of a machine file. The file writes its own; the model has mm, seconds, degrees, rpm.
+
+
+INCH = 25.4
+
+
+class Unit(StrEnum):
+    """What a number of the file means; the word is what a finding shows, ``len`` is the file's in or mm."""
+
+    PLAIN = ""
+    LENGTH = "len"
+    FEED = "len/min"
+    ACCEL = "len/s²"
+    MILLISECONDS = "ms"
+    SECONDS = "s"
+    PERCENT = "%"
+    DEGREES = "deg"
+    RPM = "rpm"
+    RPM_PER_SECOND = "rpm/s"
+    TURNS_PER_MINUTE = "rpm of C"
+    TURNS_PER_MINUTE_SECOND = "rpm/s of C"
+    HERTZ = "Hz"
+    DEGREES_PER_MINUTE = "deg/min"
+    DEGREES_PER_SECOND_SQUARED = "deg/s²"
+
+
+# A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
+_DIVISOR = {
+    Unit.FEED: 60.0,
+    Unit.DEGREES_PER_MINUTE: 60.0,
+    Unit.MILLISECONDS: 1000.0,
+    Unit.PERCENT: 100.0,
+}
+_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0}
+LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
+
+
+def to_model(value: float, unit: Unit, inch: bool) -> float:
+    """A number of the file in the model's unit."""
+    length = value * INCH if inch and unit in LENGTHS else value
+    return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
+
+
+def to_file(value: float, unit: Unit, inch: bool) -> float:
+    """A number of the model in the file's unit."""
+    number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
+    return number / INCH if inch and unit in LENGTHS else number
+
+
+def word(unit: Unit, inch: bool) -> str:
+    """The unit as the file's owner would write it, with a space before it."""
+    text = unit.value.replace("len", "in" if inch else "mm")
+    return f" {text}" if text else ""
+
+
+def shown(value: float, unit: Unit, inch: bool) -> str:
+    """A number of the model in the file's unit, for a sentence."""
+    return f"{to_file(value, unit, inch):.6g}{word(unit, inch)}"
+
+
+# --- What is wrong with a machine file: all of it at once, each with path, value and what was expected.
+
+
+class Finding(NamedTuple):
+    """One thing that is wrong: the key's path, the value as the file has it, what would be right."""
+
+    path: str
+    value: str
+    expected: str
+
+    def __str__(self) -> str:
+        where = f"{self.path} = {self.value}" if self.value else self.path
+        return f"{where}: {self.expected}"
+
+
+class MachineFileError(Exception):
+    """A machine file cannot be used. ``errors`` holds every finding, ``source`` the file's name."""
+
+    def __init__(self, errors: Sequence[Finding], source: str) -> None:
+        self.errors = tuple(errors)
+        self.source = source
+        super().__init__(f"{source}: " + "; ".join(str(finding) for finding in self.errors))
+
+
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
+Value = float | bool | str | Pair | Triple
+
+
+class Kind(Enum):
+    """The shapes a value may have; the text says it in a finding."""
+
+    NUMBER = "a number"
+    WHOLE = "a whole number"
+    FLAG = "true or false"
+    TEXT = "a text in quotes"
+    PAIR = "two numbers, [low, high]"
+    TRIPLE = "three numbers, [x, y, z]"
+    CHOICE = "one of"
+
+
+_HUGE = 10**300
+_NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE))
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One key: kind, unit, range in the model's unit, and the default; None: the file must say it.
+
+    ``derived``: what the file leaves out follows from its other values (``defaults.py``).
+    """
+
+    key: str
+    kind: Kind
+    unit: Unit = Unit.PLAIN
+    low: float = 0.0
+    high: float = 0.0
+    default: Value | None = None
+    choices: tuple[str | bool, ...] = ()
+    derived: bool = False
+
+
+class Values:
+    """Values by path in the model's units; lengths are known only once the file's unit is."""
+
+    def __init__(self, inch: bool | None) -> None:
+        self.inch = inch
+        self.found: dict[str, Value] = {}
+        self.wrong: set[str] = set()  # refused or missing: it draws no second finding elsewhere
+        self.left_out: dict[str, Field] = {}  # derived values that the file does not say
+
+    def has(self, *paths: str) -> bool:
+        return all(path in self.found for path in paths)
+
+    def said(self, path: str) -> bool:
+        """Whether the file says it, rightly or wrongly."""
+        return path in self.found or path in self.wrong
+
+    def number(self, path: str) -> float:
+        value = self.found[path]
+        if isinstance(value, str | tuple):
+            raise TypeError(f"{path} holds no number")
+        return float(value)
+
+    def flag(self, path: str) -> bool:
+        return self.found[path] is True
+
+    def text(self, path: str) -> str:
+        return str(self.found[path])
+
+    def pair(self, path: str) -> Pair:
+        value = self.found[path]
+        if not isinstance(value, tuple) or len(value) != 2:
+            raise TypeError(f"{path} holds no pair")
+        return value
+
+    def triple(self, path: str) -> Triple:
+        value = self.found[path]
+        if not isinstance(value, tuple) or len(value) != 3:
+            raise TypeError(f"{path} holds no triple")
+        return value
+
+
+def written(value: object) -> str:
+    """A value the way TOML writes it, short enough for a sentence."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def joined(path: str, key: str) -> str:
+    return f"{path}.{key}" if path else key
+
+
+def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[Finding]:
+    """A finding for every key nobody reads, with the nearest one that is read."""
+    found = []
+    for key in table:
+        if key not in known:
+            near = get_close_matches(key, known, n=1)
+            hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}"
+            found.append(Finding(joined(path, key), "", f"unknown key; {hint}"))
+    return found
+
+
+def read_table(
+    table: object, fields: tuple[Field, ...], path: str, values: Values, children: tuple[str, ...] = ()
+) -> list[Finding]:
+    """Puts every good value of ``table`` into ``values`` under ``path``; returns what is wrong.
+
+    ``children`` are tables inside that somebody else reads.
+    """
+    if not isinstance(table, dict):
+        return [Finding(path, written(table), f"expected a table, [{path}]")]
+    findings = unknown_keys(table, [*(field.key for field in fields), *children], path)
+    for field in fields:
+        place = joined(path, field.key)
+        raw = table.get(field.key)
+        if raw is None:
+            findings += _default(field, place, values)
+        elif problem := _problem(raw, field, values.inch):
+            values.wrong.add(place)
+            findings.append(Finding(place, written(raw), f"expected {problem}"))
+        elif values.inch is not None or field.unit not in LENGTHS:
+            values.found[place] = _converted(raw, field, bool(values.inch))
+    return findings
+
+
+def _default(field: Field, place: str, values: Values) -> list[Finding]:
+    if field.derived:
+        values.left_out[place] = field
+        return []
+    if field.default is None:
+        values.wrong.add(place)
+        return [missing(place, field, values.inch)]
+    values.found[place] = field.default
+    return []
+
+
+def missing(place: str, field: Field, inch: bool | None) -> Finding:
+    """The finding about a value that the file has to say and does not."""
+    return Finding(place, "", f"missing; expected {_expected(field, inch)}")
+
+
+def _number(raw: object) -> TypeGuard[int | float]:
+    return isinstance(raw, int | float) and not isinstance(raw, bool)
+
+
+def _shape_is_right(raw: object, field: Field) -> bool:
+    match field.kind:
+        case Kind.NUMBER:
+            return _number(raw)
+        case Kind.WHOLE:
+            return isinstance(raw, int) and not isinstance(raw, bool)
+        case Kind.FLAG:
+            return isinstance(raw, bool)
+        case Kind.TEXT:
+            return isinstance(raw, str) and bool(raw.strip())
+        case Kind.PAIR | Kind.TRIPLE:
+            count = 2 if field.kind is Kind.PAIR else 3
+            return isinstance(raw, list) and len(raw) == count and all(_number(part) for part in raw)
+        case Kind.CHOICE:
+            return any(raw is choice or (isinstance(raw, str) and raw == choice) for choice in field.choices)
+
+
+def _parts(raw: object) -> list[float]:
+    """The numbers in a value: none, one or two. A whole number too large for a float counts as endless."""
+    numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
+    return [float(part) if abs(part) < _HUGE else inf for part in numbers]
+
+
+def _problem(raw: object, field: Field, inch: bool | None) -> str:
+    """What was expected instead of ``raw``, or nothing. NaN fails every range."""
+    if not _shape_is_right(raw, field):
+        return _expected(field, inch)
+    if field.kind not in _NUMERIC or inch is None:
+        return ""
+    # A bound written in inches is no binary number.
+    low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
+    parts = _parts(raw)
+    inside = all(low <= to_model(part, field.unit, inch) <= high for part in parts)
+    ordered = field.kind is Kind.TRIPLE or parts == sorted(set(parts))
+    return "" if inside and ordered else _expected(field, inch)
+
+
+def _converted(raw: object, field: Field, inch: bool) -> Value:
+    if isinstance(raw, bool | str):
+        return raw
+    numbers = [to_model(part, field.unit, inch) for part in _parts(raw)]
+    if field.kind is Kind.TRIPLE:
+        return numbers[0], numbers[1], numbers[2]
+    return (numbers[0], numbers[1]) if field.kind is Kind.PAIR else numbers[0]
+
+
+def _expected(field: Field, inch: bool | None) -> str:
+    if field.kind is Kind.CHOICE:
+        return "one of " + ", ".join(written(choice) for choice in field.choices)
+    if field.kind not in _NUMERIC or inch is None:
+        return str(field.kind.value)
+    low = f"{to_file(field.low, field.unit, inch):.6g}"
+    return f"{field.kind.value}, {low}…{shown(field.high, field.unit, inch)}"

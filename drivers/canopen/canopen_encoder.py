@@ -1,0 +1,183 @@
+"""An encoder on the spindle: a node of CiA 406, or the second encoder input of a drive. It only measures."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import canopen
+from canopen.emcy import EmcyError
+
+from core.ports import DriverError, Fault
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_bus import Bus, Node
+from drivers.canopen.canopen_config import EncoderConfig
+from drivers.canopen.canopen_setup import Setup, watching
+from drivers.canopen.cia402_drives import SYNCS, Drive402
+
+_WINDOW = 0.1  # s over which speed is measured: one reading more or less late is then a per cent of it
+_FASTER = 2.0  # times the highest speed: no spindle does that, a broken wire does
+_SCALED = 0x04  # bit 2 of 0x6000: the node counts 0x6001 a turn, not its own resolution
+_WORD = 2**32
+
+
+class CanEncoder:
+    """Speed and angle by counts at each SYNC. ``trouble`` stays until ``clear_fault``."""
+
+    def __init__(self, config: EncoderConfig, bus: Bus, drive: Drive402 | None) -> None:
+        self._config = config
+        self._bus = bus
+        self._drive = drive
+        if drive is None:
+            self.node = Node(config.node, od.dictionary(config.name, config.eds, od.encoder_objects))
+            bus.add_node(self.node)
+            self._setup = Setup(bus, self.node, config.name)
+        else:
+            self.node, self._setup = drive.node, drive.setup
+        self.trouble: Fault | str = ""
+        self.missing = 0
+        self._range = _WORD  # counts after which it goes round
+        self._raw: int | None = None
+        self._counts = 0
+        self._asked = self._heard = bus.clock.now()
+        self._reads: deque[tuple[float, float]] = deque()  # time of the SYNC and turns
+
+    def connect(self) -> None:
+        """Check and map it. Raises DriverError with what does not fit."""
+        setup, config = self._setup, self._config
+        if self._drive is None:
+            setup.pre_operational()
+            setup.demand_profile(406)
+            setup.write_all((*watching(self._bus.config), *config.objects))
+            self._check_counts()
+            self.node.nmt.add_heartbeat_callback(self._heartbeat)
+            self.node.emcy.add_callback(self._emergency)
+        entry = config.index | config.sub << 16
+        setup.transmit(1 if self._drive is None else 3, self._told, (entry, 32))
+        self._raw, self.missing, self.trouble = None, 0, ""
+        self._heard = self._bus.clock.now()
+        self._reads.clear()
+
+    def operational(self) -> None:
+        """NMT start; a drive is started by whoever owns it."""
+        if self._drive is None:
+            self.node.nmt.state = "OPERATIONAL"
+
+    def asked(self) -> None:
+        """A SYNC goes out now."""
+        self.missing, self._asked = self.missing + 1, self._bus.clock.now()
+
+    def look(self) -> None:
+        """Supervise."""
+        silent = self._bus.clock.now() - self._heard
+        if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
+            self._wrong(f"no heartbeat for {silent:.2f} s; check cable and power")
+        elif self.missing > SYNCS:
+            self._wrong("it does not answer SYNC; check cable and power")
+
+    def clear_fault(self) -> None:
+        """Configure it anew where something was wrong; without it the slides go on, the spindle does not."""
+        if not self.trouble:
+            return
+        try:
+            self.connect()
+            self.operational()
+        except DriverError as error:
+            self.trouble = Fault(f"spindle encoder {error}", "spindle-encoder")
+
+    def speed(self) -> float:
+        """rpm, signed, over the last tenth of a second."""
+        if len(self._reads) < 2:
+            return 0.0
+        (t0, turns0), (t1, turns1) = self._reads[0], self._reads[-1]
+        return 60.0 * (turns1 - turns0) / (t1 - t0)
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) of the last SYNC that was answered; None before."""
+        return self._reads[-1] if self._reads else None
+
+    def fault(self) -> str:
+        """Why it is not to be believed; empty when it is."""
+        return self._bus.trouble or self.trouble
+
+    def _check_counts(self) -> None:
+        """Does it count what the machine file says, and not go round between two answers? DriverError."""
+        setup, config = self._setup, self._config
+        scaled = setup.read(od.ENCODER_MODE) & _SCALED
+        counts = setup.read(od.ENCODER_STEPS if scaled else od.ENCODER_RESOLUTION)
+        if counts != abs(config.counts_per_rev):
+            where = "6001:0" if scaled else "6501:0"
+            raise DriverError(
+                f"{config.name}: the encoder has {counts} counts a turn (object {where}),"
+                f" spindle.encoder.counts_per_rev says {abs(config.counts_per_rev)}"
+            )
+        turns = setup.read(od.ENCODER_TURNS)
+        self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
+        between = (SYNCS + 1) * self._bus.config.sync * config.rpm_max / 60.0  # turns, at most
+        if self._range < 2.0 * between * counts:
+            raise DriverError(
+                f"{config.name}: the encoder begins anew after {self._range / counts:.3g} turns, and the"
+                f" spindle may make {between:.2g} between two answers; it needs {2.0 * between:.3g} or more"
+            )
+
+    def _told(self, map_: canopen.pdo.PdoMap) -> None:
+        raw = int.from_bytes(map_.data[:4], "little") % self._range
+        last, self._raw = self._raw, raw
+        now, self.missing = self._asked, 0
+        if last is None:
+            last = raw
+        half = self._range // 2
+        moved = (raw - last + half) % self._range - half
+        self._counts += moved
+        if self._reads:
+            self._doubt(abs(moved), now - self._reads[-1][0])
+        if not self._reads or now > self._reads[-1][0]:
+            self._reads.append((now, self._counts / self._config.counts_per_rev))
+        while self._reads[-1][0] - self._reads[0][0] > _WINDOW:
+            self._reads.popleft()
+
+    def _doubt(self, moved: int, passed: float) -> None:
+        turns = moved / abs(self._config.counts_per_rev)
+        most = _FASTER * self._config.rpm_max / 60.0 * max(passed, self._bus.config.sync)
+        if turns > most:
+            self._wrong(f"its counts leap by {turns:.2f} turns at once; check cable and shield")
+
+    def _heartbeat(self, state: int) -> None:
+        self._heard = self._bus.clock.now()
+        if state == 0:
+            self._wrong("it has restarted")
+
+    def _emergency(self, error: EmcyError) -> None:
+        if error.code & 0xFF00:
+            self._wrong(f"{error.get_desc().lower() or 'device error'} (EMCY {error.code:04X})")
+
+    def _wrong(self, what: str) -> None:
+        self.trouble = self.trouble or Fault(
+            f"spindle encoder {self._config.name}: {what}", "spindle-encoder"
+        )
+
+
+class MeasuredSpindle:
+    """``core.ports.Spindle`` of a bus that measures and turns nothing: an inverter takes its place."""
+
+    def __init__(self, encoder: CanEncoder) -> None:
+        self._encoder = encoder
+
+    def run(self, rpm: float) -> None:
+        """There is nothing to turn. Raises DriverError, unless asked to stop."""
+        if rpm:
+            raise DriverError("there is no spindle drive on this bus; see spindle.driver", "spindle-off")
+
+    def coast(self) -> None:
+        """Nothing is turned here."""
+
+    def speed(self) -> float:
+        """rpm, signed."""
+        return self._encoder.speed()
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns); None before the first answer."""
+        return self._encoder.angle()
+
+    def fault(self) -> str:
+        """Why it is not to be believed."""
+        return self._encoder.fault()

@@ -1,0 +1,192 @@
+"""Homing by the drives themselves: an axis on its switch, the spindle on its index or where it stands."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+from core.ports import DriverError, Fault
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACHED, DriveState
+from drivers.canopen.cia402_drives import Drive402, DrivenAxis
+
+_FIRST = 0.1  # s in which "target reached" may still be that of the last move
+_MODE = 0.5  # s for a change of mode
+_SPARE = 10.0  # s beyond the way at homing speed
+_STILL = 0.1  # s without a count before a drive that was halted counts as standing
+
+
+class _Step(Enum):
+    MODE = "waits for the homing mode"
+    RUN = "looks for the switch"
+    HALT = "brakes, given up"
+    BACK = "waits for the old mode"
+    DONE = "back in its old mode"
+
+
+class Homing:
+    """One axis. ``step`` once a tick; ``done`` in the end, found or given up, or ``trouble``."""
+
+    def __init__(self, axis: DrivenAxis, back: int, now: float) -> None:
+        self.axis = axis
+        self.config = axis.config
+        self._drive = axis.drive
+        self._back = back
+        self._step = _Step.MODE
+        self._since = now
+        self.trouble: Fault | str = ""
+        self._write()
+        self._drive.mode = HM
+
+    @property
+    def done(self) -> bool:
+        """The axis stands, and is back in its mode."""
+        return self._step is _Step.DONE
+
+    def step(self, now: float) -> None:
+        """Look at the status word, and go on."""
+        drive, waited = self._drive, now - self._since
+        if self._step is _Step.MODE and drive.shown_mode == HM:
+            drive.extra |= NEW
+            self._enter(_Step.RUN, now)
+        elif self._step is _Step.RUN:
+            self._look(now, waited)
+        elif self._step is _Step.HALT:
+            self._brake(now, waited)
+        elif self._step is _Step.BACK and drive.shown_mode == self._back:
+            self._enter(_Step.DONE, now)
+        elif self._step in {_Step.MODE, _Step.BACK} and waited > _MODE:
+            self._fail(f"the drive stays in mode {drive.shown_mode}")
+
+    def give_up(self) -> None:
+        """Halt: the drive brakes. Its mode changes back once it stands; some refuse that in motion."""
+        self._drive.extra = self._drive.extra & ~NEW | HALT
+        self._step = _Step.HALT
+
+    def _brake(self, now: float, waited: float) -> None:
+        if self.axis.moving or not self._braking:  # the first look after giving up begins the wait
+            self._since, self._braking = now, True
+        elif waited > _STILL:
+            self._leave(now)
+
+    def _leave(self, now: float) -> None:
+        self._drive.extra &= ~(NEW | HALT)
+        self._drive.mode = self._back
+        self._enter(_Step.BACK, now)
+
+    def _look(self, now: float, waited: float) -> None:
+        status = self._drive.status
+        if status & BIT_13:
+            self._fail("the drive reports a homing error; check switch, method and direction")
+        elif waited > _FIRST and status & BIT_12 and status & REACHED:
+            self._leave(now)
+        elif waited > self._longest():
+            self._fail("no switch was found within the travel")
+
+    def _longest(self) -> float:
+        low, high = self.config.travel or (0.0, 360.0)
+        return 2.0 * (high - low) / self.config.home_speed + _SPARE
+
+    def _enter(self, step: _Step, now: float) -> None:
+        self._step, self._since = step, now
+
+    def _fail(self, why: str) -> None:
+        self._drive.extra &= ~NEW
+        self.trouble = Fault(f"{self.config.name}: homing has failed: {why}", "homing")
+
+    def _write(self) -> None:
+        """Method, speeds, acceleration and offset. Raises DriverError."""
+        config, count = self.config, self.config.count
+        slow = config.home_latch or config.home_speed / 10.0
+        for index, sub, value in (
+            (od.HOME_METHOD, 0, config.home_method),
+            (od.HOME_SPEEDS, 1, round(config.home_speed / count)),
+            (od.HOME_SPEEDS, 2, round(slow / count)),
+            (od.HOME_ACCEL, 0, round(config.amax / count)),
+            (od.HOME_OFFSET, 0, round(config.home_offset / count)),
+        ):
+            self._drive.setup.write(index, sub, value)
+
+    _braking = False
+
+
+# --- Where the spindle's drive is: homed on its index or where it stands, followed through all its turning.
+
+
+_CHANGE = 2.0  # s for a change of mode with power
+_SEARCH = 15.0  # s for the index
+_FIRST_REFERENCE = 0.1  # s in which "target reached" may still be that of the last move
+_HERE = (37, 35)  # homing methods "where it stands", the new code and the old one
+_INDEX = 34  # homing method: the index, turning forward
+SEARCH_RPM = 60
+
+
+class Referencing:
+    """One homing of the drive: begun, then asked in every round whether it is done."""
+
+    def __init__(self, drive: Drive402) -> None:
+        self._drive = drive
+        self._limit = 0.0
+        self._why = ""
+        self._since = 0.0
+        self._told = False  # the drive was told to begin
+
+    def index(self, now: float) -> None:
+        """Look for the index. Raises DriverError."""
+        self._limit, self._why = _SEARCH, "no index was found within a turn"
+        self._drive.setup.write(od.HOME_METHOD, 0, _INDEX)
+        self._begin(0, now)
+
+    def here(self, place: int, now: float) -> None:
+        """It counts ``place`` where it stands. Raises DriverError."""
+        self._limit, self._why = _CHANGE, "it does not take its position"
+        try:
+            self._drive.setup.write(od.HOME_METHOD, 0, _HERE[0])
+        except DriverError:
+            self._drive.setup.write(od.HOME_METHOD, 0, _HERE[1])
+        self._begin(place, now)
+
+    def done(self, now: float) -> bool:
+        """Whether it is over. Raises DriverError where it has failed."""
+        drive, waited = self._drive, now - self._since
+        if not self._told:
+            if drive.enabled and drive.shown_mode == HM:
+                drive.extra, self._told, self._since = NEW, True, now
+            elif waited > _CHANGE:
+                raise DriverError(
+                    f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}", "c-coupling"
+                )
+            return False
+        if drive.status & BIT_13 or waited > self._limit:
+            raise DriverError(f"C: {self._why}", "c-coupling")
+        done = waited > _FIRST_REFERENCE and bool(drive.status & BIT_12 and drive.status & REACHED)
+        if done:
+            drive.extra = 0
+        return done
+
+    def _begin(self, place: int, now: float) -> None:
+        write, drive = self._drive.setup.write, self._drive
+        write(od.HOME_SPEEDS, 1, SEARCH_RPM)
+        write(od.HOME_SPEEDS, 2, SEARCH_RPM // 10)
+        write(od.HOME_OFFSET, 0, place)
+        drive.mode, drive.goal, drive.extra, drive.target = HM, DriveState.ENABLED, 0, 0
+        self._told, self._since = False, now
+
+
+class Phase:
+    """Counts from the index within a turn; ``counts`` None: it was never looked for."""
+
+    def __init__(self, per_turn: int) -> None:
+        self._per_turn = per_turn
+        self._last = 0
+        self.counts: int | None = None
+
+    def found(self, position: int) -> None:
+        """The drive counts from its index now."""
+        self.counts, self._last = position % self._per_turn, position
+
+    def follow(self, position: int, *, leaps: bool) -> None:
+        """Once a round. ``leaps``: the counter is being set, and the spindle does not turn."""
+        moved = (position - self._last + 2**31) % 2**32 - 2**31
+        self._last = position
+        if self.counts is not None and not leaps:
+            self.counts = (self.counts + moved) % self._per_turn

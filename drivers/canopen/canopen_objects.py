@@ -1,0 +1,189 @@
+"""Objects of CiA 301, 401, 402 and 406 that are used, a PVT queue after maxon's EPOS2, states of CiA 402."""
+
+from __future__ import annotations
+
+import configparser
+from collections.abc import Callable
+from enum import StrEnum
+
+from canopen import ObjectDictionary, import_od
+from canopen.objectdictionary import ODArray, ODRecord, ODVariable
+from canopen.objectdictionary import datatypes as kind
+
+from core.ports import DriverError
+
+U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
+I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
+
+DEVICE_TYPE, ERROR_REGISTER = 0x1000, 0x1001
+WATCHED, HEARTBEAT, IDENTITY, ON_ERROR = 0x1016, 0x1017, 0x1018, 0x1029
+ABORT_OPTION, QUICK_OPTION, FAULT_OPTION = 0x6007, 0x605A, 0x605E
+CONTROL, STATUS, MODE, MODE_SHOWN = 0x6040, 0x6041, 0x6060, 0x6061
+POSITION, WINDOW, WINDOW_TIME, VELOCITY = 0x6064, 0x6065, 0x6066, 0x606C
+TARGET, HOME_OFFSET, LIMITS = 0x607A, 0x607C, 0x607D
+PROFILE_SPEED, PROFILE_ACCEL, PROFILE_DECEL, QUICK_DECEL = 0x6081, 0x6083, 0x6084, 0x6085
+HOME_METHOD, HOME_SPEEDS, HOME_ACCEL = 0x6098, 0x6099, 0x609A
+IP_SUBMODE, BUFFER, FOLLOWING = 0x60C0, 0x60C4, 0x60F4
+INPUTS_402, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60FF, 0x6502
+PVT_RECORD, PVT_STATUS = 0x20C1, 0x20C4  # vendor's: one record, and state of the queue
+DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
+ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0x6002, 0x6004
+ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
+ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
+
+MAY_LACK = {WINDOW_TIME: "no 6066, time-out of the following error: it faults as soon as the window is left"}
+"""Written where a node has them, and what it means where it has not: nothing that is less safe."""
+
+_VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (HEARTBEAT, U16))
+_ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
+_VARIABLES_402 = (
+    *((ABORT_OPTION, I16), (QUICK_OPTION, I16), (FAULT_OPTION, I16)),
+    *((CONTROL, U16), (STATUS, U16), (MODE, I8), (MODE_SHOWN, I8)),
+    *((POSITION, I32), (WINDOW, U32), (WINDOW_TIME, U16), (VELOCITY, I32)),
+    *((TARGET, I32), (HOME_OFFSET, I32), (PROFILE_SPEED, U32), (PROFILE_ACCEL, U32)),
+    *((PROFILE_DECEL, U32), (QUICK_DECEL, U32), (HOME_METHOD, I8), (HOME_ACCEL, U32)),
+    *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32)),
+    *((SUPPORTED, U32), (PVT_RECORD, U64)),
+)
+_VARIABLES_406 = (
+    *((ENCODER_MODE, U16), (ENCODER_STEPS, U32), (ENCODER_RANGE, U32), (ENCODER_POSITION, U32)),
+    *((ENCODER_RESOLUTION, U32), (ENCODER_TURNS, U16)),
+)
+_ARRAYS_402 = (
+    *((LIMITS, I32, 2), (HOME_SPEEDS, U32, 2), (BUFFER, U32, 6), (PVT_STATUS, U16, 3)),
+    (SECOND_POSITION, I32, 2),
+)
+_ARRAYS_401 = (
+    *((DIGITAL_IN, U8, 8), (DIGITAL_OUT, U8, 8), (ERROR_MODE, U8, 8), (ERROR_VALUE, U8, 8)),
+    *((ANALOG_IN, I16, 4), (ANALOG_DELTA, U32, 4)),
+)
+
+
+def drive_objects() -> ObjectDictionary:
+    """The dictionary of a drive without an EDS file."""
+    return _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
+
+
+def module_objects() -> ObjectDictionary:
+    """The dictionary of an I/O module without an EDS file."""
+    return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
+
+
+def encoder_objects() -> ObjectDictionary:
+    """The dictionary of an encoder without an EDS file."""
+    return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
+
+
+def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
+    """That of the EDS file, or the standard one. Raises DriverError naming the node and the file."""
+    if not eds:
+        return standard()
+    try:
+        found: ObjectDictionary = import_od(eds)
+    except (OSError, ValueError, KeyError, configparser.Error) as error:
+        reason = str(error).splitlines()[0]
+        raise DriverError(f"{name}: the EDS file {eds} cannot be read: {reason}") from error
+    return found
+
+
+def _dictionary(
+    variables: tuple[tuple[int, int], ...], arrays: tuple[tuple[int, int, int], ...]
+) -> ObjectDictionary:
+    found = ObjectDictionary()
+    for index, data_type in variables:
+        found.add_object(_variable(index, 0, data_type))
+    for index, data_type, length in arrays:
+        array = ODArray(f"{index:04X}", index)
+        array.add_member(_variable(index, 0, U8, length))
+        for sub in range(1, length + 1):
+            array.add_member(_variable(index, sub, data_type))
+        found.add_object(array)
+    for number in range(4):
+        for base in (0x1400, 0x1800):
+            found.add_object(_communication(base + number))
+        for base in (0x1600, 0x1A00):
+            found.add_object(_mapping(base + number))
+    return found
+
+
+def _variable(index: int, sub: int, data_type: int, value: int = 0) -> ODVariable:
+    variable = ODVariable(f"{index:04X}:{sub}", index, sub)
+    variable.data_type = data_type
+    variable.access_type = "rw"
+    variable.default = value
+    return variable
+
+
+def _communication(index: int) -> ODRecord:
+    record = ODRecord(f"{index:04X}", index)
+    for sub, data_type in ((0, U8), (1, U32), (2, U8), (3, U16), (5, U16)):
+        record.add_member(_variable(index, sub, data_type))
+    return record
+
+
+def _mapping(index: int) -> ODArray:
+    array = ODArray(f"{index:04X}", index)
+    for sub in range(9):
+        array.add_member(_variable(index, sub, U32 if sub else U8))
+    return array
+
+
+# --- The state machine of CiA 402: what a status word means, and the next control word on the way to a goal.
+
+
+class DriveState(StrEnum):
+    """States as the profile names them."""
+
+    NOT_READY = "not ready to switch on"
+    OFF = "switch on disabled"
+    READY = "ready to switch on"
+    ON = "switched on"
+    ENABLED = "operation enabled"
+    QUICK_STOP = "quick stop active"
+    REACTING = "fault reaction active"
+    FAULT = "fault"
+
+
+_MASKS = (
+    (0x4F, 0x00, DriveState.NOT_READY),
+    (0x4F, 0x40, DriveState.OFF),
+    (0x6F, 0x21, DriveState.READY),
+    (0x6F, 0x23, DriveState.ON),
+    (0x6F, 0x27, DriveState.ENABLED),
+    (0x6F, 0x07, DriveState.QUICK_STOP),
+    (0x4F, 0x0F, DriveState.REACTING),
+    (0x4F, 0x08, DriveState.FAULT),
+)
+SHUTDOWN, SWITCH_ON, ENABLE, DISABLE, QUICK, RESET = 0x06, 0x07, 0x0F, 0x00, 0x02, 0x80
+NEW, AT_ONCE, HALT = 0x10, 0x20, 0x100  # bit 4 new set-point, homing start or interpolation active; 5; 8
+REACHED, LIMITED, BIT_12, BIT_13 = 0x400, 0x800, 0x1000, 0x2000
+PP, PV, HM, IP, CSP = 1, 3, 6, 7, 8
+MODE_BITS = {PP: 0x01, PV: 0x04, HM: 0x20, IP: 0x40, CSP: 0x80}  # in 0x6502
+
+_LADDER = {
+    DriveState.OFF: SHUTDOWN,
+    DriveState.READY: SWITCH_ON,
+    DriveState.ON: ENABLE,
+    DriveState.ENABLED: ENABLE,
+    DriveState.QUICK_STOP: DISABLE,  # leaving it upwards would be a restart out of an emergency
+}
+
+
+def state_of(word: int) -> DriveState:
+    """What a status word says; a word that fits no mask is a drive that is not ready."""
+    for mask, bits, state in _MASKS:
+        if word & mask == bits:
+            return state
+    return DriveState.NOT_READY
+
+
+def towards_enabled(state: DriveState) -> int:
+    """The control word of the next step up. A fault is never left here: only its reset does that."""
+    return _LADDER.get(state, DISABLE)
+
+
+def reset_step(state: DriveState, last: int) -> int:
+    """The control word that clears a fault: the edge of bit 7, and then nothing that energises."""
+    if state is DriveState.FAULT and last != RESET:
+        return RESET
+    return DISABLE

@@ -1,0 +1,90 @@
+"""Who is on the bus: each node of the machine file asked what it is. Nothing is switched, nothing is set."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from core.ports import Clock, DriverError
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_bus import Bus, Node
+from drivers.canopen.canopen_config import CanopenConfig
+from drivers.canopen.canopen_objects import MODE_BITS
+from drivers.canopen.canopen_setup import Setup
+
+_PATIENCE = 0.4  # s for an answer; nodes of a bus that works need milliseconds
+_IDENTITY = (("vendor", 1), ("product", 2), ("revision", 3), ("serial", 4))
+_SHORT = {1: "PP", 3: "PV", 6: "homing", 7: "IP", 8: "CSP"}
+
+
+class Answer(NamedTuple):
+    """What one node says; ``trouble`` is empty where it is what the machine file says it is."""
+
+    name: str
+    node: int
+    trouble: str
+    detail: str
+
+
+class _Quiet(Bus):
+    """Without our heartbeat: nodes begin to watch it with the first that they hear, and miss it later."""
+
+    def beat(self, *, at_once: bool = False) -> None:
+        """Nothing goes out."""
+
+
+def survey(config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> list[Answer]:
+    """Every node of the machine file, in its order; ``idle`` as for the bus.
+
+    Raises DriverError where the bus cannot be opened.
+    """
+    bus = _Quiet(config.bus, clock, idle)
+    try:
+        return [_asked(bus, *wanted) for wanted in _wanted(config)]
+    finally:
+        bus.close()
+
+
+def _wanted(config: CanopenConfig) -> Iterator[tuple[str, int, int]]:
+    """(name, node, profile)."""
+    yield from ((axis.name, axis.node, 402) for axis in config.axes if axis.node)
+    if config.spindle is not None:
+        yield "spindle", config.spindle.node, 402
+    if config.encoder is not None and config.encoder.node:
+        yield config.encoder.name, config.encoder.node, 406
+    yield from ((module.name, module.node, 401) for module in config.modules)
+
+
+def _asked(bus: Bus, name: str, number: int, profile: int) -> Answer:
+    objects = {402: od.drive_objects, 406: od.encoder_objects}.get(profile, od.module_objects)
+    node = Node(number, objects())
+    bus.add_node(node)
+    node.sdo.RESPONSE_TIMEOUT = _PATIENCE
+    setup = Setup(bus, node, name)
+    try:
+        setup.demand_profile(profile)
+    except DriverError as error:
+        return Answer(name, number, str(error), "")
+    said = [_shown(word, setup, sub) for word, sub in _IDENTITY]
+    return Answer(
+        name, number, "", ", ".join([f"CiA {profile}", *filter(None, said), *_modes(setup, profile)])
+    )
+
+
+def _shown(word: str, setup: Setup, sub: int) -> str:
+    value = _read(setup, od.IDENTITY, sub)
+    return f"{word} {value:08X}h" if value else ""
+
+
+def _modes(setup: Setup, profile: int) -> Iterator[str]:
+    offered = _read(setup, od.SUPPORTED, 0) if profile == 402 else 0
+    if offered:
+        yield "modes " + " ".join(_SHORT[mode] for mode, bit in MODE_BITS.items() if offered & bit)
+
+
+def _read(setup: Setup, index: int, sub: int) -> int:
+    """An object that a node may have or not."""
+    try:
+        return setup.read(index, sub)
+    except DriverError:
+        return 0

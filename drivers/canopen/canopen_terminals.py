@@ -1,0 +1,269 @@
+"""Inputs, outputs, pots and the operator station by the names of the machine file, on CiA 401 modules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import canopen
+
+from core.ports import DriverError, Fault, StationState
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_bus import Bus, Node
+from drivers.canopen.canopen_config import CanopenConfig, ModuleConfig, Terminal
+from drivers.canopen.canopen_setup import Setup, watching
+from drivers.canopen.cia402_drives import Drive402
+
+# --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
+
+
+BYTES = 8  # of inputs, and of outputs, that one PDO carries
+_WORDS = 4  # analog ones
+_DELTA = 328  # 1 % of an analog word
+_AGAIN = 0.1  # s after which outputs are sent although nothing has changed
+_SYNCS = 3
+_KINDS = ((od.DIGITAL_IN, "bytes of inputs"), (od.DIGITAL_OUT, "bytes of outputs"), (od.ANALOG_IN, "pots"))
+
+
+class Module401:
+    """One module, of the size that it says it has: at most what its first PDOs carry."""
+
+    def __init__(self, config: ModuleConfig, bus: Bus) -> None:
+        self.config = config
+        self._bus = bus
+        self.node = Node(config.node, od.dictionary(config.name, config.eds, od.module_objects))
+        bus.add_node(self.node)
+        self.setup = Setup(bus, self.node, config.name)
+        self.inputs = bytearray(BYTES)
+        self.outputs = bytearray(BYTES)
+        self.analog = [0] * _WORDS
+        self.counting: set[int] = set()  # sub-indices of analog words that count: each count matters
+        self.sizes = {od.DIGITAL_IN: 0, od.DIGITAL_OUT: 0, od.ANALOG_IN: 0}
+        self.heard = self.answered = bus.clock.now()
+        self.missing = 0
+        self.trouble: Fault | str = ""
+        self._sent = (-1e9, b"")
+
+    def measure(self, needed: Iterable[Terminal]) -> None:
+        """Ask how much there is of it. Raises DriverError for a terminal that it does not have."""
+        self.setup.pre_operational()
+        self.setup.demand_profile(401)
+        most = {od.DIGITAL_IN: BYTES, od.DIGITAL_OUT: BYTES, od.ANALOG_IN: _WORDS}
+        self.sizes = {index: min(self.setup.entries(index), most[index]) for index in most}
+        for where in needed:
+            if where.sub > self.sizes[where.index]:
+                has = ", ".join(f"{self.sizes[index]} {what}" for index, what in _KINDS)
+                raise DriverError(
+                    f"{self.config.name}: the module has {has}, so there is no {where.index:04X}.{where.sub};"
+                    " check its terminals in the machine file"
+                )
+
+    def connect(self, safe: bytes, keep: bytes) -> None:
+        """Configure: what the outputs do when this computer falls silent; the mapping. DriverError."""
+        inputs, outputs, words = self.sizes.values()
+        for i in range(outputs):
+            self.setup.write(od.ERROR_MODE, i + 1, 0xFF & ~keep[i])  # 1: takes the value, 0: keeps its state
+            self.setup.write(od.ERROR_VALUE, i + 1, safe[i])
+        if words:
+            self.setup.write(od.ANALOG_EVENTS, 0, 1)
+        for i in range(words):
+            self.setup.write(od.ANALOG_DELTA, i + 1, 1 if i + 1 in self.counting else _DELTA)
+        self.setup.write_all((*watching(self._bus.config), *self.config.objects))
+        if outputs:
+            self.setup.receive(1, *_entries(od.DIGITAL_OUT, outputs, 8), at_once=True)
+        if inputs:
+            self.setup.transmit(1, self._digital, *_entries(od.DIGITAL_IN, inputs, 8))
+        if words:
+            self.setup.transmit(2, self._words, *_entries(od.ANALOG_IN, words, 16))
+        self.node.nmt.add_heartbeat_callback(self._heartbeat)
+        self.outputs[:outputs] = bytes(self.setup.read(od.DIGITAL_OUT, i + 1) for i in range(outputs))
+        self.heard, self.missing, self.trouble = self._bus.clock.now(), 0, ""
+
+    def asked(self) -> None:
+        """A SYNC is about to go out; who has nothing to send is known by its heartbeat alone."""
+        if self.sizes[od.DIGITAL_IN] or self.sizes[od.ANALOG_IN]:
+            self.missing += 1
+
+    def send(self, now: float) -> None:
+        """The outputs, when they have changed or it is time to say them again."""
+        when, what = self._sent
+        outputs = bytes(self.outputs[: self.sizes[od.DIGITAL_OUT]])
+        if outputs and (outputs != what or now - when >= _AGAIN):
+            self._bus.send_message(0x200 + self.config.node, outputs)
+            self._sent = (now, outputs)
+
+    def look(self, patience: float) -> None:
+        """Supervise; ``trouble`` stays until the module is connected anew."""
+        name, silent = self.config.name, self._bus.clock.now() - self.heard
+        if silent > patience:
+            self._wrong(f"{name}: no heartbeat of the I/O module for {silent:.2f} s; check cable and power")
+        elif self.missing > _SYNCS:
+            self._wrong(f"{name}: the I/O module does not answer SYNC; check cable and power")
+
+    def _digital(self, map_: canopen.pdo.PdoMap) -> None:
+        self.inputs[: len(map_.data)] = map_.data
+        self.missing, self.answered = 0, self._bus.clock.now()
+
+    def _words(self, map_: canopen.pdo.PdoMap) -> None:
+        for i in range(min(_WORDS, len(map_.data) // 2)):
+            self.analog[i] = int.from_bytes(map_.data[2 * i : 2 * i + 2], "little", signed=True)
+        if not self.sizes[od.DIGITAL_IN]:
+            self.missing, self.answered = 0, self._bus.clock.now()
+
+    def _heartbeat(self, state: int) -> None:
+        self.heard = self._bus.clock.now()
+        if not (self.sizes[od.DIGITAL_IN] or self.sizes[od.ANALOG_IN]):
+            self.answered = self.heard
+        if state == 0:
+            self._wrong(f"{self.config.name}: the I/O module has restarted; its outputs have fallen")
+
+    def _wrong(self, what: str) -> None:
+        self.trouble = self.trouble or Fault(what, "io-silent")
+
+
+def _entries(index: int, count: int, bits: int) -> list[tuple[int, int]]:
+    return [(index | sub << 16, bits) for sub in range(1, count + 1)]
+
+
+_FULL = 32767.0  # of an analog word
+
+
+class CanopenIO:
+    """``core.ports.DigitalIO`` and ``Station`` on the modules, by the names of the machine file."""
+
+    def __init__(self, config: CanopenConfig, bus: Bus, drives: Mapping[str, Drive402]) -> None:
+        self._config = config
+        self._bus = bus
+        self._drives = drives
+        self.modules = {module.name: Module401(module, bus) for module in config.modules}
+        wheel = config.pots.get("handwheel")
+        if wheel is not None:
+            self._module(wheel.terminal).counting.add(wheel.terminal.sub)
+        self._written: dict[str, bool] = {}
+        self._wheel: tuple[int, int] | None = None  # its counter at the last look, and what was counted
+
+    def connect(self) -> None:
+        """Configure every module with the safe states of its outputs. Raises DriverError."""
+        for name, module in self.modules.items():
+            module.measure(where for where in self._needed() if where.node == name)
+            safe, keep = bytearray(BYTES), bytearray(BYTES)
+            for output in self._config.outputs.values():
+                where = output.terminal
+                if where.node == name:
+                    table = keep if output.safe is None else safe
+                    table[where.sub - 1] |= (output.safe is not False) << where.bit
+            module.connect(bytes(safe), bytes(keep))
+        for name, output in self._config.outputs.items():
+            self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
+
+    def _needed(self) -> Iterator[Terminal]:
+        """All terminals of the machine file, those of drives too."""
+        config = self._config
+        yield from config.inputs.values()
+        yield from (output.terminal for output in config.outputs.values())
+        yield from (pot.terminal for pot in config.pots.values())
+
+    def operational(self) -> None:
+        """NMT start of the modules."""
+        for module in self.modules.values():
+            module.node.nmt.state = "OPERATIONAL"
+
+    def tick(self, now: float) -> str:
+        """Supervise and send; what is wrong with a module, or nothing."""
+        trouble: str = ""
+        for module in self.modules.values():
+            module.look(3.0 * self._bus.config.heartbeat)
+            trouble = trouble or module.trouble
+            module.send(now)
+        return trouble
+
+    def clear_fault(self) -> None:
+        """Configure anew what has restarted or was silent. Raises DriverError."""
+        if any(module.trouble for module in self.modules.values()):
+            self.connect()
+            self.operational()
+
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs by name; active is True."""
+        return {name: self._read(where) for name, where in self._config.inputs.items()}
+
+    def outputs(self) -> Mapping[str, bool]:
+        """All outputs as last written."""
+        return dict(self._written)
+
+    def write(self, name: str, on: bool) -> None:
+        """Switch one output; it goes out with the next tick. Raises DriverError."""
+        output = self._config.outputs.get(name)
+        if output is None:
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+        module = self._module(output.terminal)
+        if on and (self._bus.trouble or module.trouble):
+            raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}", "output")
+        self._switch(name, output.terminal, on)
+
+    def _switch(self, name: str, where: Terminal, on: bool) -> None:
+        module = self._module(where)
+        raw = on is not where.active_low
+        byte = module.outputs[where.sub - 1] & ~(1 << where.bit)
+        module.outputs[where.sub - 1] = byte | raw << where.bit
+        self._written[name] = on
+
+    def safe(self) -> None:
+        """Every output to its safe state; at once, as far as the bus is alive."""
+        for name, output in self._config.outputs.items():
+            if output.safe is not None:
+                self._switch(name, output.terminal, output.safe)
+        if not self._bus.trouble:
+            for module in self.modules.values():
+                module.send(self._bus.clock.now())
+
+    def snapshot(self) -> StationState:
+        """The operator station as its inputs have it; its age is that of the oldest module."""
+        inputs = self.inputs()
+        now = self._bus.clock.now()
+        age = max((now - module.answered for module in self.modules.values()), default=0.0)
+        pot = self._config.pots.get("spindle_pot")
+        auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
+        return StationState(
+            estop=inputs.get("estop", False),
+            start=inputs.get("start", False),
+            hold=inputs.get("hold", False),
+            spindle_auto=inputs.get("spindle_auto", auto),
+            spindle_pot=self._pot("spindle_pot"),
+            feed_pot=self._pot("feed_pot"),
+            handwheel=self._turned(),
+            age=age,
+        )
+
+    def _turned(self) -> int:
+        """The wheel's counter goes round after 16 bits; nobody turns half of that between two looks."""
+        wheel = self._config.pots.get("handwheel")
+        if wheel is None:
+            return 0
+        raw = self._module(wheel.terminal).analog[wheel.terminal.sub - 1]
+        if self._wheel is None:
+            self._wheel = (raw, 0)
+        last, count = self._wheel
+        count += (raw - last + 0x8000) % 0x10000 - 0x8000
+        self._wheel = (raw, count)
+        return count
+
+    def _pot(self, name: str) -> float:
+        pot = self._config.pots.get(name)
+        if pot is None:
+            return 1.0
+        raw = self._module(pot.terminal).analog[pot.terminal.sub - 1]
+        return pot.low + (pot.high - pot.low) * min(max(raw / _FULL, 0.0), 1.0)
+
+    def _read(self, where: Terminal) -> bool:
+        if where.node in self.modules:
+            raw = self._bit(self.modules[where.node].inputs, where)
+        else:
+            raw = bool(self._drives[where.node].inputs >> where.bit & 1)
+        return raw is not where.active_low
+
+    def _module(self, where: Terminal) -> Module401:
+        return self.modules[where.node]
+
+    @staticmethod
+    def _bit(data: bytearray, where: Terminal) -> bool:
+        return bool(data[where.sub - 1] >> where.bit & 1)

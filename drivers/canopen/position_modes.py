@@ -1,0 +1,198 @@
+"""How setpoints reach the drives: the common shape, profile position (PP), and cyclic positions (CSP)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from core.ports import DriverError, Fault, Segments
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, CSP, NEW, PP
+from drivers.canopen.cia402_drives import Drive402
+from drivers.setpoint_queue import SetpointQueue
+
+
+class Fed(Protocol):
+    """One axis with its drive; an axis without one has none."""
+
+    config: AxisConfig
+    drive: Drive402
+
+
+class Follower(Protocol):
+    """Keeps the drives on the queue. ``trouble`` says why it cannot, ``warning`` what was not exact."""
+
+    mode: int
+    trouble: str
+    urgent: bool  # the commands must go out in this tick
+    off_path: float  # counts, the worst deviation that could not be avoided
+
+    @property
+    def playing(self) -> bool:
+        """The drives still have something of it to do."""
+        ...
+
+    def check(self, segments: Segments) -> None:
+        """Refuse, by DriverError, what these drives cannot follow."""
+        ...
+
+    def braked(self, at: float) -> None:
+        """The queue brakes from ``at`` on, without anything spliced."""
+        ...
+
+    def feed(self, now: float) -> None:
+        """Once a tick, before the commands go out."""
+        ...
+
+    def prepare(self) -> None:
+        """Before the drives get power."""
+        ...
+
+    def abort(self) -> None:
+        """The drives stop by themselves: nothing is fed any more."""
+        ...
+
+
+class CspFollower:
+    """One setpoint a SYNC, straight from this process: experimental, good for a bench."""
+
+    mode = CSP
+
+    def __init__(
+        self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue, period: float
+    ) -> None:
+        self._axes = axes
+        self._indices = indices
+        self._queue = queue
+        self._period = period
+        self.trouble = ""
+        self.urgent = False
+        self.off_path = 0.0
+
+    @property
+    def playing(self) -> bool:
+        """Each setpoint is alone."""
+        return False
+
+    def check(self, segments: Segments) -> None:
+        """Any path will do."""
+
+    def braked(self, at: float) -> None:
+        """Taken up by the next feed."""
+
+    def prepare(self) -> None:
+        """The drives begin where they stand."""
+        for axis in self._axes:
+            axis.drive.target = axis.drive.position
+
+    def abort(self) -> None:
+        """Stay where the drives are."""
+        self.trouble = ""
+
+    def feed(self, now: float) -> None:
+        """What shall be reached at the SYNC after the next."""
+        p, _ = self._queue.demand_at(now + self._period)
+        for axis, index in zip(self._axes, self._indices, strict=True):
+            axis.drive.target = round(p[index] / axis.config.count)
+
+
+# --- Profile position: the drive plans. For jogging and single moves where a drive has no queue for paths.
+
+
+_ANSWER = 0.2  # s in which a drive must have taken a target
+
+
+class ProfiledFollower:
+    """Gives each drive the end of the queue as its target, with the speeds of the path there.
+
+    Only straight moves: each drive plans for itself, and on a line all of them keep in step.
+    """
+
+    mode = PP
+
+    def __init__(self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue) -> None:
+        self._axes = axes
+        self._indices = indices
+        self._queue = queue
+        self._pending: tuple[float, Segments | None] | None = None
+        self._told = -1.0
+        self.trouble: Fault | str = ""
+        self.urgent = False
+        self.off_path = 0.0
+
+    @property
+    def playing(self) -> bool:
+        """A target waits, or was not acknowledged yet."""
+        return self._pending is not None or self._told >= 0.0
+
+    def check(self, segments: Segments) -> None:
+        """Refuse what is no straight line."""
+        dt = segments.dt[-1]
+        end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
+        way = end - segments.p[0]
+        length = float(np.linalg.norm(way))
+        along = way / length if length > 0.0 else way
+        off = segments.p - segments.p[0]
+        off = off - np.outer(off @ along, along)
+        limit = max(axis.config.count for axis in self._axes)
+        if float(np.abs(off).max()) > limit:
+            raise DriverError(
+                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "pvt"',
+                "drive-limits",
+            )
+        self._pending = (float(segments.t[0]), segments)
+
+    def braked(self, at: float) -> None:
+        """The end of the queue is another now, and is reached by braking as hard as the axes may."""
+        self._pending = (at, None)
+
+    def prepare(self) -> None:
+        """The drives begin where they stand."""
+        self._pending = None
+        for axis in self._axes:
+            axis.drive.target = axis.drive.position
+
+    def abort(self) -> None:
+        """No target is waiting any more."""
+        self._pending, self._told, self.trouble = None, -1.0, ""
+        for axis in self._axes:
+            axis.drive.extra &= ~(NEW | AT_ONCE)
+
+    def feed(self, now: float) -> None:
+        """Hand a target over when its time has come, then see that it was taken."""
+        if self._told >= 0.0:
+            self._finish(now)
+        elif self._pending is not None and now >= self._pending[0]:
+            _, segments = self._pending
+            self._pending, self._told = None, now
+            self._hand_over(segments)
+
+    def _hand_over(self, segments: Segments | None) -> None:
+        rest, _ = self._queue.demand_at(float("inf"))
+        self.urgent = True
+        for axis, i in zip(self._axes, self._indices, strict=True):
+            count, drive = axis.config.count, axis.drive
+            accel = axis.config.amax / count
+            if segments is not None:
+                speed = max(float(np.abs(segments.v[:, i]).max()) / count, 1.0)
+                accel = max(float(np.abs(segments.a[:, i]).max()) / count, 1.0)
+                drive.setup.write(od.PROFILE_SPEED, 0, round(speed))
+            drive.setup.write(od.PROFILE_ACCEL, 0, round(accel))
+            drive.setup.write(od.PROFILE_DECEL, 0, round(accel))
+            drive.target = round(rest[i] / count)
+            drive.extra |= NEW | AT_ONCE
+
+    def _finish(self, now: float) -> None:
+        """The drives acknowledge by bit 12; then bit 4 may fall."""
+        late = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
+        if not late:
+            self._told = -1.0
+            for axis in self._axes:
+                axis.drive.extra &= ~(NEW | AT_ONCE)
+        elif now - self._told > _ANSWER:
+            self.trouble = self.trouble or Fault(
+                f"{', '.join(late)}: the drive did not take its target", "axis"
+            )

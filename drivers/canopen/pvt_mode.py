@@ -1,0 +1,225 @@
+"""Interpolated position: setpoints as PVT records through the queue in each drive, which ends at rest."""
+
+from __future__ import annotations
+
+import logging
+import struct
+from collections import deque
+from collections.abc import Callable, Sequence
+from enum import Enum
+from typing import NamedTuple
+
+from core.ports import Fault, Segments, at_rest
+from drivers.canopen.canopen_objects import BIT_12, IP, NEW
+from drivers.canopen.position_modes import Fed
+from drivers.setpoint_queue import SetpointQueue
+
+# --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
+
+
+Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # t → positions, velocities
+
+SHORTEST = 2  # ms; shorter ones would fill queue and bus
+_LOOKS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
+_RECORD = struct.Struct("<i")
+_VELOCITY_TOP = 2**23 - 1
+
+
+class Span(NamedTuple):
+    """How long the stretch from ``t`` on lasts, and how far its cubic leaves the path, in counts."""
+
+    ms: int
+    off: float
+
+
+def span(demand: Demand, t: float, longest: int, counts: Sequence[float]) -> Span:
+    """The longest stretch of at most ``longest`` ms whose cubic keeps within half a count of the path.
+
+    ``counts`` is the length of a count by axis. The shortest stretch is taken whatever it costs.
+    """
+    ms = longest
+    while True:
+        off = deviation(demand, t, 0.001 * ms, counts)
+        if off <= 0.5 or ms <= SHORTEST:
+            return Span(ms, off)
+        ms = max(ms // 2, SHORTEST)
+
+
+def deviation(demand: Demand, t: float, dt: float, counts: Sequence[float]) -> float:
+    """How far the cubic from ``t`` to ``t + dt`` leaves the path, in counts of the worst axis."""
+    p0, v0 = demand(t)
+    p1, v1 = demand(t + dt)
+    worst = 0.0
+    for s in _LOOKS:
+        p, _ = demand(t + s * dt)
+        for i, count in enumerate(counts):
+            cubic = hermite(p0[i], v0[i], p1[i], v1[i], dt, s)
+            worst = max(worst, abs(cubic - p[i]) / count)
+    return worst
+
+
+def hermite(p0: float, v0: float, p1: float, v1: float, dt: float, s: float) -> float:
+    """The cubic through two points with their velocities, at fraction ``s`` of ``dt``."""
+    r = 1.0 - s
+    return r * r * (p0 + s * (2.0 * p0 + v0 * dt)) + s * s * (p1 + r * (2.0 * p1 - v1 * dt))
+
+
+def packed(ms: int, velocity: float, position: float) -> bytes:
+    """One record of EPOS2: position in the low 32 bits, then velocity in 24, then the time in 8.
+
+    Raises ValueError for what does not fit.
+    """
+    speed, place = round(velocity), round(position)
+    if abs(speed) > _VELOCITY_TOP or not 0 <= ms <= 255:
+        raise ValueError(f"a record of {ms} ms and {speed} counts/s does not fit the drive")
+    return _RECORD.pack(place) + (speed & 0xFFFFFF).to_bytes(3, "little") + bytes([ms])
+
+
+def unpacked(data: bytes) -> tuple[int, int, int]:
+    """Milliseconds, velocity and position of a record."""
+    speed = int.from_bytes(data[4:7], "little")
+    return data[7], speed - 0x1000000 if speed & 0x800000 else speed, _RECORD.unpack(data[:4])[0]
+
+
+_log = logging.getLogger(__name__)
+
+_DRY = "the drives' queues ran dry: this computer was away for too long"
+LOW_WATER = 2  # records; with fewer a drive faults
+MOST = 56  # records in a drive that takes 64
+RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
+_LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
+_BEGIN = 0.3  # s in which a drive must have begun
+_PREFILL = 2  # records of rest before the queues are let go
+
+
+class _Phase(Enum):
+    REST = "the drives' queues are empty"
+    PLAYING = "they play"
+    ENDING = "the last point is in them"
+
+
+class PvtFollower:
+    """Records of whole milliseconds, all axes at the same points, a fixed time ahead and never empty."""
+
+    mode = IP
+
+    def __init__(
+        self, axes: Sequence[Fed], indices: Sequence[int], queue: SetpointQueue, ahead: float, record: float
+    ) -> None:
+        self._axes = axes
+        self._indices = indices  # of these axes in the queue
+        self._queue = queue
+        self._ahead = ahead - RESTART
+        self._longest = round(1000 * record)
+        self._phase = _Phase.REST
+        self.front = 0.0  # time of the next point
+        self._begun = 0.0
+        self._sent: deque[float] = deque()  # when each record that was sent is over
+        self.trouble: Fault | str = ""
+        self.urgent = False
+        self.off_path = 0.0
+        self.lowest = float("inf")  # s, the least that was ever queued in the drives
+
+    @property
+    def playing(self) -> bool:
+        """The drives' queues are running."""
+        return self._phase is not _Phase.REST
+
+    def check(self, segments: Segments) -> None:
+        """Any path will do."""
+
+    def braked(self, at: float) -> None:
+        """Taken up by the next feed."""
+
+    def prepare(self) -> None:
+        """Empty queues, so that nothing old is played."""
+        for axis in self._axes:
+            for clear in (0, 1):
+                axis.drive.setup.write(0x60C4, 6, clear)
+        self.abort()
+
+    def abort(self) -> None:
+        """Nothing is fed any more."""
+        self._phase, self.trouble = _Phase.REST, ""
+        self._sent.clear()
+        for axis in self._axes:
+            axis.drive.extra &= ~NEW
+
+    def feed(self, now: float) -> None:
+        """Begin, go on or end."""
+        if self._phase is _Phase.REST and not at_rest(self._queue.horizon(now), now):
+            self._begin(now)
+        elif self._phase is _Phase.PLAYING:
+            self._watch(now)
+            self._top_up(now)
+        elif self._phase is _Phase.ENDING and now > self.front and not self._active(any):
+            self.abort()
+            self.urgent = True  # bit 4 must be seen to fall before it rises again
+
+    def _begin(self, now: float) -> None:
+        """Points of rest, then all drives at one SYNC: the first point is where the slides stand."""
+        if any(self._queue.demand_at(now)[1]):
+            self.trouble = Fault(
+                "the drives were late to begin; the path has begun without them", "queue-dry"
+            )
+            return
+        self.front = self._begun = now
+        for _ in range(_PREFILL):
+            self._push(self._longest)
+        for axis in self._axes:
+            axis.drive.extra |= NEW
+        self._phase, self.urgent = _Phase.PLAYING, True  # the time of that SYNC is the first point's
+        self._top_up(now)
+
+    def _watch(self, now: float) -> None:
+        left = self.front - now
+        if left < LOW_WATER * 0.001 * self._longest and left < self.lowest:
+            _log.warning("the drives' queues are low: %.0f ms left", 1000 * left)
+        self.lowest = min(self.lowest, left)
+        if left <= 0.0:
+            self.trouble = self.trouble or Fault(_DRY, "queue-dry")
+        if now - self._begun > _BEGIN and not self._active(all):
+            names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
+            why = f"{', '.join(names)}: the drive's queue has stopped playing"
+            self.trouble = self.trouble or Fault(why, "queue-dry")
+
+    def _top_up(self, now: float) -> None:
+        rests = at_rest(self._queue.horizon(now), min(self.front, now))
+        if rests and now - self._queue.horizon(-1e9) > _LINGER:
+            self._push(0)
+            self._phase = _Phase.ENDING
+            return
+        while self._in_drives(now) < MOST:
+            stretch = span(self._demand, self.front, self._longest, self._counts())
+            if self.front + 0.001 * stretch.ms > now + self._ahead:
+                return
+            self.off_path = max(self.off_path, stretch.off)
+            self._push(stretch.ms)
+
+    def _in_drives(self, now: float) -> int:
+        """Records that have not been played."""
+        while self._sent and self._sent[0] < now:
+            self._sent.popleft()
+        return len(self._sent)
+
+    def _push(self, ms: int) -> None:
+        positions, velocities = self._demand(self.front)
+        for axis, p, v in zip(self._axes, positions, velocities, strict=True):
+            speed = v / axis.config.count
+            if axis.config.counts_per_rev:
+                speed *= 60.0 / axis.config.counts_per_rev
+            axis.drive.push(packed(ms, speed, p / axis.config.count))
+        self.front += 0.001 * ms
+        self._sent.append(self.front)
+
+    def _counts(self) -> list[float]:
+        """Lengths of a count: C may have joined."""
+        return [axis.config.count for axis in self._axes]
+
+    def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        p, v = self._queue.demand_at(t)
+        return tuple([p[i] for i in self._indices]), tuple([v[i] for i in self._indices])
+
+    def _active(self, some: object) -> bool:
+        active = [bool(axis.drive.status & BIT_12) for axis in self._axes]
+        return all(active) if some is all else any(active)

@@ -1,0 +1,394 @@
+"""The control's side of the feeder: ``core.ports`` as messages; a feeder that is gone is a fault."""
+
+from __future__ import annotations
+
+import logging
+import queue
+from collections.abc import Mapping
+from typing import Protocol
+
+from core.ports import (
+    AxisSample,
+    Cam,
+    Clock,
+    DriverError,
+    Fault,
+    Geared,
+    MachinePorts,
+    Segments,
+    StationState,
+    Stop,
+    Trip,
+    TrippedError,
+)
+from drivers.feeder.feeder_messages import (
+    NOTHING,
+    VERSION,
+    Message,
+    cam_message,
+    fault_of,
+    floats,
+    items,
+    number,
+    rows,
+    text,
+    texts,
+)
+
+_log = logging.getLogger(__name__)
+_FRESH = 0.002  # s for which one look serves all ports
+
+
+class Link(Protocol):
+    """Carries a request to the feeder and its answer back."""
+
+    def ask(self, message: Message) -> Message:
+        """Raises DriverError when there is no answer."""
+        ...
+
+    def hang_up(self) -> None:
+        """From any thread: nothing is said or heard any more."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class Line:
+    """Requests in words, and the last look at everything."""
+
+    def __init__(self, link: Link, clock: Clock) -> None:
+        self._link = link
+        self.clock = clock
+        self.lost: Fault | str = ""  # why the feeder cannot be asked any more
+        self._state: Mapping[str, object] = {}
+        self._at = -1.0
+        self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
+
+    def ask(self, message: Message) -> Message:
+        """The answer. Raises DriverError with what the drivers refuse, or that the feeder is gone."""
+        if self.lost:
+            raise DriverError(self.lost)
+        try:
+            answer = self._link.ask(message)
+        except DriverError as error:
+            self.lost = error.fault
+            raise
+        if "tripped" in answer.head:
+            raise TrippedError(text(answer.head, "tripped"))
+        if why := fault_of(answer.head, "error", "driver"):
+            raise DriverError(why)
+        return answer
+
+    def order(self, what: str, **values: object) -> None:
+        """Something that changes the machine; the next look is a new one."""
+        self._at = -1.0
+        self.ask(Message({"do": "do", "what": what, **values}, NOTHING))
+
+    def post(self, message: Message) -> None:
+        """From any thread: goes out before the next look, unanswered."""
+        self._posted.put(message)
+
+    def look(self, *, anew: bool = False) -> Mapping[str, object]:
+        """Everything that can be seen, at most 2 ms old; the last known when the feeder is gone."""
+        now = self.clock.now()
+        if not self.lost and (anew or not 0.0 <= now - self._at < _FRESH):
+            try:
+                while not self._posted.empty():
+                    self.ask(self._posted.get())
+                self._state = self.ask(Message({"do": "look"}, NOTHING)).head
+            except DriverError as error:
+                self.lost = self.lost or error.fault
+            self._at = now
+            for note in texts(self._state.get("notes")):
+                _log.warning("feeder: %s", note)
+        return self._state
+
+    def hang_up(self) -> None:
+        """From any thread: the feeder sees that its control is gone, and stops the machine for good."""
+        self._link.hang_up()
+
+    def close(self) -> None:
+        """End it."""
+        self._link.close()
+
+
+# --- ``core.ports`` through the feeder: each call a message.
+
+
+class FeederAxes:
+    """``core.ports.AxisSink``."""
+
+    def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
+        self._line = line
+        self.axes = tuple(texts(hello.get("axes")))
+        self.commit = number(hello, "commit")
+
+    def now(self) -> float:
+        """The machine's clock: the same in both processes."""
+        return self._line.clock.now()
+
+    def horizon(self) -> float:
+        """End of what is queued."""
+        return number(self._line.ask(Message({"do": "horizon"}, NOTHING)).head, "value")
+
+    def splice(self, segments: Segments) -> None:
+        """Queue setpoints. Raises DriverError as the port says."""
+        self._line.ask(Message({"do": "splice"}, rows(segments)))
+
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Queued position and velocity at ``t``."""
+        numbers = self._line.ask(Message({"do": "demand", "t": t}, NOTHING)).numbers.tolist()
+        half = len(self.axes)
+        return tuple(numbers[:half]), tuple(numbers[half:])
+
+    def sample(self) -> AxisSample:
+        """The axes now. A feeder that is gone is a fault of all of them."""
+        raw = self._line.look(anew=True).get("sample")
+        shown = raw if isinstance(raw, dict) else {}
+        none = (0.0,) * len(self.axes)
+        return AxisSample(
+            t=number(shown, "t") if shown else self.now(),
+            demand=floats(shown.get("demand", none)),
+            actual=floats(shown.get("actual", none)),
+            following_error=floats(shown.get("following_error", none)),
+            enabled=shown.get("enabled") is True and not self._line.lost,
+            homed=tuple(one is True for one in items(shown.get("homed"))) or (False,) * len(self.axes),
+            moving=shown.get("moving") is True and not self._line.lost,
+            fault=self._line.lost or fault_of(shown, "fault", "axis"),
+        )
+
+    def enable(self, on: bool) -> None:
+        """Drives on or off."""
+        self._line.order("enable", on=on)
+
+    def stop(self, how: Stop) -> None:
+        """The drives' own stop."""
+        self._line.order("stop", how=how.value)
+
+    def home(self, axis: str) -> None:
+        """Start homing."""
+        self._line.order("home", name=axis)
+
+    def clear_fault(self) -> None:
+        """Forget the fault."""
+        self._line.order("clear_fault")
+
+
+class FeederGear:
+    """``core.ports.Gear``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def mesh(self, cam: Cam) -> None:
+        """Follow the spindle. Raises DriverError."""
+        self._line.ask(cam_message(cam))
+
+    def geared(self) -> Geared | None:
+        """Where on its cam the feeder's driver is."""
+        shown = self._line.look(anew=True).get("geared")
+        return None if shown is None or self._line.lost else Geared(*floats(shown))
+
+
+class FeederSpindle:
+    """``core.ports.Spindle``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed."""
+        self._line.order("run", rpm=rpm)
+
+    def coast(self) -> None:
+        """No torque."""
+        self._line.order("coast")
+
+    def speed(self) -> float:
+        """Measured rpm; what is not known counts as standing."""
+        shown = self._line.look()
+        return number(shown, "speed") if shown else 0.0
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) from the encoder, or None without one."""
+        shown = self._line.look().get("angle")
+        if shown is None:
+            return None
+        t, turns = floats(shown)
+        return t, turns
+
+    def fault(self) -> str:
+        """What is wrong with it."""
+        return self._line.lost or fault_of(self._line.look(), "spindle", "spindle")
+
+
+class FeederLock:
+    """``core.ports.SpindleHold``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        """Ask for the spindle's drive as C, or let it turn again."""
+        self._line.order("hold", on=on, orient=orient)
+
+    def held(self) -> bool:
+        """Whether C may move."""
+        return self._line.look().get("held") is True and not self._line.lost
+
+
+class FeederIO:
+    """``core.ports.DigitalIO``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs by name."""
+        return _flags(self._line.look().get("inputs"))
+
+    def outputs(self) -> Mapping[str, bool]:
+        """All outputs as last written."""
+        return _flags(self._line.look().get("outputs"))
+
+    def write(self, name: str, on: bool) -> None:
+        """Switch one output."""
+        self._line.order("write", name=name, on=on)
+
+    def safe(self) -> None:
+        """Every output to its safe state."""
+        self._line.order("safe")
+
+
+class FeederStation:
+    """``core.ports.Station``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def snapshot(self) -> StationState:
+        """The station now; without the feeder nothing is pressed, and it has been silent for ever."""
+        shown = self._line.look().get("station")
+        if self._line.lost or not isinstance(shown, dict):
+            return StationState(age=float("inf"))
+        return StationState(**shown)
+
+
+class FeederTrips:
+    """``core.ports.Tripping``."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def tripped(self) -> Trip | None:
+        """What the feeder has switched off since it was last acknowledged."""
+        shown = self._line.look().get("trip")
+        if shown is None:
+            return None
+        count, away, spindle, outputs = items(shown)
+        (away_s,) = floats([away])
+        (number_,) = floats([count])
+        return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)))
+
+    def acknowledge(self, trip: Trip) -> None:
+        """It may go on: the control knows."""
+        self._line.order("acknowledge", number=trip.number)
+
+
+def feeder_ports(line: Line) -> MachinePorts:
+    """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
+    hello = line.ask(Message({"do": "hello"}, NOTHING)).head
+    if hello.get("version") != VERSION:
+        raise DriverError(
+            f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control, and"
+            " start it again once its installation is whole"
+        )
+    return MachinePorts(
+        clock=line.clock,
+        axes=FeederAxes(line, hello),
+        spindle=FeederSpindle(line),
+        io=FeederIO(line),
+        station=FeederStation(line),
+        warnings=tuple(texts(hello.get("warnings"))),
+        gear=FeederGear(line) if hello.get("gear") is True else None,
+        lock=FeederLock(line) if hello.get("lock") is True else None,
+        trips=FeederTrips(line),
+        halt=line.hang_up,
+    )
+
+
+def _flags(value: object) -> dict[str, bool]:
+    return {name: on is True for name, on in value.items()} if isinstance(value, dict) else {}
+
+
+# --- The hands at a station that lives in the feeder: the simulated one, or the one on the screen.
+
+
+class FeederHands:
+    """Any thread may act; it goes out with the executor's next look, and nobody waits."""
+
+    def __init__(self, line: Line) -> None:
+        self._line = line
+
+    def press_left(self) -> None:
+        """Left palm button down."""
+        self._do("press_left")
+
+    def release_left(self) -> None:
+        """Left palm button up."""
+        self._do("release_left")
+
+    def press_right(self) -> None:
+        """Right palm button down."""
+        self._do("press_right")
+
+    def release_right(self) -> None:
+        """Right palm button up."""
+        self._do("release_right")
+
+    def press_hold(self) -> None:
+        """Feed hold button down."""
+        self._do("press_hold")
+
+    def release_hold(self) -> None:
+        """Feed hold button up."""
+        self._do("release_hold")
+
+    def press_estop(self) -> None:
+        """Hit the E-stop."""
+        self._do("press_estop")
+
+    def release_estop(self) -> None:
+        """Twist it free."""
+        self._do("release_estop")
+
+    def set_spindle_auto(self, auto: bool) -> None:
+        """Spindle AUTO/OFF."""
+        self._do("set_spindle_auto", auto)
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """Spindle override, 0…1."""
+        self._do("set_spindle_pot", fraction)
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Feed override, 0…1.5."""
+        self._do("set_feed_pot", fraction)
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the handwheel on by so many counts, signed."""
+        self._do("turn_handwheel", counts)
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Make an input of a simulated machine true or false, at once. Raises DriverError."""
+        self._line.ask(_act("set_input", name, on))
+
+    def break_something(self, what: str, *values: object) -> None:
+        """A fault of the simulated machine, by the name of its method."""
+        self._do(what, *values)
+
+    def _do(self, name: str, *values: object) -> None:
+        self._line.post(_act(name, *values))
+
+
+def _act(name: str, *values: object) -> Message:
+    return Message({"do": "hand", "name": name, "values": list(values)}, NOTHING)

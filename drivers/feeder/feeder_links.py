@@ -1,0 +1,88 @@
+"""Two ways to the feeder: a socket to its process, or the same messages within one thread."""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from contextlib import suppress
+
+from core.ports import DriverError
+from drivers.feeder.feeder_messages import Inbox, Message, packed, text
+from drivers.feeder.feeder_server import Feeder
+
+_QUICK = 0.5  # s for an answer; the feeder's loop takes milliseconds
+_SLOW = 5.0  # s for orders that wait for a drive
+_WAITING = frozenset(("enable", "home", "clear_fault"))
+_CHUNK = 1 << 16
+
+
+class LoopLink:
+    """The feeder in the same thread, by the same bytes as over the socket: for tests and headless runs."""
+
+    def __init__(self, feeder: Feeder) -> None:
+        self._feeder = feeder
+
+    def ask(self, message: Message) -> Message:
+        """There and back as bytes; the feeder's loop goes round before."""
+        self._feeder.tick()
+        (request,) = Inbox().feed(packed(message))
+        (answer,) = Inbox().feed(packed(self._feeder.handle(request)))
+        return answer
+
+    def hang_up(self) -> None:
+        """The control has gone."""
+        self._feeder.orphaned = True
+
+    def close(self) -> None:
+        """The same."""
+        self.hang_up()
+
+
+class SocketLink:
+    """A feeder in its own process. One request at a time, each answered within its time or never."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self._socket = sock
+        self._socket.setblocking(True)
+        self._inbox = Inbox()
+
+    def ask(self, message: Message) -> Message:
+        """Raises DriverError when the feeder has gone or does not answer in time."""
+        slow = text(message.head, "what") in _WAITING
+        limit = _SLOW if slow else _QUICK
+        try:
+            self._socket.settimeout(limit)
+            self._socket.sendall(packed(message))
+            return self._answer(time.monotonic() + limit)
+        except TimeoutError as error:
+            raise DriverError(
+                f"the feeder has not answered for {limit:g} s; the slides stop on their path", "feeder-silent"
+            ) from error
+        except OSError as error:
+            raise DriverError(
+                f"the feeder process has ended ({error.strerror}); start the control again", "feeder-gone"
+            ) from error
+
+    def hang_up(self) -> None:
+        """Both directions end, whoever waits on it."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """The feeder sees the end and stops what is left."""
+        self._socket.close()
+
+    def _answer(self, deadline: float) -> Message:
+        while True:
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                raise TimeoutError
+            ready, _, _ = select.select([self._socket], [], [], left)
+            if not ready:
+                raise TimeoutError
+            data = self._socket.recv(_CHUNK)
+            if not data:
+                raise DriverError("the feeder process has ended; start the control again", "feeder-gone")
+            for message in self._inbox.feed(data):
+                return message

@@ -1,0 +1,348 @@
+"""The feeder: answers the control, keeps the drivers going, stops the machine when the control is gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+
+from core.ports import DriverError, MachinePorts, Stop, Trip, TrippedError, at_rest
+from drivers.feeder.feeder_messages import (
+    NOTHING,
+    VERSION,
+    Message,
+    cam_of,
+    number,
+    segments,
+    text,
+    with_code,
+)
+
+# --- Orders that change the machine, by the words of a request; and the hands at a simulated station.
+
+
+def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
+    """Carry one order out. Raises DriverError for one that is not known, or that the drivers refuse."""
+    on = head.get("on") is True
+    acts: dict[str, Callable[[], None]] = {
+        "enable": lambda: ports.axes.enable(on),
+        "stop": lambda: ports.axes.stop(_how(text(head, "how"))),
+        "home": lambda: ports.axes.home(text(head, "name")),
+        "clear_fault": ports.axes.clear_fault,
+        "run": lambda: ports.spindle.run(number(head, "rpm")),
+        "coast": ports.spindle.coast,
+        "hold": lambda: _hold(ports, on=on, orient=head.get("orient") is True),
+        "write": lambda: ports.io.write(text(head, "name"), on),
+        "safe": ports.io.safe,
+    }
+    order = acts.get(text(head, "what"))
+    if order is None:
+        raise DriverError("the feeder does not know this order; are both of the same version?")
+    order()
+
+
+def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
+    """A hand at the simulated station, by the name of its method. Raises DriverError."""
+    name, values = text(head, "name"), head.get("values")
+    use = None if name.startswith("_") or hands is None else getattr(hands, name, None)
+    if not callable(use) or not isinstance(values, list):
+        raise DriverError("this machine has no simulated station")
+    try:
+        return use(*values)
+    except TypeError as error:
+        raise DriverError(f"the simulated station cannot {name} with {values}") from error
+
+
+def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
+    if ports.lock is None:
+        raise DriverError("the spindle's drive of this machine is not C")
+    ports.lock.hold(on, orient)
+
+
+def _how(word: str) -> Stop:
+    try:
+        return Stop(word)
+    except ValueError as error:
+        raise DriverError(f"the feeder does not know the stop {word!r}") from error
+
+
+# --- What the feeder has switched off by itself, and that nothing goes on before the control knows it.
+
+
+_MOVES = frozenset(("splice", "mesh"))
+
+
+class TripGuard:
+    """Between the requests of the control and the drivers."""
+
+    def __init__(self) -> None:
+        self.tripped: Trip | None = None
+        self._count = 0
+        self._turns = False  # the control wants the spindle to turn
+
+    def demand_allowed(self, message: Message) -> None:
+        """Raises TrippedError for what would move, turn or switch on, while a trip is not acknowledged."""
+        what = text(message.head, "what")
+        turns = what == "run" and number(message.head, "rpm") != 0.0
+        switches = what == "write" and message.head.get("on") is True
+        if self.tripped is not None and (
+            text(message.head, "do") in _MOVES or what == "home" or turns or switches
+        ):
+            raise TrippedError(f"the feeder has heard nothing for {self.tripped.away:.2f} s and stopped")
+        if what in {"run", "coast"}:
+            self._turns = turns
+
+    def trip(self, away: float, outputs: Sequence[str], *, spindle: bool) -> None:
+        """Outputs were switched off, and the spindle; that nothing was on is no trip."""
+        turned = self._turns and spindle
+        self._turns = self._turns and not spindle
+        if turned or outputs:
+            self._tripped(away, turned, outputs)
+
+    def fell(self, away: float, output: str) -> None:
+        """One output that nobody renewed."""
+        self._tripped(away, False, [output])
+
+    def back_after(self, away: float) -> None:
+        """The control speaks again."""
+        if self.tripped is not None:
+            self.tripped = self.tripped._replace(away=max(away, self.tripped.away))
+
+    def acknowledge(self, count: float) -> None:
+        """The control has taken note of this trip, and of no later one."""
+        if self.tripped is not None and self.tripped.number == count:
+            self.tripped = None
+
+    def _tripped(self, away: float, spindle: bool, outputs: Sequence[str]) -> None:
+        self._count += 1
+        before = self.tripped or Trip(0, 0.0, False, ())
+        on = tuple(dict.fromkeys((*before.outputs, *outputs)))
+        self.tripped = Trip(self._count, max(away, before.away), spindle or before.spindle, on)
+
+
+AWAY = 0.25  # s without a round of its own: modules take their error values after three heartbeats
+LATE = 0.05  # s; the drives' queues hold twice this, and a splice of 6000 pieces takes 0.03
+SILENT = 0.2  # s without a word after which the control counts as stalled
+_NOTES = 50
+_STANDS = 5.0  # rpm
+_RUNS_DOWN = 8.0  # s for a spindle to brake; one that has not by then is let go
+
+
+class Driven(Protocol):
+    """A set of drivers that one loop owns. ``hands`` is a simulated machine's handle, where it is one."""
+
+    @property
+    def ports(self) -> MachinePorts: ...
+
+    @property
+    def hands(self) -> object | None: ...
+
+    def tick(self) -> None:
+        """Called every few milliseconds; raises nothing."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class Feeder:
+    """``handle`` one message, ``tick`` between them. All by one thread.
+
+    A silent control is played to the end of its queue, which is at rest; then the spindle stops and the
+    outputs go to their safe states: it has tripped, and neither moves nor switches on anything until the
+    control has acknowledged that. ``orphaned``: it will never speak again; at rest the drives go off too,
+    and once the spindle stands the feeder is done.
+    """
+
+    def __init__(
+        self, driven: Driven, warnings: Sequence[str] = (), refresh: Mapping[str, float] | None = None
+    ) -> None:
+        """``refresh``: outputs that fall after so many seconds without a word of the control."""
+        self._driven = driven
+        self._ports = driven.ports
+        self._warnings = list(warnings)
+        self._refresh = dict(refresh or {})
+        self._heard = self._ports.clock.now()
+        self._parted = False
+        self._parted_at = 0.0
+        self._latest = 0.0  # s, the worst lateness so far
+        self._notes: list[str] = []
+        self._guard = TripGuard()
+        self.orphaned = False
+        self.done = False  # orphaned, at rest, switched off
+        self._answers: Mapping[str, Callable[[Message], Message]] = {
+            "hello": self._hello,
+            "look": self._look,
+            "splice": self._splice,
+            "demand": self._demand,
+            "horizon": lambda _: _value(self._ports.axes.horizon()),
+            "mesh": self._mesh,
+            "do": self._act,
+            "hand": self._hand,
+        }
+
+    def handle(self, message: Message) -> Message:
+        """The answer; what the drivers refuse comes back as ``error``."""
+        self._hear()
+        answer = self._answers.get(text(message.head, "do"))
+        if answer is None:
+            return _refused("the feeder does not know this request; are both of the same version?")
+        try:
+            self._guard.demand_allowed(message)
+            return answer(message)
+        except TrippedError as error:
+            return Message({"tripped": str(error)}, NOTHING)
+        except DriverError as error:
+            return _refused(error.fault)
+        finally:
+            self._heard = self._ports.clock.now()  # some orders wait for a drive
+
+    def tick(self) -> None:
+        """Drivers first, then whether the control still speaks."""
+        self._driven.tick()
+        silent = self._ports.clock.now() - self._heard
+        self._let_fall(silent)
+        if self.orphaned or silent > SILENT:
+            self._without_control()
+
+    def late(self, seconds: float) -> None:
+        """How late the loop has woken up; what is worth telling is told, each record once."""
+        if seconds > max(self._latest, LATE):
+            self._latest = seconds
+            self._note(f"the feeder woke up {1000 * seconds:.0f} ms late; has it real-time priority?")
+        if seconds > AWAY:
+            self._trip(seconds, spindle=self._resting())
+
+    def _resting(self) -> bool:
+        axes = self._ports.axes
+        return not axes.sample().moving and at_rest(axes.horizon(), axes.now())
+
+    def _stands_in_thread(self) -> bool:
+        """Whether slides that follow the spindle wait for one that turns no more: their queue never ends."""
+        gear = self._ports.gear
+        follows = gear is not None and gear.geared() is not None
+        return follows and not self._ports.axes.sample().moving and abs(self._ports.spindle.speed()) < _STANDS
+
+    def _trip(self, away: float, *, spindle: bool = True) -> None:
+        """Outputs safe, as modules have made them already that missed our heartbeat, and the spindle stopped
+        unless a tool is still in the cut. What was on is what the control has to be told.
+        """
+        before = dict(self._ports.io.outputs())
+        self._carefully(self._ports.io.safe)
+        if spindle:
+            self._carefully(lambda: self._ports.spindle.run(0.0))
+        after = self._ports.io.outputs()
+        off = [name for name, on in before.items() if on and not after.get(name)]
+        self._guard.trip(away, off, spindle=spindle)
+
+    def _hear(self) -> None:
+        now = self._ports.clock.now()
+        if now - self._heard > SILENT:
+            self._note(f"the control was silent for {now - self._heard:.2f} s")
+            self._guard.back_after(now - self._heard)
+        self._heard = now
+        self._parted = False
+
+    def _let_fall(self, silent: float) -> None:
+        """Outputs that nobody renews do not wait for the slides to rest."""
+        for name, longest in self._refresh.items():
+            if silent > longest and self._ports.io.outputs().get(name):
+                self._note(f"{name} off: the control has been silent for {silent:.2f} s")
+                self._carefully(partial(self._ports.io.write, name, False))
+                self._guard.fell(silent, name)
+
+    def _without_control(self) -> None:
+        """The queue ends at rest by itself; what does not, is stopped once it is over."""
+        axes = self._ports.axes
+        if not self._resting():
+            if self._stands_in_thread():
+                self._carefully(lambda: axes.stop(Stop.RAMP_HOLD))
+            return
+        if not self._parted:
+            self._parted = True
+            self._note("the control is silent: spindle stopped, outputs safe")
+            self._trip(axes.now() - self._heard)
+            self._parted_at = axes.now()
+        if self.orphaned and not self.done:
+            self._carefully(lambda: axes.stop(Stop.RAMP_OFF))
+            # Closing takes the spindle's power: while it turns it would run on unbraked.
+            waited = axes.now() - self._parted_at
+            self.done = abs(self._ports.spindle.speed()) < _STANDS or waited > _RUNS_DOWN
+
+    def _carefully(self, *steps: Callable[[], None]) -> None:
+        for step in steps:
+            try:
+                step()
+            except DriverError as error:
+                self._note(f"while stopping: {error}")
+
+    def _note(self, what: str) -> None:
+        self._notes = [*self._notes[-_NOTES:], what]
+
+    # --- answers ------------------------------------------------------------------------------------------
+
+    def _hello(self, _message: Message) -> Message:
+        axes = self._ports.axes
+        head = {
+            "version": VERSION,
+            "axes": axes.axes,
+            "commit": axes.commit,
+            "gear": self._ports.gear is not None,
+            "lock": self._ports.lock is not None,
+            "warnings": [*self._warnings, *self._ports.warnings],
+        }
+        return Message(head, NOTHING)
+
+    def _look(self, _message: Message) -> Message:
+        ports, sample = self._ports, self._ports.axes.sample()
+        geared = ports.gear.geared() if ports.gear is not None else None
+        head: dict[str, object] = {
+            "sample": {**sample._asdict(), **with_code("fault", sample.fault, "axis")},
+            "speed": ports.spindle.speed(),
+            "angle": ports.spindle.angle(),
+            **with_code("spindle", ports.spindle.fault(), "spindle"),
+            "inputs": dict(ports.io.inputs()),
+            "outputs": dict(ports.io.outputs()),
+            "station": asdict(ports.station.snapshot()),
+            "geared": geared,
+            "held": ports.lock is not None and ports.lock.held(),
+            "trip": self._guard.tripped,
+            "notes": self._notes,
+        }
+        self._notes = []
+        return Message(head, NOTHING)
+
+    def _splice(self, message: Message) -> Message:
+        self._driven.tick()  # a long one takes a while: the drives' queues are filled before
+        self._ports.axes.splice(segments(message.numbers, len(self._ports.axes.axes)))
+        return _value(0.0)
+
+    def _demand(self, message: Message) -> Message:
+        p, v = self._ports.axes.demand_at(number(message.head, "t"))
+        return Message({}, np.array([*p, *v]))
+
+    def _mesh(self, message: Message) -> Message:
+        if self._ports.gear is None:
+            raise DriverError("this driver cannot follow the spindle")
+        self._ports.gear.mesh(cam_of(message, len(self._ports.axes.axes)))
+        return _value(0.0)
+
+    def _act(self, message: Message) -> Message:
+        if text(message.head, "what") == "acknowledge":
+            self._guard.acknowledge(number(message.head, "number"))
+        else:
+            act(self._ports, message.head)
+        return _value(0.0)
+
+    def _hand(self, message: Message) -> Message:
+        return Message({"value": use_hand(self._driven.hands, message.head)}, NOTHING)
+
+
+def _value(value: float) -> Message:
+    return Message({"value": value}, NOTHING)
+
+
+def _refused(why: str) -> Message:
+    return Message(with_code("error", why, "driver"), NOTHING)

@@ -1,0 +1,429 @@
+"""The conversation with one controller: lines out, questions for reports, and a watch for silence.
+
+``pump`` is called by whoever looks at the machine, at least once a tick of the executor; nothing waits.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable
+
+from core.ports import Clock, Fault, FaultCode, code_of
+from drivers.grblhal import grblhal_codes
+from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
+from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
+from drivers.grblhal.grblhal_report import Identity, Report, read_report
+from drivers.grblhal.grblhal_wire import Wire, WireLostError
+
+# --- What the reports of one controller have told, and whether a new one can be true.
+
+
+_LEAP = 1.0  # mm beyond what the slides can do between two reports
+_HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
+
+
+class Known:
+    """Kept from report to report: each carries only a part."""
+
+    def __init__(self, config: GrblConfig, clock: Clock) -> None:
+        self.config = config
+        self.clock = clock
+        self.identity: Identity | None = None
+        self.settings: dict[int, str] = {}  # as read at the connection
+        self.report: Report | None = None  # the last one
+        self.reports = self.fulls = 0  # how many have come
+        self.heard_at = clock.now()
+        self.position: dict[str, float] = {}  # mm by axis letter, X a radius, from home
+        self.origin: dict[str, float] = {}  # where home lies in the controller's own frame
+        self.homed: tuple[int, ...] | None = None  # as it reports it: all axes, and a bit for each
+        self.offset: tuple[float, ...] = ()
+        self.overrides: tuple[int, ...] | None = None
+        self.overrides_told = 0  # how often they have been in a report
+        self.accessories: tuple[float, str] | None = None  # when they were told, and what is on
+        self.diameter: bool | None = None
+        self.most_free = 0  # blocks of its planner when that is empty
+
+    def keep(self, report: Report) -> None:
+        """Take over what a report carries."""
+        self.reports, self.fulls = self.reports + 1, self.fulls + report.full
+        if report.diameter is not None:
+            self.diameter = report.diameter
+        self.offset = report.offset if report.offset is not None else self.offset
+        if report.overrides is not None:
+            self.overrides, self.overrides_told = report.overrides, self.overrides_told + 1
+        if report.accessories is not None or report.overrides is not None:
+            self.accessories = self.clock.now(), report.accessories or ""  # left out where nothing is on
+        self.homed = report.homed if report.homed is not None else self.homed
+        if report.state == "Idle" and report.free is not None:
+            self.most_free = max(self.most_free, report.free)
+        if not self.diameter:
+            self.position = self._places(report) or self.position
+        self.report, self.heard_at = report, self.clock.now()
+
+    def plausible(self, report: Report) -> bool:
+        """No slide leaps further than it can have gone since the last report."""
+        if self.report is None or self.diameter:
+            return True
+        passed = self.clock.now() - self.heard_at
+        places = self._places(report)
+        for axis in self.config.axes:
+            before, now = self.position.get(axis.name), places.get(axis.name)
+            if before is None or now is None:
+                continue
+            if abs(now - before) > 1.5 * axis.vmax * passed + _LEAP:
+                return False
+        return True
+
+    @property
+    def letters(self) -> str:
+        """The controller's axes in the order of its reports and settings."""
+        return self.identity.axes if self.identity is not None else "XYZ"
+
+    @property
+    def wired(self) -> tuple[GrblAxis, ...]:
+        """The machine file's axes that the controller moves."""
+        return tuple(axis for axis in self.config.axes if axis.wired)
+
+    def figure(self, first: int, letter: str) -> float:
+        """A setting that there is once for each axis, from ``first`` on; 0 where it is not told."""
+        index = self.letters.find(letter)
+        return float(self.settings.get(first + index, "0")) if index >= 0 else 0.0
+
+    def speed_of(self, letter: str) -> float:
+        """The controller's own greatest speed of an axis, mm/s; 0 where it does not tell."""
+        return self.figure(110, letter) / 60.0
+
+    @property
+    def homing(self) -> int:
+        """How the controller homes, its setting $22: bit 0 at all, bit 1 one axis alone."""
+        return int(float(self.settings.get(_HOMING, "0")))
+
+    def is_homed(self, letter: str) -> bool | None:
+        """Whether the controller itself has homed an axis; None where homing is off in it."""
+        index = self.letters.find(letter)
+        if not self.homing & _HOMED or self.homed is None or index < 0:
+            return None
+        if len(self.homed) > 1:
+            return bool(self.homed[1] >> index & 1)
+        return bool(self.homed[0])
+
+    def _places(self, report: Report) -> dict[str, float]:
+        raw = zip(self.letters, report.position or (), strict=False)
+        return {letter: place - self.origin.get(letter, 0.0) for letter, place in raw}
+
+
+# --- What the controller says, line by line: sorted, believed or not, and what follows from it.
+
+
+_GARBAGE, _WITHIN = 3, 10.0  # unknown lines within s, while nothing is under way
+_SETTING = re.compile(r"\$\d+=.*")
+_ANSWER = re.compile(r"error:(\d+)")
+_ALARM = re.compile(r"ALARM:(\d+)")
+_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no program of ours
+
+
+class Hearing(Known):
+    """The receiving half of the conversation. ``write`` puts bytes on the wire."""
+
+    def __init__(self, config: GrblConfig, clock: Clock, write: Callable[[bytes], None]) -> None:
+        super().__init__(config, clock)
+        self.write = write
+        self.stream = Stream(write)
+        self.banners = 0  # how many resets have been told
+        self.fault: Fault | str = ""
+        self.lost = False  # for good: start the control again
+        self.alarm = 0
+        self.trusted = True  # the position
+        self.ready = False  # modes verified, nothing wrong
+        self.index_wait = False  # a thread pass is under way: no report may come for seconds
+        self.on_report: Callable[[Report], None] = lambda _: None
+        self.on_void: Callable[[], None] = lambda: None
+        self.runner = Runner()
+        self.expected = False  # a reset of our own
+        self.doubtful = False  # something damaged has been heard: look at all of it
+        self.asked_at: float | None = None  # the oldest question for a report that is open
+        self.answered_at = 0.0
+        self._garbage: deque[float] = deque()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a script is under way."""
+        return self.runner.busy
+
+    @property
+    def state(self) -> str:
+        """As the last report says it; nothing before the first."""
+        return self.report.state if self.report is not None else ""
+
+    @property
+    def hindrance(self) -> str:
+        """Why nothing may be begun now; empty when it may."""
+        if self.fault:
+            return self.fault
+        if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
+            return "the controller has to be homed first"
+        if self.busy or not self.ready:
+            return "the controller's modes are being verified"
+        return ""
+
+    def realtime(self, *codes_: int) -> None:
+        """Bytes that bypass every buffer."""
+        self.write(bytes(codes_))
+
+    def fail(self, why: str, code: FaultCode) -> None:
+        """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
+
+        A jog knows no feed hold, and everything else no jog cancel.
+        """
+        if not self.fault:
+            self.fault = Fault(why, code)
+        self.ready = False
+        self.stream.waiting.clear()
+        if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
+            self.realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
+
+    def void(self) -> None:
+        """Nothing that was handed over counts any more."""
+        self.stream.void()
+        self.index_wait = False
+        self.on_void()
+
+    def hear(self, line: str) -> None:
+        """One whole line. What begins with ``[`` and is not known is somebody else's."""
+        if line.startswith("<"):
+            self._reported(read_report(line), line)
+        elif line == "ok" or _ANSWER.fullmatch(line):
+            self._answer(0 if line == "ok" else int(line[6:]))
+        elif alarm := _ALARM.fullmatch(line):
+            self.alarmed(int(alarm[1]))
+        elif line.startswith("[") and line.endswith("]"):
+            self._told(line)
+        elif _SETTING.fullmatch(line):
+            self.stream.told(line)
+        elif line.lower().startswith("grbl"):
+            self._restarted()
+        elif line and not line.startswith((">", "$")):
+            self.damaged(line)
+
+    def alarmed(self, number: int) -> None:
+        """The controller has locked itself."""
+        self.alarm = number
+        self.trusted = self.trusted and number not in grblhal_codes.LOST
+        self.void()
+        if number != grblhal_codes.HOMING_REQUIRED:
+            self.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
+        self.ready = False
+
+    def damaged(self, line: str) -> None:
+        """A line that means nothing may have been an answer: counters are never set right by guessing."""
+        now = self.clock.now()
+        self._garbage.append(now)
+        while self._garbage[0] < now - _WITHIN:
+            self._garbage.popleft()
+        moving = self.report is not None and self.report.moves
+        if self.stream.stale or (self.busy and self.identity is None):
+            return
+        if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
+            self.fail(f"the line to the controller is disturbed: {line!r} is no answer", "controller-silent")
+            self.doubtful = True
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _told(self, line: str) -> None:
+        if self.stream.stale and line.startswith("[GC:"):
+            self.stream.stale = False
+        if not line.startswith("[MSG:"):
+            self.stream.told(line)
+
+    def _answer(self, error: int) -> None:
+        self.answered_at = self.clock.now()
+        if self.stream.stale:
+            return
+        first = self.fault == ""
+        ask = self.stream.answered(error)
+        if ask is None:
+            self.damaged("ok" if not error else f"error:{error}")
+        elif error and first and not self.busy:
+            # Sticky: what is behind it is answered with the same error and not executed.
+            self.fail(grblhal_codes.error_text(error, ask.line), "controller-refuses")
+
+    def _restarted(self) -> None:
+        self.banners += 1
+        self.void()
+        self.diameter = self.overrides = None
+        if not self.expected and self.identity is not None:
+            self.fail("the controller has been reset; what it was given is void", "controller-reset")
+
+    def _reported(self, report: Report | None, line: str) -> None:
+        fit = report is not None and (self.busy or not self.ready or self.plausible(report))
+        if report is None or not fit:
+            self.damaged(line)
+            return
+        self.keep(report)
+        if report.diameter and self.ready:
+            self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
+        self.asked_at = None
+        self._mind(report)
+        self.on_report(report)
+
+    def _mind(self, report: Report) -> None:
+        """States that say that something has happened, however that was missed."""
+        if report.state != "Alarm":
+            self.alarm = 0
+        if self.busy:
+            return
+        if report.state == "Alarm":
+            number = report.sub or self.alarm or grblhal_codes.LOCKED
+            if number != grblhal_codes.HOMING_REQUIRED and not self.fault:
+                self.alarmed(number)
+            self.alarm, self.ready = number, False
+        elif report.state == "Door":
+            self.fail(f"{grblhal_codes.DOOR}, spindle and coolant are off: close it, then Reset", "door")
+        elif report.state in _IDLERS:
+            self.fail(
+                f"the controller is in state {report.state}, in which it runs no program of ours",
+                "controller-modes",
+            )
+
+
+_LINE = 1024  # bytes; the controller sends no longer line
+_RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
+_SILENT = 1.0  # s without a report
+_INDEX = 8.0  # s in which a thread may wait for its index: no report, no answer
+_UNANSWERED = 2.0  # s for the answer to a line while the controller does nothing
+
+
+class Controller(Hearing):
+    """One wire and what is known of its other end."""
+
+    def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
+        super().__init__(config, clock, self._write)
+        self._wire = wire
+        self._inbox = b""
+        self._next_question = 0.0
+        self._sees_overrides = False
+        self._halted = False
+
+    def send(self, line: str, ticket: int = 0) -> Ask:
+        """A line for the controller; its answer comes with later pumps."""
+        return self.stream.send(line, self.clock.now(), ticket)
+
+    def run(self, script: Script, doing: str = "") -> None:
+        """Begin a script; one that is under way is given up."""
+        self.ready, self.expected = False, False
+        self.runner.begin(script, doing, self.clock.now())
+        self._advance()
+
+    @property
+    def doing(self) -> str:
+        """What the present script is for."""
+        return self.runner.doing
+
+    def expect_reset(self) -> None:
+        """The next banner is that of a reset of our own."""
+        self.expected = True
+
+    def see_overrides(self, on: bool) -> None:
+        """Ask plainly: a full report leaves the overrides out when it carries the offsets, as it does."""
+        self._sees_overrides = on
+
+    def question(self, *, full: bool = False) -> None:
+        """Ask for a status report; a full one takes no turn of a plain one that is wanted."""
+        self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
+        now = self.clock.now()
+        self.asked_at = now if self.asked_at is None else self.asked_at
+        if not (full and self._sees_overrides):
+            self._next_question = now + self._interval()
+
+    def pump(self) -> None:
+        """Read, go on, watch. Never waits, never raises."""
+        if self.lost:
+            return
+        try:
+            self._read()
+            self._advance()
+            self.stream.pump(self.clock.now())
+            self._ask()
+            self._watch()
+        except WireLostError as error:
+            self._gone(error)
+
+    def halt(self) -> None:
+        """From any thread, when nobody pumps any more: hold or end the jog; asked again, reset at rest.
+
+        Bytes that bypass every buffer, straight to the wire: a reset ends spindle and coolant.
+        """
+        self._wire.write(
+            bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
+        )
+        self._halted = True
+
+    def close(self) -> None:
+        """Let the wire go."""
+        self._wire.close()
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _write(self, data: bytes) -> None:
+        if self.lost or not data:
+            return
+        try:
+            self._wire.write(data)
+        except WireLostError as error:
+            self._gone(error)
+
+    def _gone(self, error: WireLostError) -> None:
+        self.lost = True
+        self.runner.drop()
+        self.fail(
+            f"the connection to the controller is lost: {error}; it moves what it has, then rests",
+            "controller-lost",
+        )
+        self.void()
+
+    def _read(self) -> None:
+        *lines, self._inbox = (self._inbox + self._wire.read()).split(b"\n")
+        if len(self._inbox) > _LINE:
+            self._inbox = b""
+            self.damaged("a line without an end")
+        for line in lines:
+            self.hear(line.decode("ascii", "replace").strip("\r"))
+
+    def _advance(self) -> None:
+        """Let the script go on; why it fails is the fault."""
+        why = self.runner.go_on(self.clock.now())
+        self.expected = self.expected and self.busy
+        if why:
+            self.fail(why, code_of(why, "controller-silent"))
+
+    def _interval(self) -> float:
+        if self.busy:
+            return _ASKING
+        resting = self.report is not None and self.report.state == "Idle" and self.stream.quiet
+        return _RESTING if resting and not self._sees_overrides else _RUNNING
+
+    def _ask(self) -> None:
+        if self.doubtful:
+            self.doubtful = False
+            self.question(full=True)
+        elif self.clock.now() >= self._next_question:
+            resting = self.report is None or self.report.state in {"Idle", "Alarm"}
+            self.question(full=resting and self.stream.quiet and not self._sees_overrides)
+
+    def _watch(self) -> None:
+        """Silence is a fault, but not behind a thread, whose wait for the index answers nothing."""
+        if self.busy:
+            return
+        now = self.clock.now()
+        if self.asked_at is not None and now - self.asked_at > (_INDEX if self.index_wait else _SILENT):
+            self.asked_at = now
+            self.fail(
+                "the controller does not answer; look at the cable and at the controller", "controller-silent"
+            )
+        idle = self.report is not None and self.report.state == "Idle"
+        if not (self.stream.unanswered and idle) or self.fault:
+            return
+        first = self.stream.unanswered[0]
+        if now - max(first.sent_at, self.answered_at) > (_INDEX if self.index_wait else _UNANSWERED):
+            self.fail(f"no answer to {first.line!r}; the line may be disturbed", "controller-silent")

@@ -1,0 +1,145 @@
+"""The controller as a machine: connects, and puts the ports together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from core.ports import Clock, DriverError, MachinePorts, Stop
+from drivers.grblhal import grblhal_scripts
+from drivers.grblhal.grblhal_axes import GrblAxes
+from drivers.grblhal.grblhal_blocks import GrblBlocks
+from drivers.grblhal.grblhal_config import GrblConfig
+from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
+from drivers.grblhal.grblhal_terminals import GrblInputs, GrblIO, GrblStation, panel_of
+from drivers.grblhal.grblhal_wire import Wire, open_wire
+
+_ROUND = 0.005  # s between two looks while it connects
+_CONNECTING = 15.0
+_LEAVING = 4.0
+
+
+class GrblMachine:
+    """Connected and verified when it is made. Raises DriverError.
+
+    ``wire`` and ``idle`` are for tests, whose clock does not move by itself.
+    """
+
+    def __init__(
+        self,
+        config: GrblConfig,
+        clock: Clock,
+        wire: Wire | None = None,
+        idle: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._clock = clock
+        self._idle = idle
+        self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
+        self.blocks = GrblBlocks(self.controller)
+        self.spindle = GrblSpindle(self.controller, self.blocks)
+        self.encoder = GrblEncoder(self.controller)
+        self.inputs = GrblInputs(self.controller, self.blocks)
+        self.io = GrblIO(self.controller, self.blocks, self.inputs)
+        self.axes = GrblAxes(self.controller, self.blocks, self.pump)
+        self.blocks.terminals = self.io.able
+        voided = self.controller.on_void
+
+        def void() -> None:
+            voided()
+            self.spindle.voided()
+            self.io.voided()
+
+        self.controller.on_void = void
+        self._connect()
+        self.panel = panel_of(clock, self.inputs)
+        self.ports = MachinePorts(
+            clock=clock,
+            axes=self.axes,
+            spindle=self.spindle,
+            io=self.io,
+            station=GrblStation(self.panel, self.inputs),
+            warnings=self._warnings(),
+            blocks=self.blocks,
+            halt=self.controller.halt,
+        )
+
+    def pump(self) -> None:
+        """One round; never waits."""
+        self.controller.pump()
+        self.blocks.pump()
+        self.spindle.pump()
+        self.io.pump()
+        self.inputs.pump()
+
+    def close(self) -> None:
+        """Nothing is left moving; then the wire goes."""
+        self.axes.stop(Stop.RAMP_OFF)
+        self._rounds(_LEAVING)
+        self.controller.close()
+
+    def _connect(self) -> None:
+        c = self.controller
+        c.run(grblhal_scripts.connect(c))
+        self._rounds(_CONNECTING)
+        if c.busy or c.identity is None or (c.fault and c.alarm == 0):
+            c.close()
+            raise DriverError(f"{c.config.port}: {c.fault or 'the controller does not answer'}")
+
+    def _rounds(self, limit: float) -> None:
+        end = self._clock.now() + limit
+        while self.controller.busy and not self.controller.lost and self._clock.now() < end:
+            self._idle()
+            self.pump()
+            self._clock.sleep_until(self._clock.now() + _ROUND)
+
+    def _unlike(self) -> list[str]:
+        """Where the controller's own settings are not what the machine file promises."""
+        c = self.controller
+        told = []
+        for axis in c.wired:
+            speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
+            if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
+                told.append(
+                    f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
+                )
+            if 0.0 < accel < 0.99 * axis.amax:
+                told.append(f"{axis.name}: the controller brakes with {accel:.0f} mm/s², not {axis.amax:.0f}")
+        if c.config.own_spindle and 0.0 < self.spindle.highest < c.config.rpm_max:
+            told.append(
+                f"spindle: $30 allows {self.spindle.highest:g} rpm, the machine file {c.config.rpm_max:g}"
+            )
+        return told
+
+    def _homes(self) -> list[str]:
+        """Axes that must look for home on a controller whose homing is off."""
+        if self.controller.homing:
+            return []
+        names = [axis.name for axis in self.controller.wired if not axis.absolute and axis.here is None]
+        if not names:
+            return []
+        return [
+            f"{' and '.join(names)}: homing is off in the controller ($22=0); set $22 to 3 where there are"
+            " switches, else add method = 37 to home = { … } of the axis: Home then takes the place where it"
+            " stands"
+        ]
+
+    def _warnings(self) -> list[str]:
+        outputs = {name: self.io.lacking(name) for name in self.controller.config.outputs}
+        told = _grouped("output", {name: why for name, why in outputs.items() if why})
+        told += _grouped("input", self.inputs.lacking())
+        told += self._unlike() + self._homes()
+        if "thread" not in self.blocks.caps:
+            told.append("the controller reports no spindle encoder: threads are refused")
+        return told
+
+
+def _grouped(what: str, lacking: Mapping[str, str]) -> list[str]:
+    """One sentence for all with the same reason, which is told behind the terminal."""
+    reasons: dict[str, list[str]] = {}
+    for name, why in lacking.items():
+        terminal, _, reason = why.partition(" ")
+        reasons.setdefault(reason, []).append(f"{name} ({terminal})")
+    return [
+        f"{what} {names[0]} {reason}" if len(names) == 1 else f"{what}s {', '.join(names)}: each {reason}"
+        for reason, names in reasons.items()
+    ]

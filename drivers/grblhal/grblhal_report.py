@@ -1,0 +1,159 @@
+"""What a controller tells of itself: status reports, read strictly, and its identity by ``$I``."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
+
+from core.ports import DriverError
+
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
+_STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Check", "Sleep", "Tool"))
+
+
+class Report(NamedTuple):
+    """One status report; None for what it does not carry. mm; X as the controller counts it."""
+
+    state: str
+    sub: int | None = None
+    position: tuple[float, ...] | None = None
+    free: int | None = None  # blocks of the planner
+    line: int | None = None
+    speeds: tuple[float, ...] | None = (
+        None  # feed, rpm as commanded, rpm as measured where there is an encoder
+    )
+    pins: str = ""
+    offset: tuple[float, ...] | None = None
+    overrides: tuple[int, ...] | None = None  # per cent: feed, rapid, spindle
+    diameter: bool | None = None
+    homed: tuple[int, ...] | None = None
+    input: int | None = None  # what M66 has read: 1 on, 0 off, -1 nothing
+    full: bool = False
+    accessories: str | None = None  # what is on: S C spindle, F flood, M mist; left out where nothing is
+
+    @property
+    def moves(self) -> bool:
+        """Whether slides may be moving."""
+        resting = {"Hold": (0,), "Door": (0, 1)}.get(
+            self.state
+        )  # a door that stands open, or is closed again
+        return self.state in {"Run", "Jog", "Home"} if resting is None else self.sub not in resting
+
+    @property
+    def measured(self) -> float | None:
+        """Spindle speed by an encoder, rpm."""
+        return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
+
+
+def read_report(line: str) -> Report | None:
+    """The report in a line, None when the line is damaged."""
+    if not (line.startswith("<") and line.endswith(">")):
+        return None
+    head, *fields = line[1:-1].split("|")
+    state, _, sub = head.partition(":")
+    if state not in _STATES or (sub and not sub.isdecimal()):
+        return None
+    values: dict[str, object] = {}
+    for field in fields:
+        name, colon, text = field.partition(":")
+        reader = _READERS.get(name)
+        if reader is None or not colon:
+            continue
+        found = reader(text)
+        if found is None:
+            return None
+        values.update(found)
+    if "position" not in values and not values.pop("work", None):
+        return None
+    return Report(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
+
+
+def _numbers(text: str) -> tuple[float, ...] | None:
+    parts = text.split(",")
+    if not all(_NUMBER.fullmatch(part) for part in parts):
+        return None
+    values = tuple(float(part) for part in parts)
+    return values if all(math.isfinite(value) for value in values) else None
+
+
+def _floats(name: str) -> Callable[[str], Mapping[str, object] | None]:
+    def read(text: str) -> Mapping[str, object] | None:
+        values = _numbers(text)
+        return None if values is None else {name: values}
+
+    return read
+
+
+def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, object] | None]:
+    def read(text: str) -> Mapping[str, object] | None:
+        parts = text.split(",")
+        if not all(part.isdecimal() for part in parts):
+            return None
+        values = tuple(int(part) for part in parts)
+        return {name: values if index is None else values[index]}
+
+    return read
+
+
+_READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
+    "MPos": _floats("position"),
+    "WPos": lambda text: {"work": True} if _numbers(text) else None,  # until $10 is as it must be
+    "FS": _floats("speeds"),
+    "WCO": _floats("offset"),
+    "Bf": _whole("free", 0),
+    "Ln": _whole("line", 0),
+    "Ov": _whole("overrides"),
+    "H": _whole("homed"),
+    "Pn": lambda text: {"pins": text},
+    "In": lambda text: {"input": int(text)} if text in {"-1", "0", "1"} else {},
+    "FW": lambda _: {"full": True},
+    "A": lambda text: {"accessories": text},
+    "D": lambda text: {"diameter": text == "1"} if text in {"0", "1"} else None,
+}
+
+# --- Who answers at the other end: ``$I``. Nothing is assumed that is not said there.
+
+
+_LEAST_BUFFER = 256
+
+
+class Identity(NamedTuple):
+    """``blocks`` of the planner, ``buffer`` bytes for lines, axis letters in the order of the reports."""
+
+    version: str
+    blocks: int
+    buffer: int
+    axes: str
+    options: frozenset[str]
+    inputs: int  # auxiliary digital inputs
+    outputs: int
+    letters: str = ""  # of its build: V variable spindle, M mist
+
+    @property
+    def lathe(self) -> bool:
+        """Whether it says that it is in lathe mode."""
+        return any(option.startswith("LATHE") for option in self.options)
+
+
+def read_identity(lines: Iterable[str]) -> Identity:
+    """From the lines that ``$I`` is answered with. Raises DriverError for what is no grblHAL."""
+    told: dict[str, str] = {}
+    for line in lines:
+        found = re.fullmatch(r"\[([A-Z ]+):(.*)\]", line)
+        if found:
+            told.setdefault(found[1], found[2])
+    letters, *sizes = told.get("OPT", "").split(",")
+    if "VER" not in told or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
+        raise DriverError("what answers is no grblHAL: $I says neither [VER:…] nor [OPT:…,blocks,bytes,…]")
+    blocks, buffer = int(sizes[0]), int(sizes[1])
+    if buffer < _LEAST_BUFFER:
+        raise DriverError(
+            f"the controller's buffer of {buffer} bytes is too small; {_LEAST_BUFFER} are needed"
+        )
+    axes = told.get("AXS", "3:XYZ").partition(":")[2]
+    options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
+    ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
+    inputs, outputs = (*ports, 0, 0)[:2]
+    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters)

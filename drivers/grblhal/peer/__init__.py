@@ -1,1 +1,0 @@
-"""A look-alike of the controller, with the habits of the real one: for trying without hardware."""

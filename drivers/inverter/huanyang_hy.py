@@ -1,0 +1,143 @@
+"""Huanyang HY: frames of its own with the CRC of Modbus. After LinuxCNC's hy_vfd and the list of Bouni.
+
+A frame is unit, function, length, data, CRC. Functions: 1 and 2 read and write a parameter PDnnn, 3 controls
+and answers with the state, 4 reads a value, 5 sets the frequency. The answers name the parameter or value
+that was asked for, so an old one cannot pass for another.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator
+
+from core.ports import Clock
+from drivers.inverter.inverter_family import Look, number
+from drivers.inverter.modbus_rtu import PACE, NoAnswerError, never, sealed, whole
+from drivers.serial_line import Wire
+
+_READ, _CONTROL, _VALUE, _FREQUENCY = 1, 3, 4, 5
+_RUN, _RUN_BACK, _HALT = 0x01, 0x11, 0x08
+_SETPOINT, _OUTPUT, _CURRENT = 0, 1, 2
+_TIMEOUT = 0.5  # s
+_TRIES = 2
+_SOURCES = ((1, "run and stop come by RS-485"), (2, "the frequency comes by RS-485"))
+
+
+class HuanyangHy:
+    """Its state is told only in the answer to a command, so each look repeats the command in force."""
+
+    name = "Huanyang HY"
+    warm_up = 10
+
+    def __init__(self, wire: Wire, clock: Clock, unit: int, character: float) -> None:
+        self._wire, self._clock, self._unit = wire, clock, unit
+        self._gap = max(3.5 * character, 0.00175)
+        self._free = clock.now()
+        self._word = _HALT
+        self.hurry: Callable[[], bool] = never
+        self._good = 0
+
+    @property
+    def good(self) -> int:
+        return self._good
+
+    def prepare(self, comm_loss: float, highest: float) -> list[str]:
+        """It has no time-out of its own. Parameters are read, never written."""
+        known = [
+            f"{self.name}: it has no time-out of its own, comm_loss_s = {comm_loss:g} has no effect: with "
+            "the cable out it turns on. Wire the E-stop and a watchdog relay to its run terminal"
+        ]
+        for parameter, why in _SOURCES:
+            there = self._parameter(parameter)
+            if there != 2:
+                known.append(f"PD{parameter:03d} is {there}; set it to 2: {why}")
+        top = self._parameter(5)
+        if top < number(highest):
+            known.append(
+                f"PD005 ends at {top / 100:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
+            )
+        return known
+
+    def stop(self) -> None:
+        """By its ramp, PD026 = 0."""
+        self._word = _HALT
+        self._control()
+
+    def command(self, hz: float) -> None:
+        """The frequency first."""
+        value = struct.pack(">H", number(hz))
+        self._ask(_FREQUENCY, value, value)
+        if not self.hurry():
+            self._word = _RUN_BACK if hz < 0.0 else _RUN
+            self._control()
+
+    def looks(self) -> Iterator[Look | None]:
+        """State bits: 0 told to run, 2 told to run back, 3 runs, 5 runs back."""
+        state = self._control()
+        yield None
+        values: list[int] = []
+        for index in (_SETPOINT, _OUTPUT, _CURRENT):
+            values.append(self._value(index))
+            yield None
+        yield Look(
+            output=values[1] / 100.0,
+            setpoint=values[0] / 100.0,
+            run=bool(state & 0x01),
+            reverse=bool(state & 0x20),
+            asked_reverse=bool(state & 0x04),
+            current=values[2] / 10.0,
+        )
+
+    def reset(self) -> None:
+        """It has none on the line: its keypad has one. A stop makes it ready where nothing had tripped."""
+        self.stop()
+
+    def close(self) -> None:
+        self._wire.close()
+
+    def _control(self) -> int:
+        return self._ask(_CONTROL, bytes((self._word,)), b"")[0]
+
+    def _value(self, index: int) -> int:
+        head = bytes((index,))
+        return int.from_bytes(self._ask(_VALUE, head, head)[1:], "big")
+
+    def _parameter(self, which: int) -> int:
+        head = bytes((which,))
+        return int.from_bytes(self._ask(_READ, head + b"\0\0", head)[1:], "big")
+
+    def _ask(self, function: int, data: bytes, begins: bytes) -> bytes:
+        """The data of the answer, which begin with what names the question. Raises NoAnswerError."""
+        for left in reversed(range(_TRIES)):
+            answer = self._once(function, data, begins)
+            if answer is not None:
+                self._good += 1
+                return answer
+            self._good = 0
+            if not self.hurry():
+                self._wire.receive(_TIMEOUT)  # one that comes later still is of no use, and must not be taken
+            if left and self.hurry() and function != _CONTROL:
+                break
+        raise NoAnswerError("the inverter does not answer; look at cable, PD163 (id), PD164 and PD165 (line)")
+
+    def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:
+        self._clock.sleep_until(self._free)
+        self._wire.discard()
+        began = self._clock.now()
+        self._wire.send(sealed(bytes((self._unit, function, len(data))) + data))
+        come = b""
+        answer: bytes | None = None
+        while answer is None and (left := began + _TIMEOUT - self._clock.now()) > 0:
+            come += self._wire.receive(left)
+            answer = self._found(come, function, begins)
+        self._free = max(self._clock.now() + self._gap, began + PACE)
+        return answer
+
+    def _found(self, come: bytes, function: int, begins: bytes) -> bytes | None:
+        head = bytes((self._unit, function))
+        for start in range(len(come) - 5):
+            if come[start : start + 2] == head:
+                frame = come[start : start + 5 + come[start + 2]]
+                if len(frame) == 5 + come[start + 2] and whole(frame) and frame[3:].startswith(begins):
+                    return frame[3:-2]
+        return None

@@ -1,0 +1,243 @@
+"""Whoever owns the line: tells the inverter what is wanted, looks at it, and says when it does not obey.
+
+``round`` is one exchange; a thread repeats it (``keeper``), a test calls it. A stop goes before everything:
+at most the answer that is under way is waited for.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from core.ports import Clock, DriverError, Fault, FaultCode
+from drivers.inverter.inverter_family import Family, Look
+from drivers.inverter.inverter_obedience import PRESS, STANDS, Obedience
+from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
+from drivers.serial_line import WireError
+
+LOST = 1.0  # s without a look after which the inverter counts as lost
+_AGAIN = 1.0  # s between two attempts to open a port that has gone
+_MOST = 60  # rounds in which a warm-up must have come to its end
+_RESTARTS = 3.0  # s in which an inverter may be silent after a reset
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """The last look and its time."""
+
+    t: float
+    look: Look
+
+
+class Attendant:
+    """``want`` (Hz, signed) may be set by any thread; all else belongs to the one that calls ``round``.
+
+    ``open_line`` makes the family on a freshly opened line; it raises DriverError.
+    """
+
+    def __init__(
+        self, open_line: Callable[[], Family], clock: Clock, comm_loss: float, highest: float
+    ) -> None:
+        self._open, self._clock = open_line, clock
+        self._comm_loss, self._highest = comm_loss, highest
+        self._want = 0.0
+        self._told: float | None = None  # None: nothing since the line was opened
+        self._obedience = Obedience()
+        self._family: Family | None = None
+        self._retry = 0.0
+        self._reset = False
+        self.grace = 0.0  # until then silence is no trouble
+        self.seen: Seen | None = None
+        self.trouble: Fault | str = ""  # latched until ``clear``
+        self.missed = ""  # why the last exchange failed
+        self.warnings: tuple[str, ...] = ()
+
+    @property
+    def want(self) -> float:
+        """Hz, signed. Trouble makes it 0, and it stays so."""
+        return 0.0 if self.trouble else self._want
+
+    @want.setter
+    def want(self, hz: float) -> None:
+        self._want = hz
+
+    @property
+    def warm(self) -> bool:
+        """Whether enough has been answered to trust it."""
+        return self._family is not None and self._family.good >= self._family.warm_up
+
+    def connect(self) -> None:
+        """Open, stop, check, look until it is trusted. Raises DriverError."""
+        self._prepare()
+        for _ in range(_MOST):
+            self._look()
+            if self.warm:
+                return
+        raise DriverError(
+            f"the inverter answers, but not {self._familiar.warm_up} times in a row: {self.missed}"
+        )
+
+    def round(self) -> None:
+        """One exchange; what goes wrong is trouble, never an exception."""
+        try:
+            if self._family is None:
+                self._reopen()
+            else:
+                self._exchange()
+            self.missed = ""
+        except WireError as error:
+            self._let_go(str(error))
+        except (NoAnswerError, RefusedError) as error:
+            self.missed = str(error)
+            self._told = None  # whether it has heard is not known: it is told again
+        self._supervise()
+
+    def clear(self) -> None:
+        """Forget the trouble and reset a trip; what was wanted before is not wanted any more. Any thread."""
+        self._want = 0.0
+        self._reset = True
+        self.trouble = ""
+
+    def close(self) -> None:
+        """Stop, and let the line go."""
+        self._want = 0.0
+        if self._family is not None:
+            try:
+                self._family.stop()
+            except DriverError as error:
+                self.missed = str(error)
+            self._family.close()
+            self._family = None
+
+    @property
+    def _familiar(self) -> Family:
+        if self._family is None:
+            raise NoAnswerError("the line of the inverter is not open")
+        return self._family
+
+    def _prepare(self) -> None:
+        self._family = self._open()
+        self._family.hurry = self._stop_waits
+        self._told = None
+        self._family.stop()
+        self._told = 0.0
+        self.warnings = tuple(self._family.prepare(self._comm_loss, self._highest))
+
+    def _stop_waits(self) -> bool:
+        return self.want == 0.0 and self._told != 0.0
+
+    def _reopen(self) -> None:
+        now = self._clock.now()
+        if now < self._retry:
+            self._clock.sleep_until(min(self._retry, now + 0.1))
+            return
+        self._retry = now + _AGAIN
+        self._prepare()
+
+    def _exchange(self) -> None:
+        if self._reset:
+            self._clear_now()
+        self._tell()
+        self._look()
+
+    def _clear_now(self) -> None:
+        """Only what answers can be cleared; a trip that stays comes back with the next look."""
+        self._familiar.stop()
+        self._told = 0.0
+        self._obedience = Obedience()
+        tripped = self.seen is None or bool(self.seen.look.trip)
+        self._reset = False
+        if tripped:
+            self.grace = self._clock.now() + _RESTARTS
+            self._familiar.reset()
+
+    def _tell(self) -> None:
+        want, look = self.want, self.seen.look if self.seen else None
+        # A stop is said until it stands.
+        turns = want == 0.0 and look is not None and (look.run or look.output > STANDS)
+        if want == self._told and not turns:
+            return
+        self._obedience.told(self._clock.now(), want, look)
+        if want == 0.0:
+            self._familiar.stop()
+        else:
+            self._familiar.command(want)
+            if self._stop_waits():
+                return  # it came meanwhile: the next round says it first
+        self._told = want
+
+    def _look(self) -> None:
+        for look in self._familiar.looks():
+            if look is not None:
+                self._judge(look)
+            elif self._stop_waits():
+                return
+
+    def _judge(self, look: Look) -> None:
+        now = self._clock.now()
+        self.seen = Seen(now, look)
+        if self._reset:
+            return  # a look from before the operator's word
+        if look.trip:
+            self._latch(f"the inverter has tripped: {look.trip}", "spindle")
+        elif why := self._obedience.judge(now, look):
+            self._latch(f"the inverter does not obey: {why}", "ignores-stop")
+
+    def _let_go(self, why: str) -> None:
+        self.missed = why
+        if self._family is not None:
+            self._family.close()
+        self._family, self._told = None, None
+        self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
+
+    def _supervise(self) -> None:
+        """Nothing seen for too long is trouble, also when nothing was wanted of it."""
+        now = self._clock.now()
+        silent = now - self.seen.t if self.seen is not None else LOST
+        if silent >= LOST and now >= self.grace and not self.trouble:
+            why = self.missed or "the inverter does not answer"
+            self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
+
+    def _may_turn(self) -> bool:
+        return self._want != 0.0 or self.seen is None or self.seen.look.output > 0.0
+
+    def _latch(self, why: str, code: FaultCode) -> None:
+        if not self.trouble:
+            self.trouble = Fault(why, code)
+        self._want, self._reset = 0.0, False
+
+
+# --- The thread that repeats the attendant's rounds. Its end is seen by whoever asks for the spindle's fault.
+
+
+_END = 3.0  # s: the longest exchange and its retries
+
+
+class Keeper:
+    """Rounds without a pause: the line itself keeps the pace of its requests."""
+
+    def __init__(self, attendant: Attendant) -> None:
+        self._attendant = attendant
+        self._ended = threading.Event()
+        self.thread = threading.Thread(target=self._keep, name="inverter", daemon=True)
+
+    def start(self) -> None:
+        """Once."""
+        self.thread.start()
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still goes round."""
+        return self.thread.is_alive()
+
+    def close(self) -> None:
+        """The last word on the line is a stop."""
+        self._ended.set()
+        if self.thread.is_alive():
+            self.thread.join(_END)
+        self._attendant.close()
+
+    def _keep(self) -> None:
+        while not self._ended.is_set():
+            self._attendant.round()

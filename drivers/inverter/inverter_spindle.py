@@ -1,0 +1,182 @@
+"""The spindle behind an inverter. Nothing here waits for the line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from core.ports import Clock, DriverError, Fault
+from drivers.inverter.delta_vfdb import DeltaVfdB
+from drivers.inverter.hitachi_wj200 import HitachiWj200
+from drivers.inverter.huanyang_hy import HuanyangHy
+from drivers.inverter.inverter_attendant import LOST, Attendant
+from drivers.inverter.inverter_config import InverterConfig
+from drivers.inverter.inverter_family import Family
+from drivers.inverter.inverter_obedience import PRESS, Agreement
+from drivers.inverter.modbus_rtu import Modbus
+from drivers.serial_line import Wire
+
+_DEAD = LOST + 0.5  # s: the attendant itself must have told of a silence by now
+
+
+class Encoder(Protocol):
+    """What measures the spindle itself, where the machine has such a thing."""
+
+    def speed(self) -> float:
+        """rpm, signed."""
+        ...
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) or None."""
+        ...
+
+
+def nobody_presses() -> bool:
+    """A machine whose E-stop is not seen here."""
+    return False
+
+
+def well() -> str:
+    """An encoder of which nothing bad is known."""
+    return ""
+
+
+def always() -> bool:
+    """Somebody else calls the attendant's rounds."""
+    return True
+
+
+class InverterSpindle:
+    """``core.ports.Spindle``. Without an encoder its speed is what the inverter gives, and it has no angle.
+
+    ``alive`` tells whether somebody still attends the line; ``estop`` whether E-stop is pressed; ``lost``
+    why the encoder is not to be believed, which is a fault as long as the spindle turns or has to.
+    """
+
+    def __init__(
+        self,
+        config: InverterConfig,
+        attendant: Attendant,
+        clock: Clock,
+        *,
+        encoder: Encoder | None = None,
+        alive: Callable[[], bool] = always,
+        estop: Callable[[], bool] = nobody_presses,
+        lost: Callable[[], str] = well,
+    ) -> None:
+        self._config, self._attendant, self._clock = config, attendant, clock
+        self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost
+        self._agreement = Agreement(config.disagree)
+        self._unmeasured = ""  # why it has stopped measuring; latched until ``clear_fault``
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
+        if rpm:
+            if self._estop():
+                raise DriverError(
+                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                )
+            if why := self.fault() or self._lost():
+                raise DriverError(f"the spindle stays off: {why}", "spindle-off")
+            if not self._attendant.warm:
+                raise DriverError(
+                    "the spindle stays off: the inverter has not yet answered often enough", "spindle-off"
+                )
+        limit = self._config.rpm_max
+        self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
+
+    def coast(self) -> None:
+        """Over its line an inverter knows one stop, that of its ramp; to run free is what its STO is for."""
+        self._attendant.want = 0.0
+
+    def clear_fault(self) -> None:
+        """Forget a fault; a reset goes to the inverter where it has tripped. Nothing turns."""
+        if not self._alive():
+            raise DriverError(
+                "whoever attended the inverter has ended; start the control again", "inverter-silent"
+            )
+        self._attendant.clear()
+        self._unmeasured = ""
+
+    def speed(self) -> float:
+        """Measured rpm, signed: by the encoder, else what the inverter last said that it gives.
+
+        The inverter's word also while the encoder is lost; of two that disagree the higher.
+        """
+        if self._encoder is None or self._lost():
+            return self.given
+        if self._unmeasured:
+            return max(self._encoder.speed(), self.given, key=abs)
+        return self._encoder.speed()
+
+    @property
+    def given(self) -> float:
+        """rpm, signed, as the inverter last said."""
+        seen = self._attendant.seen
+        return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
+
+    def angle(self) -> tuple[float, float] | None:
+        """By the encoder; None without one, and of one that is not to be believed."""
+        if self._encoder is None or self._unmeasured or self._lost():
+            return None
+        return self._encoder.angle()
+
+    def fault(self) -> str:
+        """What is wrong, with the word for the operator; empty when well.
+
+        It is asked all the time: so an E-stop that is seen ends what was commanded before its release.
+        """
+        attendant = self._attendant
+        if self._estop():
+            attendant.want = 0.0
+        if attendant.trouble:
+            return attendant.trouble
+        if self._encoder is not None and self._wrong(self._encoder):
+            attendant.want = 0.0
+            return self._unmeasured
+        if not self._alive():
+            return Fault(f"nobody attends the inverter any more: {PRESS}", "inverter-silent")
+        seen = attendant.seen
+        now = self._clock.now()
+        if seen is not None and now - seen.t > _DEAD and now > attendant.grace:
+            return Fault(
+                f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}", "inverter-silent"
+            )
+        return ""
+
+    def _wrong(self, encoder: Encoder) -> bool:
+        """Whether it turns, or has to, and nobody measures it."""
+        needed = self._attendant.want != 0.0 or self.given != 0.0
+        if needed and not self._unmeasured:
+            now = self._clock.now()
+            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.given, now)
+        return bool(self._unmeasured)
+
+    def status(self) -> str:
+        """One line about it, for a check."""
+        seen = self._attendant.seen
+        if seen is None:
+            return "nothing heard yet"
+        look = seen.look
+        what = f"turns {'back' if look.reverse else 'forward'}" if look.output else "stands"
+        return f"{what}, gives {look.output:.2f} Hz, set to {look.setpoint:.2f} Hz, {look.current:.1f} A"
+
+
+# --- From a configuration to an inverter that is attended.
+
+
+def attendant(config: InverterConfig, open_wire: Callable[[], Wire], clock: Clock) -> Attendant:
+    """Whoever attends this inverter; nothing is opened yet. ``open_wire`` raises WireError."""
+
+    def opened() -> Family:
+        return family(config, open_wire(), clock)
+
+    return Attendant(opened, clock, config.comm_loss, config.rpm_max * config.hz_per_rpm)
+
+
+def family(config: InverterConfig, wire: Wire, clock: Clock) -> Family:
+    """The family that the machine file names, on an open line."""
+    if config.family == "huanyang":
+        return HuanyangHy(wire, clock, config.unit, config.character)
+    line = Modbus(wire, clock, config.unit, config.character)
+    return HitachiWj200(line, clock) if config.family == "hitachi-wj200" else DeltaVfdB(line)

@@ -1,0 +1,306 @@
+"""A CiA 402 drive on a simulated slide: power states, modes, the PVT queue, and what it faults on."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_objects import BIT_12, CSP, HM, IP, NEW, PP, REACHED, DriveState
+from drivers.canopen.pvt_mode import hermite, unpacked
+from drivers.lookalikes.servo_axis import Servo
+
+# --- The power states of a CiA 402 drive as the drive keeps them, with the transitions of the profile.
+
+
+_BITS = {
+    DriveState.NOT_READY: 0x00,
+    DriveState.OFF: 0x40,
+    DriveState.READY: 0x21,
+    DriveState.ON: 0x23,
+    DriveState.ENABLED: 0x27,
+    DriveState.QUICK_STOP: 0x07,
+    DriveState.REACTING: 0x0F,
+    DriveState.FAULT: 0x08,
+}
+_ON = frozenset(((0x07, DriveState.READY), (0x0F, DriveState.READY), (0x07, DriveState.ENABLED)))
+_VOLTAGE, _REMOTE = 0x10, 0x200
+_POWERED = frozenset((DriveState.ENABLED, DriveState.QUICK_STOP, DriveState.REACTING))
+
+
+class PowerStates:
+    """``control`` takes control words, ``stopped`` ends a braking; ``sto`` is the hardware's word."""
+
+    def __init__(self, powered_up: Callable[[], None]) -> None:
+        self.state = DriveState.OFF
+        self.last = 0  # control word
+        self.sto = False
+        self.refuses = False  # a drive that does not come on, for tests
+        self._powered_up = powered_up
+
+    @property
+    def powered(self) -> bool:
+        """The motor has current."""
+        return self.state in _POWERED
+
+    @property
+    def braking(self) -> bool:
+        """On its own way to rest."""
+        return self.state in {DriveState.QUICK_STOP, DriveState.REACTING}
+
+    @property
+    def word(self) -> int:
+        """The state's bits of the status word."""
+        return _BITS[self.state] | _VOLTAGE | _REMOTE
+
+    def control(self, word: int) -> None:
+        """One transition at most, as the profile's figure has them."""
+        rising = word & 0x80 and not self.last & 0x80
+        self.last = word
+        if self.state is DriveState.FAULT:
+            self.state = DriveState.OFF if rising else self.state
+        elif not word & 0x02:
+            self.off()
+        elif not word & 0x04:
+            self.quick_stop()
+        elif self.state in {DriveState.OFF, DriveState.READY, DriveState.ON, DriveState.ENABLED}:
+            self._step(word)
+
+    def quick_stop(self) -> None:
+        """Brake where there is power, lose it at once where there is none to brake with."""
+        if self.state is DriveState.ENABLED:
+            self.state = DriveState.QUICK_STOP
+        elif not self.powered and self.state is not DriveState.FAULT:
+            self.state = DriveState.OFF
+
+    def off(self) -> None:
+        """No voltage."""
+        if self.state not in {DriveState.FAULT, DriveState.REACTING}:
+            self.state = DriveState.OFF
+
+    def trip(self) -> None:
+        """A fault: brake, then no power."""
+        self.state = DriveState.REACTING if self.powered else DriveState.FAULT
+
+    def stopped(self) -> None:
+        """At rest after braking."""
+        self.state = DriveState.FAULT if self.state is DriveState.REACTING else DriveState.OFF
+
+    def _step(self, word: int) -> None:
+        command = word & 0x0F
+        if self.sto or self.refuses:
+            return
+        if command == 0x06:
+            self.state = DriveState.READY
+        elif (command, self.state) in _ON:
+            self.state = DriveState.ON
+        elif command == 0x0F and self.state is DriveState.ON:
+            self.state = DriveState.ENABLED
+            self._powered_up()
+
+
+QUEUE = 64  # records
+LOW = 4
+EMCY_UNDERFLOW, EMCY_OVERFLOW, EMCY_FOLLOWING = 0xFF0C, 0xFF0D, 0x8611
+_MODES = 0x01 | 0x20 | 0x40 | 0x80  # PP, HM, IP, CSP in 0x6502
+_HOME_SETTLE = 0.1  # s
+
+
+class AxisDrive:
+    """``step`` once a millisecond of the plant; objects come by ``read`` and ``write``."""
+
+    def __init__(self, servo: Servo, emergency: Callable[[int], None]) -> None:
+        self.servo = servo
+        self.emergency = emergency
+        self.power = PowerStates(self._hold)
+        self.mode = 0
+        self.target = 0
+        self.p, self.v = servo.p, 0.0  # demand, mm
+        self.queue: deque[tuple[int, int, int]] = deque()
+        self.least = QUEUE  # records left while playing, for tests
+        self.playing = False
+        self.homed = False
+        self._now: tuple[int, int, int] = (0, 0, 0)
+        self._in = 0.0  # s since the present record
+        self._homing = False
+        self._settled = 0.0
+        self._pending = False  # a new target, to be acknowledged
+        self._going = False
+        self.values: dict[tuple[int, int], int] = {}
+        self.unit = 1.0  # counts/s of one unit of its velocities
+        self.second: Callable[[], int] | None = None  # counts of a second encoder input
+
+    # --- objects ------------------------------------------------------------------------------------------
+
+    def read(self, index: int, _sub: int) -> int | None:
+        """What lives in the drive."""
+        count = self.servo.axis.count
+        live: dict[int, Callable[[], int]] = {
+            od.DEVICE_TYPE: lambda: 0x00020192,
+            od.SUPPORTED: lambda: _MODES,
+            od.STATUS: self.status,
+            od.MODE_SHOWN: lambda: self.mode,
+            od.POSITION: lambda: round(self.servo.reading / count),
+            od.FOLLOWING: lambda: round((self.p - self.servo.reading) / count) if self.power.powered else 0,
+        }
+        if index == od.SECOND_POSITION and self.second is not None:
+            return (self.second() + 2**31) % 2**32 - 2**31
+        return live[index]() if index in live else None
+
+    def write(self, index: int, sub: int, value: int) -> None:
+        """What the host says."""
+        self.values[index, sub] = value
+        if index == od.CONTROL:
+            self._control(value)
+        elif index == od.MODE and not self.playing and not self._homing:
+            self.mode = value
+        elif index == od.TARGET:
+            self.target = value
+        elif index == od.PVT_RECORD:
+            self._push(value)
+        elif index == od.BUFFER and sub == 6 and value == 0:
+            self.queue.clear()
+
+    def host_lost(self) -> None:
+        """Abort connection option: 3 is a quick stop."""
+        if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
+            self.power.quick_stop()
+        elif self.values.get((od.ABORT_OPTION, 0), 0) in {1, 2}:
+            self.power.trip()
+
+    def reset(self) -> None:
+        """Volatile things are gone; so is the reference of an encoder that only counts."""
+        self.power.off()
+        self.mode, self.playing, self._homing, self._going = 0, False, False, False
+        self.queue.clear()
+        self.values.clear()
+        self.servo.power_lost()
+
+    def status(self) -> int:
+        """0x6041."""
+        word = self.power.word
+        if self.playing or (self._pending and self.mode == PP) or (self.homed and self.mode == HM):
+            word |= BIT_12
+        if not self.playing and not self._homing and not self._going and self.v == 0.0:
+            word |= REACHED
+        return word
+
+    # --- motion -------------------------------------------------------------------------------------------
+
+    def step(self, dt: float) -> None:
+        """One step of drive and slide."""
+        if not self.power.powered:
+            self.playing = self._homing = self._going = False
+            self.servo.roll(dt)
+            self.p, self.v = self.servo.reading, 0.0
+            return
+        if self.power.braking:
+            self._brake(dt)
+        elif self.playing:
+            self._play(dt)
+        elif self._homing:
+            self._look_for_home(dt)
+        elif self._going:
+            self._towards(self.target * self.servo.axis.count, dt)
+        elif self.mode == CSP:
+            goal = self.target * self.servo.axis.count
+            self.p, self.v = goal, 0.0
+        if self.servo.follow(self.p, self.v, dt):
+            self._fail(EMCY_FOLLOWING)
+        if self.v == 0.0:
+            self.servo.settle(self.p)
+
+    def _control(self, word: int) -> None:
+        before = self.power.last
+        self.power.control(word)
+        rising = word & NEW and not before & NEW
+        if self.power.state is not DriveState.ENABLED:
+            return
+        if self.mode == IP:
+            if rising and not self.playing and self.queue:
+                self._now, self._in, self.playing = self.queue.popleft(), 0.0, True
+        elif self.mode == HM:
+            if rising:
+                self._homing, self.homed, self._settled = True, False, 0.0
+            elif not word & NEW:
+                self._homing, self.v = False, 0.0
+        elif self.mode == PP:
+            if rising:
+                self._going = True
+            self._pending = bool(word & NEW)
+
+    def _push(self, value: int) -> None:
+        if len(self.queue) >= QUEUE:
+            self._fail(EMCY_OVERFLOW)
+        else:
+            self.queue.append(unpacked(value.to_bytes(8, "little")))
+
+    def _play(self, dt: float) -> None:
+        count = self.servo.axis.count
+        self._in += dt
+        while self._in > 0.001 * self._now[0] + 1e-9 or self._now[0] == 0:
+            if self._now[0] == 0:
+                self.playing, self.p, self.v = False, self._now[2] * count, 0.0
+                return
+            if not self.queue:
+                self._fail(EMCY_UNDERFLOW)
+                return
+            self._in -= 0.001 * self._now[0]
+            self._now = self.queue.popleft()
+        self.least = min(self.least, len(self.queue))
+        if not self.queue:
+            self._fail(EMCY_UNDERFLOW)
+            return
+        ms, v0, p0 = self._now
+        _, v1, p1 = self.queue[0]
+        unit = self.unit
+        before = self.p
+        self.p = count * hermite(p0, unit * v0, p1, unit * v1, 0.001 * ms, self._in / (0.001 * ms))
+        self.v = (self.p - before) / dt
+
+    def _towards(self, goal: float, dt: float) -> None:
+        """Profile position: up and down with the profile's acceleration, no faster than its speed."""
+        count = self.servo.axis.count
+        accel = max(self.values.get((od.PROFILE_ACCEL, 0), 0), 1) * count
+        top = max(self.values.get((od.PROFILE_SPEED, 0), 0), 1) * count
+        left = goal - self.p
+        wanted = math.copysign(min(top, math.sqrt(2.0 * accel * abs(left))), left)
+        self.v += min(max(wanted - self.v, -accel * dt * 1.05), accel * dt * 1.05)
+        if abs(left) <= abs(self.v) * dt or abs(left) < 0.5 * count:
+            self.p, self.v, self._going = goal, 0.0, False
+        else:
+            self.p += self.v * dt
+
+    def _look_for_home(self, dt: float) -> None:
+        """To the switch at the first homing speed; the reference once it stands there."""
+        way = self.servo.switch - self.p
+        speed = max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.unit * self.servo.axis.count
+        self.v = math.copysign(min(speed, abs(way) / dt), way)
+        self.p += self.v * dt
+        if abs(way) > 1e-9:
+            return
+        self.v = 0.0
+        self._settled += dt
+        if self._settled >= _HOME_SETTLE:
+            self.servo.reference()
+            self.p, self._homing, self.homed = self.servo.p, False, True
+
+    def _brake(self, dt: float) -> None:
+        drop = self.servo.axis.amax * dt
+        self.v = 0.0 if abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
+        self.p += self.v * dt
+        self.playing = self._homing = self._going = False
+        if self.v == 0.0 and abs(self.servo.v) < 0.1:
+            self.power.stopped()
+
+    def _hold(self) -> None:
+        """Power has come on: stay here."""
+        self.p, self.v = self.servo.reading, 0.0
+        self.queue.clear()
+
+    def _fail(self, code: int) -> None:
+        self.power.trip()
+        self.playing = False
+        self.queue.clear()
+        self.emergency(code)

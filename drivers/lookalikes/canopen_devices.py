@@ -1,0 +1,157 @@
+"""All devices of a machine on one bus, with the simulated slides, spindle and terminals behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import can
+
+from core.ports import Clock
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_bus import opened
+from drivers.canopen.canopen_config import CanopenConfig
+from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from drivers.lookalikes.canopen_modules import EncoderDevice, TerminalBoard
+from drivers.lookalikes.canopen_node import Device, PeerNetwork, PeerNode
+from drivers.lookalikes.canopen_spindle_drive import SpindleDrive
+from drivers.lookalikes.plant import Plant
+from drivers.lookalikes.plant_config import SimConfig
+from drivers.lookalikes.plant_hands import Schedule, SimMachine
+
+_SETTLED = 1e-9
+
+
+class PeerPlant(Plant):
+    """The simulated machine, its slides moved by drives that think for themselves."""
+
+    def __init__(self, config: SimConfig, clock: Clock) -> None:
+        super().__init__(config, clock)
+        self.drives: dict[str, AxisDrive] = {}
+        self.spindle_drive: SpindleDrive | None = None
+        self._at = clock.now()
+
+    def advance(self) -> float:
+        """Bring everything up to the clock in steps of the model; returns the clock's time."""
+        now = self.clock.now()
+        with self.lock:
+            self._break(now)
+            step = self.config.step
+            while self._at + step <= now + _SETTLED:
+                self._at += step
+                if self.spindle_drive is not None:
+                    self.spindle_drive.step(self._at)
+                for drive in self.drives.values():
+                    drive.step(step)
+            if now > self.spindle.t:
+                self.spindle.advance(now)
+        return now
+
+    def trip(self, fault: str) -> None:
+        """The drive named before the colon gives up, with an EMCY."""
+        name = fault.partition(":")[0]
+        self.drives[name].power.trip()
+        self.drives[name].emergency(0x4210)
+
+    def press_estop(self) -> None:
+        """The hardware chain: drives brake and lose power, the spindle too."""
+        with self.lock:
+            now = self.advance()
+            self.panel.estop = True
+            for drive in self.drives.values():
+                drive.power.sto = True
+                drive.power.quick_stop()
+            if self.spindle_drive is not None:
+                self.spindle_drive.power.sto = True
+                self.spindle_drive.power.off()
+            self.spindle.cut(now)
+
+
+class Peers:
+    """``pump`` takes in what has come and lets time pass; call it from one thread."""
+
+    def __init__(self, config: CanopenConfig, sim: SimConfig, clock: Clock) -> None:
+        self.config = config
+        self.clock = clock
+        self.plant = PeerPlant(sim, clock)
+        self.machine = SimMachine(self.plant)
+        if sim.faults:
+            self.plant.due = Schedule(self.machine, sim.faults).due
+        self.network = PeerNetwork(opened(config.bus))
+        self.nodes: dict[str, PeerNode] = {}
+        self.encoder: EncoderDevice | None = None
+        self.cut = False  # the cable is off
+        self.arrival: Callable[[float], float] | None = None  # a frame's time stamp to this clock's time
+        self._early: can.Message | None = None
+        self._build()
+
+    def pump(self, wait: float = 0.0) -> None:
+        """Everything that is due now; waits at most so many seconds for the first frame."""
+        now = self.plant.advance()
+        if self.plant.drives and not self.plant.panel.estop:
+            self._reset_sto()
+        bus = self.network.bus
+        while bus is not None:
+            message = self._early or bus.recv(wait)
+            self._early = None
+            if message is None:
+                break
+            if self.arrival is not None and self.arrival(message.timestamp) > now:
+                self._early = message  # a peer that was away takes each frame at its time, not all at once
+                break
+            wait = 0.0
+            if not self.cut and not message.is_error_frame:
+                for node in self.nodes.values():
+                    node.take(message.arbitration_id, bytes(message.data))
+        for node in self.nodes.values():
+            node.tick(now)
+
+    def cable(self, *, out: bool) -> None:
+        """Pull the cable out or put it in again: nothing is heard on either side."""
+        self.cut = out
+        for node in self.nodes.values():
+            node.silent = out
+
+    def close(self) -> None:
+        """Let the bus go."""
+        if self.network.bus is not None:
+            self.network.bus.shutdown()
+            self.network.bus = None
+
+    def _build(self) -> None:
+        config, plant = self.config, self.plant
+        for axis in config.axes:
+            if axis.node:
+                servo = plant.servos[plant.names.index(axis.name)]
+                drive = AxisDrive(servo, partial(self._emergency, axis.name))
+                plant.drives[axis.name] = drive
+                self._add(axis.name, axis.node, drive)
+        if config.spindle is not None:
+            counts = config.spindle.counts_per_rev
+            as_c = plant.config.axes[plant.names.index("C")] if config.spindle.is_c else None
+            spindle = SpindleDrive(plant.spindle, counts, partial(self._emergency, "spindle"), as_c)
+            plant.spindle_drive = spindle
+            self._add("spindle", config.spindle.node, spindle)
+        if config.encoder is not None:
+            self.encoder = encoder = EncoderDevice(plant, config.encoder.counts_per_rev)
+            if config.encoder.node:
+                self._add(config.encoder.name, config.encoder.node, encoder)
+            else:
+                plant.drives[config.encoder.name].second = lambda: encoder.position
+        for module in config.modules:
+            self._add(module.name, module.node, TerminalBoard(module.name, config, plant), module=True)
+
+    def _add(self, name: str, number: int, device: Device, *, module: bool = False) -> None:
+        objects = od.module_objects() if module else od.drive_objects()
+        if isinstance(device, EncoderDevice):
+            objects = od.encoder_objects()
+        self.nodes[name] = PeerNode(self.network, number, objects, device)
+
+    def _emergency(self, name: str, code: int) -> None:
+        self.nodes[name].emergency(code)
+
+    def _reset_sto(self) -> None:
+        for drive in self.plant.drives.values():
+            drive.power.sto = False
+        if self.plant.spindle_drive is not None:
+            self.plant.spindle_drive.power.sto = False

@@ -1,0 +1,159 @@
+"""A CiA 402 drive on the simulated spindle: velocities, and positions where the spindle is C too."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_objects import HM, IP, NEW, PV, REACHED, DriveState
+from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from drivers.lookalikes.plant_config import SimAxis
+from drivers.lookalikes.servo_axis import Servo
+from drivers.lookalikes.spindle_motor import SpindleMotor
+
+EMCY_FAULT = 0x7120  # motor blocked
+_INDEX = (33, 34)
+_TURN = 360.0
+
+
+class SpindleSlide(Servo):
+    """The spindle as an axis in degrees: it is where it is told to be, and homes on its index."""
+
+    def __init__(self, axis: SimAxis, motor: SpindleMotor) -> None:
+        super().__init__(axis)
+        self._motor = motor
+        self._zero = 0.0  # degrees of the motor at which it counts 0
+        self.offset = 0.0  # what it counts once it is homed
+
+    @property
+    def place(self) -> float:
+        """Degrees as the drive counts them."""
+        return self._motor.turns * _TURN - self._zero
+
+    def adopt(self) -> None:
+        """It has turned as the spindle."""
+        self.p, self.v = self.place, 0.0
+
+    def seek(self, method: int) -> None:
+        """What a homing goes to: the next index, or where it stands."""
+        ahead = (math.floor(self._motor.turns + 1e-9) + 1) * _TURN - self._zero
+        self.switch = ahead if method in _INDEX else self.p
+
+    def follow(self, p: float, v: float, _dt: float) -> bool:
+        """Without an error."""
+        self.p, self.v = p, v
+        self._motor.turns = (p + self._zero) / _TURN
+        return False
+
+    def roll(self, _dt: float) -> None:
+        """The motor is somebody else's."""
+
+    def reference(self) -> None:
+        """It counts ``offset`` here."""
+        self._zero += self.p - self.offset
+        self.p = self.offset
+
+
+class SpindleDrive:
+    """``step`` with the plant's time."""
+
+    def __init__(
+        self, motor: SpindleMotor, counts: int, emergency: Callable[[int], None], axis: SimAxis | None = None
+    ) -> None:
+        self.motor = motor
+        self.emergency = emergency
+        self.positions = axis is not None
+        made = axis or SimAxis("C", 1.0, 1.0, 1.0, 1.0, 1.0)
+        made = replace(made, count=_TURN / max(counts, 1))
+        self.slide = SpindleSlide(made, motor)
+        self.axis = AxisDrive(self.slide, emergency)
+        self.axis.unit = counts / 60.0
+        self.power = self.axis.power
+        self.mode = 0
+        self.target = 0
+        self._counts = counts
+        self._ordered: int | None = None
+        self._at = 0.0
+        self.values: dict[tuple[int, int], int] = {}
+
+    @property
+    def as_axis(self) -> bool:
+        """It positions, or looks for its place."""
+        return self.mode in {IP, HM}
+
+    def read(self, index: int, _sub: int) -> int | None:
+        """What lives in the drive."""
+        counted = self.slide.place / _TURN * self._counts
+        live: dict[int, Callable[[], int]] = {
+            od.DEVICE_TYPE: lambda: 0x00020192,
+            od.SUPPORTED: lambda: 0x64 if self.positions else 0x04,
+            od.STATUS: lambda: self.axis.status() if self.as_axis else self.power.word | self._reached(),
+            od.MODE_SHOWN: lambda: self.mode,
+            od.VELOCITY: lambda: round(self.slide.v / 6.0 if self.as_axis else self.motor.speed),
+            od.POSITION: lambda: (round(counted) + 2**31) % 2**32 - 2**31,
+        }
+        return live[index]() if index in live else None
+
+    def _reached(self) -> int:
+        return REACHED if abs(self.motor.speed - self.target) < 10 else 0
+
+    def write(self, index: int, sub: int, value: int) -> None:
+        """What the host says."""
+        self.values[index, sub] = value
+        if index == od.MODE:
+            self._change(value)
+        elif index == od.TARGET_SPEED:
+            self.target = value
+        elif index != od.CONTROL:
+            self.axis.write(index, sub, value)
+        elif self.as_axis:
+            if self.mode == HM and value & NEW and not self.power.last & NEW:
+                self.slide.offset = self.values.get((od.HOME_OFFSET, 0), 0) * _TURN / self._counts
+                self.slide.seek(self.values.get((od.HOME_METHOD, 0), 0))
+            self.axis.write(index, sub, value)
+        else:
+            self.power.control(value)
+
+    def _change(self, mode: int) -> None:
+        """Only at standstill, and not while it positions."""
+        if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis.playing:
+            return
+        self.mode = mode
+        self.axis.write(od.MODE, 0, mode)
+        if self.as_axis:
+            self.slide.adopt()
+            self.axis.p, self.axis.v = self.slide.p, 0.0
+
+    def host_lost(self) -> None:
+        """Abort connection option."""
+        if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
+            self.power.quick_stop()
+
+    def reset(self) -> None:
+        """No power, no target."""
+        self.axis.reset()
+        self.mode = self.target = 0
+        self.values.clear()
+
+    def step(self, now: float) -> None:
+        """Obey; lose power when braked."""
+        dt, self._at = now - self._at, now
+        if self.motor.faults.fault and self.power.state is not DriveState.FAULT:
+            self.power.trip()
+            self.emergency(EMCY_FAULT)
+        if self.as_axis:
+            self.axis.step(dt)
+            self._ordered = None
+            return
+        wanted = self.target if self.power.state is DriveState.ENABLED and self.mode == PV else 0
+        if not self.power.powered:
+            if self._ordered is not None:
+                self.motor.cut(now)
+                self._ordered = None
+        elif wanted != self._ordered:
+            self.motor.order(now, float(wanted))
+            self._ordered = wanted
+        if self.power.braking and abs(self.motor.speed) < 1.0:
+            self.power.stopped()

@@ -1,0 +1,96 @@
+"""The look-alike at the other end of a pseudo terminal or a TCP port."""
+
+from __future__ import annotations
+
+import os
+import select
+import socket
+import tty
+from collections.abc import Callable
+
+from core.ports import DriverError
+from drivers.lookalikes.grblhal_firmware import Firmware
+
+_ROUND = 0.002  # s
+
+
+class PtyEnd:
+    """The controller's end of a pseudo terminal; the host opens ``name`` as a serial device."""
+
+    def __init__(self) -> None:
+        self._ours, self._theirs = os.openpty()
+        tty.setraw(self._theirs)
+        os.set_blocking(self._ours, False)
+        self.name = os.ttyname(self._theirs)
+
+    def pump(self, firmware: Firmware, patience: float = 0.0) -> None:
+        """Carry bytes both ways; waits ``patience`` for some."""
+        ready, _, _ = select.select([self._ours], [], [], patience)
+        if ready:
+            firmware.feed(os.read(self._ours, 4096))
+        data = firmware.take()
+        if data:
+            os.write(self._ours, data)
+
+    def close(self) -> None:
+        """Unplug."""
+        os.close(self._ours)
+        os.close(self._theirs)
+
+
+class TcpEnd:
+    """The controller's end of a TCP port, one host at a time; like the real one it goes on without."""
+
+    def __init__(self, host: str, port: int) -> None:
+        try:
+            self._listener = socket.create_server((host, port))
+        except OSError as error:
+            raise DriverError(f"tcp://{host}:{port} cannot be opened: {error}") from error
+        self.name = "tcp://{}:{}".format(*self._listener.getsockname()[:2])
+        self._host: socket.socket | None = None
+
+    def pump(self, firmware: Firmware, patience: float = 0.0) -> None:
+        """Carry bytes both ways; waits ``patience`` for some."""
+        ends = [self._listener] + ([self._host] if self._host else [])
+        ready, _, _ = select.select(ends, [], [], patience)
+        if self._listener in ready:
+            self._hang_up()
+            self._host, _ = self._listener.accept()
+        elif self._host is not None and self._host in ready:
+            self._receive(firmware)
+        data = firmware.take()
+        if data and self._host is not None:
+            try:
+                self._host.sendall(data)
+            except OSError:
+                self._hang_up()
+
+    def close(self) -> None:
+        """Close the port."""
+        self._hang_up()
+        self._listener.close()
+
+    def _receive(self, firmware: Firmware) -> None:
+        assert self._host is not None
+        try:
+            data = self._host.recv(4096)
+        except OSError:
+            data = b""
+        if data:
+            firmware.feed(data)
+        else:
+            self._hang_up()
+
+    def _hang_up(self) -> None:
+        if self._host is not None:
+            self._host.close()
+            self._host = None
+
+
+def serve(end: PtyEnd | TcpEnd, firmware: Firmware, going: Callable[[], bool]) -> None:
+    """Answer while ``going``."""
+    try:
+        while going():
+            end.pump(firmware, _ROUND)
+    finally:
+        end.close()

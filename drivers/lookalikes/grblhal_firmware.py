@@ -1,0 +1,418 @@
+"""A grblHAL controller played by us: buffers, real-time bytes, states, alarms, resets and status reports."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from core.ports import Clock
+from drivers.lookalikes.grblhal_program import Modes, Program
+from drivers.lookalikes.grblhal_settings import Quirks, Registers
+from drivers.lookalikes.grblhal_slides import PeerBlock, Slides
+from drivers.lookalikes.plant_config import SimSpindle
+from drivers.lookalikes.spindle_motor import SpindleMotor
+
+# --- What the look-alike's real-time bytes do, in whatever state it is.
+
+
+_STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
+
+
+def act(m: Firmware, byte: int) -> None:
+    """At once."""
+    if byte == 0x18:
+        m.reset()
+    elif byte == 0x19:
+        _stop(m)
+    elif m.waits:
+        return  # flags are looked at when the wait is over; here they are gone
+    elif byte in {0x80, 0x87}:
+        m.say(m.reports.text(m, full=byte == 0x87) + "\r\n")
+    elif byte == 0x82:
+        m.hold = m.hold or not (m.alarm or m.jogs or m.quirks.hold_broken)
+    elif byte == 0x81:
+        _go_on(m)
+    elif byte == 0x85:
+        m.rx.clear()
+        m.program.error = 0
+        m.cancels = m.jogs and bool(m.slides.queue)
+    elif 0x90 <= byte <= 0x9E:
+        _override(m, byte)
+
+
+def _stop(m: Firmware) -> None:
+    """0x19 ends the steps where they are, and unlocks most alarms; in the wait for an index it is a reset."""
+    if m.blocking:
+        return
+    if m.waits:
+        m.restart(False)
+        return
+    m.torn += m.slides.moving
+    m.halt()
+    m.rx.clear()
+    m.program.modes = Modes()
+    if m.alarm not in {11, 12}:
+        m.alarm = 0
+        m.say("[MSG:Stop]\r\n")
+
+
+def _go_on(m: Firmware) -> None:
+    if m.slides.moving or m.alarm or not (m.hold or m.door):
+        return
+    m.hold = m.door = False
+    if m.paused and not int(m.registers[63]) & 2:
+        m.rpm = 0.0
+    m.paused = False
+    m.turn(m.rpm)
+
+
+def _override(m: Firmware, byte: int) -> None:
+    if m.quirks.stubborn:
+        return
+    m.reports.overrides_due = True
+    if byte == 0x90:
+        m.feed_percent = 100
+    elif byte in _STEPS:
+        m.feed_percent = min(max(m.feed_percent + _STEPS[byte], 10), 200)
+    elif byte in {0x95, 0x96, 0x97}:
+        m.rapid_percent = {0x95: 100, 0x96: 50, 0x97: 25}[byte]
+    elif byte == 0x99:
+        m.spindle_percent = 100
+    elif byte - 9 in _STEPS:
+        m.spindle_percent = min(max(m.spindle_percent + _STEPS[byte - 9], 10), 200)
+    elif byte == 0x9E and m.hold and m.rpm and not m.quirks.toggle_broken:
+        m.paused = not m.paused
+    m.turn(m.rpm)
+
+
+# --- One step of the look-alike's machine: homing, the wait for an index, slides that move and stop.
+
+
+STEP = 0.001  # s
+_INDEX = 5.0  # s that a thread waits for the index
+
+
+def step(m: Firmware) -> None:
+    """Let ``STEP`` pass."""
+    if m.homing is not None:
+        _home(m, *m.homing)
+        return
+    if m.alarm:
+        return
+    slides = m.slides
+    slides.feed, slides.rapid = m.feed_percent / 100.0, m.rapid_percent / 100.0
+    first = slides.queue[0] if slides.queue else None
+    resting = (m.hold or m.door) and not slides.moving
+    if first is not None and not resting and _wants_index(m, first):
+        return
+    if first is not None and first.per_rev and not first.thread and abs(m.spindle.speed) < 1.0:
+        m.raise_alarm(14)
+        return
+    slides.held = m.hold or m.door or m.cancels
+    slides.step(STEP, abs(m.spindle.speed) / 60.0)
+    if m.cancels and not slides.moving:
+        m.cancels = False
+        slides.drop()
+        m.program.end = slides.place
+    if not slides.queue:
+        m.jogs = False
+
+
+def _home(m: Firmware, until: float, axes: int) -> None:
+    if m.k >= until:
+        m.homing, m.homed = None, m.homed | axes
+        m.alarm = 11 if int(m.registers[22]) & 4 and m.homed & 5 != 5 else 0
+        m.say("[MSG:]\r\n")
+        m.answer()
+
+
+def _wants_index(m: Firmware, block: PeerBlock) -> bool:
+    """A thread begins at the second index from now; until then nothing is heard and nothing is said."""
+    if not block.thread or m.slides.begun:
+        return False
+    if m.index_since is None:
+        m.index_since, m.index_at = m.k, math.floor(abs(m.spindle.turns)) + 2
+    if not m.quirks.index_missing and abs(m.spindle.turns) >= m.index_at:
+        m.index_since = None
+        return False
+    if m.k - m.index_since > _INDEX:
+        m.raise_alarm(14)
+    return True
+
+
+# --- The look-alike's status reports, with what each carries and what it leaves out.
+
+
+_OFFSETS_BUSY, _OFFSETS_IDLE = 30, 10  # every so many reports
+_OVERRIDES_BUSY, _OVERRIDES_IDLE = 20, 10
+_BUSY = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
+
+
+@dataclass(slots=True)
+class Reports:
+    """Offsets and overrides come every so often, and when they have changed.
+
+    A report with offsets has no overrides: so a full one, which always has offsets, never tells them.
+    """
+
+    offsets_in: int = 0
+    overrides_in: int = 0
+    offsets_due: bool = False
+    overrides_due: bool = False
+
+    def text(self, m: Firmware, *, full: bool) -> str:
+        """One report, without its end of line."""
+        busy = m.state.partition(":")[0] in _BUSY
+        offsets, overrides = self._due(full, busy)
+        return f"<{m.told_state(full)}{_motion(m)}{_extras(m, offsets, overrides, full)}>"
+
+    def _due(self, full: bool, busy: bool) -> tuple[bool, bool]:
+        offsets = full or self.offsets_due
+        if self.offsets_in > 0 and not offsets:
+            self.offsets_in -= 1
+        else:
+            self.offsets_in = (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1
+        overrides = False
+        if self.overrides_in > 0 and not (full or self.overrides_due):
+            self.overrides_in -= 1
+        elif not offsets:
+            overrides = True
+            self.overrides_in = (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1
+        self.overrides_due = False
+        self.offsets_due = self.offsets_in == 0
+        return offsets, overrides
+
+
+def _stepped(place: float, steps: float) -> float:
+    """It counts whole steps."""
+    return round(place * steps) / steps
+
+
+def _motion(m: Firmware) -> str:
+    scale = 2.0 if m.program.modes.radius == "G7" else 1.0
+    x, z = (
+        _stepped(place, m.registers[number]) for place, number in zip(m.slides.place, (100, 102), strict=True)
+    )
+    text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.slides.free},{m.rx_free}"
+    if m.slides.queue and m.slides.queue[0].number:
+        text += f"|Ln:{m.slides.queue[0].number}"
+    text += f"|FS:{60.0 * m.slides.v:.0f},{abs(m.commanded):.0f}"
+    if m.quirks.encoder:
+        text += f",{abs(m.spindle.speed):.0f}"
+    return text + (f"|Pn:{m.pins}" if m.pins else "")
+
+
+def _extras(m: Firmware, offsets: bool, overrides: bool, full: bool) -> str:
+    text = "|WCO:" + ",".join(f"{value:.3f}" for value in m.program.offset) if offsets else ""
+    text += "|WCS:G54" if full else ""
+    text += f"|Ov:{m.feed_percent},{m.rapid_percent},{m.spindle_percent}" if overrides else ""
+    accessories = "" if not m.commanded else "S" if m.commanded > 0.0 else "C"
+    accessories += "F" * m.outputs.get("flood", False) + "M" * m.outputs.get("mist", False)
+    text += f"|A:{accessories}" if full or (overrides and accessories) else ""
+    if not full:
+        return text
+    homed = f"|H:{int(m.homed & 5 == 5)}" + (f",{m.homed}" if int(m.registers[22]) & 2 else "")
+    read = "" if m.read is None else f"|In:{m.read}"
+    lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.lathe else ""
+    return f"{text}|Sc:{homed}{lathe}|T:0|TLR:0{read}|FW:grblHAL"
+
+
+_STEP = 0.001  # s
+_BANNER = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
+_BUFFER = 1023  # bytes for lines; one of the 1024 stays free
+_GATE = 100  # free bytes of it, with no more than which the simulator takes nothing from its socket
+_CRITICAL = frozenset((1, 2, 10, 17))
+
+
+class Firmware:
+    """Bytes in by ``feed``, bytes out by ``take``; ``advance`` brings it up to the clock."""
+
+    def __init__(self, clock: Clock, quirks: Quirks | None = None) -> None:
+        self.clock = clock
+        self.quirks = quirks or Quirks()
+        self.registers = Registers(self.quirks)
+        self.reports = Reports()
+        self.slides = Slides(self.registers, 100)
+        self.spindle = SpindleMotor(SimSpindle())
+        self.program = Program(self)
+        self.outputs: dict[str, bool] = {}
+        self.pins = ""
+        self.inputs: dict[int, bool] = {}
+        self.read: int | None = None  # what the last M66 has found
+        self.homed = 0  # bit by axis
+        self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
+        self.blocking = False  # behind a critical alarm: nothing but a reset
+        self.door = False
+        self.overflowed = 0  # bytes that did not fit
+        self.torn = 0  # how often moving slides have been stopped dead
+        self.feed_percent, self.rapid_percent, self.spindle_percent = 100, 100, 100
+        self.rpm = 0.0
+        self.jogs = False
+        self.hold = False
+        self.paused = False  # spindle stopped in a hold
+        self._wire = bytearray()  # not yet taken from the socket
+        self.rx = bytearray()
+        self._out = bytearray()
+        self.k = clock.now()
+        self.cancels = False  # a jog
+        self.index_since: float | None = None
+        self.index_at = 0
+        self.homing: tuple[float, int] | None = None  # until, axes
+
+    # --- the wire -----------------------------------------------------------------------------------------
+
+    def feed(self, data: bytes) -> None:
+        """Bytes from the host: real-time ones act at once, others wait their turn."""
+        self.advance()
+        self._wire += data
+        self._take_in()
+        self.program.pump()
+
+    def take(self) -> bytes:
+        """Bytes for the host."""
+        self.advance()
+        data, self._out = bytes(self._out), bytearray()
+        return b"" if self.quirks.deaf else data
+
+    def advance(self) -> None:
+        """Up to the clock."""
+        now = self.clock.now()
+        while self.k + _STEP <= now + 1e-9:
+            self.k += _STEP
+            self.spindle.advance(self.k)
+            step(self)
+            self._take_in()
+            self.program.pump()
+
+    @property
+    def rx_free(self) -> int:
+        """Bytes that still fit."""
+        return _BUFFER - len(self.rx)
+
+    @property
+    def state(self) -> str:
+        """What it is in."""
+        if self.alarm:
+            return f"Alarm:{self.alarm}"
+        if self.homing is not None:
+            return "Home"
+        if self.door:
+            return "Door:2" if self.slides.moving else "Door:1"
+        if self.hold:
+            return f"Hold:{int(self.slides.moving)}"
+        if self.slides.queue:
+            return "Jog" if self.jogs else "Run"
+        return "Idle"
+
+    def told_state(self, full: bool) -> str:
+        """As a report tells it: the number of an alarm is a matter of $10."""
+        numbered = full or int(self.registers[10]) & 0x400
+        return self.state if numbered else self.state.replace(f"Alarm:{self.alarm}", "Alarm")
+
+    @property
+    def waits(self) -> bool:
+        """Whether a thread waits for its index."""
+        return self.index_since is not None
+
+    @property
+    def reads(self) -> bool:
+        """Whether lines are read now."""
+        held = (self.hold or self.door) and not self.alarm
+        return not (self.waits or self.homing is not None or held)
+
+    @property
+    def commanded(self) -> float:
+        """Signed rpm that the spindle is told, within its settings."""
+        if not self.rpm or self.paused:
+            return 0.0
+        rpm = abs(self.rpm) * self.spindle_percent / 100.0
+        return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.rpm)
+
+    def reset(self) -> None:
+        """0x18: modes are lost, a moving slide's position too."""
+        if "E" in self.pins:
+            return
+        moved = self.slides.moving or self.homing is not None or self.index_since is not None
+        self.restart(moved)
+
+    def raise_alarm(self, number: int) -> None:
+        """Stops at once; the block stays in the planner."""
+        self.alarm = number
+        self.torn += self.slides.moving
+        self.slides.v = 0.0
+        self.index_since = None
+        self.blocking = number in _CRITICAL
+        if self.blocking:
+            self.rx.clear()
+        self.say(f"ALARM:{number}\r\n")
+
+    # --- for the program ----------------------------------------------------------------------------------
+
+    def begin_homing(self, axes: int) -> None:
+        """It takes half a second here."""
+        self.homing = self.k + 0.5, axes
+
+    def next_line(self) -> str | None:
+        """The next whole line of the buffer."""
+        if b"\n" not in self.rx:
+            return None
+        line, _, rest = bytes(self.rx).partition(b"\n")
+        self.rx = bytearray(rest)
+        return line.decode("ascii", "replace").strip()
+
+    def queue(self, block: PeerBlock) -> None:
+        """Into the planner; nothing for a block without length."""
+        if block.length > 0.0:
+            self.slides.queue.append(block)
+            self.jogs = block.jog
+
+    def say(self, text: str) -> None:
+        """Out."""
+        self._out += text.encode("ascii")
+
+    def answer(self, error: int = 0) -> None:
+        """The answer for a line."""
+        if not error and self.quirks.garble:
+            self._out += self.quirks.garble.pop(0) + b"\r\n"
+        else:
+            self.say(f"error:{error}\r\n" if error else "ok\r\n")
+
+    def turn(self, rpm: float) -> None:
+        """Command the spindle."""
+        self.rpm = rpm
+        self.spindle.order(self.k, self.commanded)
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _take_in(self) -> None:
+        while self._wire and self.rx_free > _GATE and not (self.waits and self.quirks.mute):
+            byte = self._wire.pop(0)
+            if byte >= 0x80 or byte in {0x18, 0x19}:
+                act(self, byte)
+            else:
+                self.rx.append(byte)
+
+    def restart(self, moved: bool) -> None:
+        """Begin anew; ``moved``: the position is lost."""
+        self.torn += self.slides.moving
+        self.halt()
+        self.blocking = False
+        self.program.modes = Modes()
+        self.rx.clear()
+        self.feed_percent = self.rapid_percent = self.spindle_percent = 100
+        self.reports = Reports()
+        if moved:
+            self.alarm, self.homed = 3, 0
+            self.say("ALARM:3\r\n")
+        self.say(_BANNER)
+        if self.alarm:
+            self.say("[MSG:'$H'|'$X' to unlock]\r\n")
+
+    def halt(self) -> None:
+        """Everything ends at once."""
+        self.slides.drop()
+        self.program.drop()
+        self.hold = self.cancels = self.jogs = self.slides.held = self.paused = False
+        self.index_since = self.homing = None
+        self.turn(0.0)
+        self.outputs.update(flood=False, mist=False)

@@ -1,0 +1,332 @@
+"""The lines that a grblHAL look-alike reads: modes, functions, blocks and ``$`` commands."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from drivers.lookalikes.grblhal_slides import PeerBlock, Place, Shape, circle, straight
+
+if TYPE_CHECKING:
+    from drivers.lookalikes.grblhal_firmware import Firmware
+
+# --- The look-alike's modal state, and the words that change it.
+
+
+_MODAL = {
+    **dict.fromkeys(("G0", "G1", "G2", "G3", "G33"), "motion"),
+    **dict.fromkeys(("G17", "G18"), "plane"),
+    **dict.fromkeys(("G20", "G21"), "units"),
+    **dict.fromkeys(("G90", "G91"), "distance"),
+    **dict.fromkeys(("G94", "G95"), "feed_mode"),
+    **dict.fromkeys(("G7", "G8"), "radius"),
+    **dict.fromkeys(("G96", "G97"), "speed"),
+    **dict.fromkeys(("G50", "G51"), "scaling"),
+}
+_LATHE = frozenset(("G7", "G8", "G96", "G97"))
+_PLAIN = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
+
+
+@dataclass(slots=True)
+class Modes:
+    """A reset and a stop bring back these."""
+
+    motion: str = "G0"
+    plane: str = "G17"
+    units: str = "G21"
+    distance: str = "G90"
+    feed_mode: str = "G94"
+    radius: str = "G8"
+    speed: str = "G97"
+    scaling: str = "G50"
+    hold_disabled: bool = False  # M53 P0
+
+    def take(self, code: str, *, lathe: bool) -> int:
+        """A word; the error, 0 for none."""
+        if code in _LATHE and not lathe:
+            return 20
+        if code in _MODAL:
+            setattr(self, _MODAL[code], code)
+        elif code not in _PLAIN:
+            return 20
+        return 0
+
+    def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, lathe: bool) -> str:
+        """As ``$G`` says it."""
+        spindle = "M5" if not rpm else "M3" if rpm > 0.0 else "M4"
+        coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
+        radius, speed = (f" {self.radius}", f" {self.speed}") if lathe else ("", "")
+        scaling = "G51:X" if self.scaling == "G51" else "G50"
+        held = "M53 " if self.hold_disabled else ""
+        return (
+            f"[GC:{self.motion} G54{radius} {self.plane} {self.units} {self.distance} {self.feed_mode}"
+            f"{speed} G49 G98 {scaling} {spindle} {coolant}{held}T0 F{feed:.0f} S{abs(rpm):.0f}.]"
+        )
+
+
+# --- The look-alike's ``$`` lines: identity, settings, unlocking, homing, the parser's state.
+
+
+_AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}
+_BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # refused behind a critical alarm
+
+
+def identity(m: Firmware) -> list[str]:
+    """What ``$I`` tells; auxiliary ports only where there are any."""
+    quirks = m.quirks
+    lathe = "LATHE," if m.registers.lathe else ""
+    home = "HOME," if int(m.registers[22]) & 1 else ""
+    ports = [f"[AUX IO:{quirks.inputs},{quirks.outputs},0,0]"] if quirks.inputs + quirks.outputs else []
+    return [
+        "[VER:1.1f.20260817:]",
+        "[OPT:VNML+,100,1024,3,16]",
+        "[AXS:3:XYZ]",
+        f"[NEWOPT:ENUMS,RT+,{home}{lathe}EXPR,TC,SED]",
+        "[FIRMWARE:grblHAL]",
+        "[NVS STORAGE:EEPROM]",
+        "[DRIVER:Simulator]",
+        "[DRIVER VERSION:260913]",
+        *ports,
+    ]
+
+
+def answer(m: Firmware, line: str) -> int | None:
+    """Carry a line out: its error, 0 for none; None where the answer comes later."""
+    command = line.partition("=")[0]
+    if m.blocking and (command in _BLOCKING):
+        return 79
+    if command.startswith("$H"):
+        return _home(m, command.removeprefix("$H"))
+    if command == "$X":
+        return _unlock(m)
+    told = _told(m, line)
+    if told:
+        m.say("".join(f"{text}\r\n" for text in told))
+        return 0
+    found = re.fullmatch(r"\$(\d+)=(.*)", line)
+    if found is None:
+        return 3
+    idle = m.state == "Idle" or m.alarm
+    return m.registers.store(int(found[1]), found[2]) if idle else 8
+
+
+def _told(m: Firmware, line: str) -> list[str]:
+    if line == "$I":
+        return identity(m)
+    if line == "$$":
+        return m.registers.told()
+    return [m.program.told()] if line == "$G" else []
+
+
+def _unlock(m: Firmware) -> int:
+    if not m.alarm:
+        return 0
+    if "E" in m.pins:
+        return 50
+    if int(m.registers[22]) & 5 == 5 and m.homed & 5 != 5:
+        return 46
+    m.alarm = 0
+    m.say("[MSG:Caution: Unlocked]\r\n")
+    return 0
+
+
+def _home(m: Firmware, letter: str) -> int | None:
+    flags = int(m.registers[22])
+    if letter not in _AXES:
+        return 3
+    if not flags & 1 or (letter and not flags & 2):
+        return 5
+    m.begin_homing(_AXES[letter])
+    return None
+
+
+_WORD = re.compile(r"([A-Z])(-?\d*\.?\d+)")
+_MOST_LINES = 10_000_000
+
+__all__ = ["Modes", "Program"]
+
+
+class Program:
+    """Carries lines out in order, as far as planner and standstills allow."""
+
+    def __init__(self, firmware: Firmware) -> None:
+        self._m = firmware
+        self.modes = Modes(radius="G7" if firmware.quirks.diameter else "G8")
+        self.offset = [0.0, 0.0, 0.0]  # G54
+        self.executed: list[str] = []  # lines that were carried out
+        self.end: Place = (0.0, 0.0)  # where the planner's last block ends
+        self.error = 0
+        self._f = 0.0
+        self._waits: str | None = None  # a line that waits for a standstill
+        self._cuts = False  # a thread, whose answer comes at its end
+
+    def told(self) -> str:
+        """As ``$G`` says it."""
+        m = self._m
+        return self.modes.told(m.rpm, self._f, m.outputs, lathe=m.registers.lathe)
+
+    def drop(self) -> None:
+        """A stop or a reset."""
+        self._waits, self._cuts, self.error, self.end = None, False, 0, self._m.slides.place
+
+    def pump(self) -> None:
+        """Carry out what has come in."""
+        machine = self._m
+        if (self._waits is not None or self._cuts) and (machine.slides.queue or machine.alarm):
+            return
+        if self._cuts:
+            self._cuts = False
+            machine.answer()
+        if self._waits is not None:
+            line, self._waits = self._waits, None
+            self._carry_out(line)
+        while self._waits is None and not self._cuts and machine.reads and machine.slides.free > 0:
+            line_ = machine.next_line()
+            if line_ is None:
+                return
+            self._line(line_)
+
+    def _line(self, line: str) -> None:
+        machine = self._m
+        if not line:
+            self.error = 0
+            machine.answer()
+        elif line.startswith("$J=") and not machine.blocking:
+            self.error = self._jogged(line[3:])
+            machine.answer(self.error)
+        elif line.startswith("$"):
+            error = answer(machine, line)
+            self.error = error or 0
+            if error is not None:
+                machine.answer(error)
+        elif machine.alarm or machine.jogs:
+            self.error = 9
+            machine.answer(9)
+        elif self.error:
+            machine.answer(self.error)
+        elif _waits_for_rest(line):
+            self._waits = line
+            self.pump()
+        else:
+            self._carry_out(line)
+
+    def _jogged(self, text: str) -> int:
+        words = {letter: float(value) for letter, value in _WORD.findall(text) if letter != "G"}
+        machine = self._m
+        if machine.alarm or (machine.slides.queue and not machine.jogs):
+            return 8
+        if "F" not in words:
+            return 22
+        target = self._target(words)
+        length, way = straight(self.end, target)
+        self.end = target
+        machine.queue(PeerBlock(0, length, words["F"] / 60.0, way, jog=True))
+        return 0
+
+    def _carry_out(self, line: str) -> None:
+        found = _WORD.findall(line)
+        codes = [f"{letter}{float(value):g}" for letter, value in found if letter in "GM"]
+        words = {letter: float(value) for letter, value in found if letter not in "GM"}
+        self.error = 27 if words.get("N", 0) > _MOST_LINES else self._obey(codes, words)
+        if not self.error:
+            self.executed.append(line)
+        if self.error or not self._cuts:
+            self._m.answer(self.error)
+
+    def _obey(self, codes: list[str], words: dict[str, float]) -> int:
+        for code in (code for code in codes if code[0] == "G"):
+            error = self.modes.take(code, lathe=self._m.registers.lathe)
+            if error:
+                return error
+        if "G10" in codes:
+            self.offset = [words.get(letter, 0.0) for letter in "XYZ"]
+            return 0
+        return self._functions(codes, words) or self._motion(words)
+
+    def _functions(self, codes: list[str], words: dict[str, float]) -> int:
+        for code in (code for code in codes if code[0] == "M"):
+            error = self._function(code, words)
+            if error:
+                return error
+        return 0
+
+    def _function(self, code: str, words: dict[str, float]) -> int:
+        machine = self._m
+        port = int(words.get("P", -1))
+        if code in {"M3", "M4"}:
+            machine.turn(words.get("S", abs(machine.rpm)) * (1.0 if code == "M3" else -1.0))
+        elif code == "M5":
+            machine.turn(0.0)
+        elif code in {"M7", "M8"}:
+            machine.outputs["mist" if code == "M7" else "flood"] = True
+        elif code == "M9":
+            machine.outputs.update(mist=False, flood=False)
+        elif code == "M53":
+            self.modes.hold_disabled = port == 0
+        elif code in {"M64", "M65"} and machine.quirks.outputs:
+            if not 0 <= port < machine.quirks.outputs:
+                return 39
+            machine.outputs[f"out.{port}"] = code == "M64"
+        elif code == "M66" and machine.quirks.inputs:
+            machine.read = int(machine.inputs.get(port, False))
+        else:
+            return 20
+        return 0
+
+    def _target(self, words: dict[str, float]) -> Place:
+        scale = 0.5 if self.modes.radius == "G7" else 1.0
+        x = words["X"] * scale + self.offset[0] if "X" in words else self.end[0]
+        return x, words["Z"] + self.offset[2] if "Z" in words else self.end[1]
+
+    def _motion(self, words: dict[str, float]) -> int:
+        if not {"X", "Z"} & words.keys():
+            return 0
+        self._f = words.get("F", self._f)
+        motion, target = self.modes.motion, self._target(words)
+        shape: Shape | None = straight(self.end, target)
+        if motion in {"G2", "G3"}:
+            centre = self.end[0] + words.get("I", 0.0), self.end[1] + words.get("K", 0.0)
+            shape = circle(self.end, target, centre, counter=motion == "G3")
+        if shape is None or (motion in {"G2", "G3"} and self.modes.plane != "G18"):
+            return 33
+        error = self._thread_error(words) if motion == "G33" else 0
+        if error or (motion not in {"G0", "G33"} and self._f <= 0.0):
+            return error or 22
+        self._hand_over(motion, shape, words)
+        self.end = target
+        return 0
+
+    def _thread_error(self, words: dict[str, float]) -> int:
+        machine = self._m
+        if not machine.quirks.encoder:
+            return 20
+        feed = words.get("K", 0.0) * abs(machine.spindle.speed)
+        if words.get("K", 0.0) == 0.0:
+            return 39
+        if abs(machine.spindle.speed) < 1.0:
+            return 41
+        return 43 if feed > 0.9 * machine.registers[112] else 0
+
+    def _hand_over(self, motion: str, shape: Shape, words: dict[str, float]) -> None:
+        length, way = shape
+        number = int(words.get("N", 0))
+        if motion == "G33":
+            self._cuts = True
+            self._m.spindle_percent = 100
+            self._m.turn(self._m.rpm)
+            block = PeerBlock(number, length, words.get("K", 0.0), way, per_rev=True, thread=True)
+        elif motion == "G0":
+            block = PeerBlock(number, length, 1e9, way, rapid=True)
+        else:
+            per_rev = self.modes.feed_mode == "G95"
+            block = PeerBlock(number, length, self._f if per_rev else self._f / 60.0, way, per_rev=per_rev)
+        self._m.queue(block)
+
+
+def _waits_for_rest(line: str) -> bool:
+    """Functions, dwells and threads wait until the planner is empty; auxiliary outputs do not."""
+    words = {(letter, float(value)) for letter, value in _WORD.findall(line) if letter in "GM"}
+    return any(
+        (letter == "M" and v not in {64, 65}) or (letter == "G" and v in {4, 33}) for letter, v in words
+    )

@@ -1,0 +1,90 @@
+"""Settings of a grblHAL look-alike, refused as the real ones are, and the habits that can be switched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+# --- What the look-alike does like the real one, or is made to do; each can be switched.
+
+
+@dataclass(slots=True)
+class Quirks:
+    """As the firmware's simulator, but with an encoder, auxiliary ports and the figures of a machine file."""
+
+    encoder: bool = True
+    diameter: bool = False  # comes up in G7, as $N0=G7 would make it
+    index_missing: bool = False
+    outputs: int = 16
+    inputs: int = 8
+    lathe: bool = True
+    built_for_lathes: bool = False  # always in lathe mode: there is no $32
+    homing: int | bool = 0  # its $22; True: 3, axis by axis, and it does not insist
+    mute: bool = True  # takes nothing from the wire while a thread waits for its index, as the simulator
+    deaf: bool = False  # answers nothing
+    garble: list[bytes] = field(default_factory=list)  # instead of the next ``ok``s
+    hold_broken: bool = False  # 0x82 does nothing
+    stubborn: bool = False  # takes no override
+    toggle_broken: bool = False  # 0x9E does nothing
+    settings: dict[int, float] = field(default_factory=dict)  # other than the machine file's
+
+
+_MODE, _LATHE = 32, 2
+_DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3}
+_AXES = {100: 5, 110: 3, 120: 3, 130: 3}  # first number of three, decimals
+# Travel is that of the machine file; rates and accelerations too, so that programs take their proved time.
+_THERE = {
+    **{10: 511.0, 11: 0.01, 12: 0.002, 13: 0.0, 20: 0.0, 22: 0.0, 24: 25.0, 25: 500.0, 27: 1.0},
+    **{30: 3500.0, 31: 0.0, 32: 2.0, 40: 0.0, 60: 0.0, 63: 3.0},
+    **{100 + i: 800.0 for i in range(3)},
+    **{110 + i: 7620.0 for i in range(3)},
+    **{120 + i: 3000.0 for i in range(3)},
+    **{130 + i: 200.0 for i in range(3)},
+}
+
+
+class Registers:
+    """Numbers by number."""
+
+    def __init__(self, quirks: Quirks) -> None:
+        self._values = {
+            **_THERE,
+            22: 3.0 if quirks.homing is True else float(quirks.homing),
+            **quirks.settings,
+        }
+        self._values[_MODE] = float(_LATHE) if quirks.lathe else 0.0
+        if quirks.built_for_lathes:
+            del self._values[_MODE]
+
+    def __getitem__(self, number: int) -> float:
+        return self._values[number]
+
+    @property
+    def lathe(self) -> bool:
+        """Whether it is in lathe mode."""
+        return self._values.get(_MODE, _LATHE) == _LATHE
+
+    def told(self) -> list[str]:
+        """All of them, as ``$$`` tells them."""
+        return [f"${n}={self._text(n)}" for n in sorted(self._values)]
+
+    def store(self, number: int, text: str) -> int:
+        """The error, 0 for none."""
+        if number not in self._values:
+            return 53
+        try:
+            value = float(text)
+        except ValueError:
+            return 2
+        if "e" in text.lower():
+            return 2  # it reads no exponents
+        if number in {20, 40} and value and not int(self._values[22]) & 1:
+            return 10
+        self._values[number] = float(f"{value:.{self._decimals(number)}f}")
+        return 0
+
+    def _text(self, number: int) -> str:
+        decimals = self._decimals(number)
+        return f"{self._values[number]:.{decimals}f}"
+
+    def _decimals(self, number: int) -> int:
+        return _AXES.get(number // 10 * 10, 0) if number >= 100 else _DECIMALS.get(number, 0)

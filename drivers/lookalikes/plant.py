@@ -1,0 +1,281 @@
+"""The machine itself, simulated: advanced to the clock whenever somebody looks, so it needs no thread.
+
+The model steps on a grid of fixed times, so what happens does not depend on who looks when.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+
+from core.ports import Cam, Clock, DriverError, Fault, Segments, Stop, code_of
+from drivers.lookalikes.plant_config import SimConfig
+from drivers.lookalikes.plant_terminals import Terminals
+from drivers.lookalikes.servo_axis import Servo
+from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.operator_station import Panel
+from drivers.setpoint_queue import Tolerance, straight
+from drivers.spindle_gear import GearedQueue, Phase, Slides, State
+
+# --- The drives' own limits, the last line behind the control's: setpoints beyond them are refused.
+
+
+_STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
+_SLIPS = 1.1  # of an axis' speed: a spindle that asks for more is refused, one that asks for less slips
+
+
+def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> None:
+    """Raises DriverError for setpoints too fast, out of the travel, or of C while the spindle turns."""
+    for i, servo in enumerate(servos):
+        axis = servo.axis
+        fastest = abs(segments.v[:, i]).max(initial=0.0)
+        if fastest > axis.vmax * 1.001 + 0.01:
+            raise DriverError(
+                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued", "drive-limits"
+            )
+        if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
+            raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued", "drive-limits")
+        if axis.travel is None or not servo.homed:
+            continue
+        low, high = axis.travel
+        if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
+            raise DriverError(
+                f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued",
+                "drive-limits",
+            )
+
+
+def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
+    """The same for motion over the turns of a spindle that turns at ``rpm``."""
+    by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIPS)
+    check_limits(cam.way._replace(v=by_time), servos, rpm)
+    if cam.then is not None:
+        check_limits(cam.then, servos, rpm)
+
+
+_NEVER = float("inf")
+_PAST = 0.1  # s of setpoints that may still be asked for
+_HALT = 0.2  # s
+_HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
+
+
+class Plant:
+    """Slides, spindle, terminals and station behind one lock, so that any thread may call."""
+
+    def __init__(self, config: SimConfig, clock: Clock) -> None:
+        self.config = config
+        self.clock = clock
+        self.lock = threading.RLock()
+        self.servos = tuple(Servo(axis) for axis in config.axes)
+        self.names = tuple(axis.name for axis in config.axes)
+        self.spindle = SpindleMotor(config.spindle)
+        self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.panel = Panel(config.palms, config.start_pulse, config.seed)
+        tolerance = Tolerance(
+            position=(0.001,) * len(self.names),
+            velocity=tuple(1.01 * axis.corner + 1e-3 for axis in config.axes),
+        )
+        slides = Slides(
+            self.names,
+            tuple(axis.vmax for axis in config.axes),
+            tuple(axis.amax for axis in config.axes),
+            config.commit,
+            tolerance,
+        )
+        self.queue = GearedQueue(slides, self._readings())
+        self.enabled = False
+        self.fault: str = ""
+        self._off_at = _NEVER
+        self._homing: tuple[Servo, float] | None = None
+        self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
+        self._k = int(clock.now() / config.step)
+        self.spindle.t = clock.now()
+
+    @property
+    def t(self) -> float:
+        """Time of the model: the last point of the grid."""
+        return self._k * self.config.step
+
+    def advance(self) -> float:
+        """Bring everything up to the clock; returns the clock's time."""
+        now = self.clock.now()
+        with self.lock:
+            self._break(now)
+            last = int(now / self.config.step + 1e-6)
+            if last > self._k:
+                self._slides(last)
+                self.queue.trim(self.t - _PAST)
+            if now > self.spindle.t:
+                self.spindle.advance(now)
+        return now
+
+    def _break(self, now: float) -> None:
+        """Faults that are due; breaking something looks at the plant too, and must not come back here."""
+        due, self.due = self.due, None
+        if due is not None:
+            due(now)
+            self.due = due
+
+    def splice(self, segments: Segments) -> None:
+        """Queue setpoints; raises DriverError when the drives cannot take them."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            check_limits(segments, self.servos, self.spindle.speed)
+            self.queue.splice(segments, now)
+
+    def mesh(self, cam: Cam) -> None:
+        """Slides follow the spindle; raises DriverError when the drives cannot."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            check_cam(cam, self.servos, self.spindle.speed)
+            self.queue.mesh(cam, Phase(now, self.spindle.counted, self.spindle.speed / 60.0), now)
+
+    def power(self, on: bool) -> None:
+        """Drives on: they hold the slides where these are. Raises DriverError in E-stop or fault."""
+        with self.lock:
+            self.advance()
+            if not on:
+                self._power_off()
+                return
+            if self.panel.estop:
+                raise DriverError("drives stay off while E-stop is pressed; release it first", "no-power")
+            if self.fault:
+                raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
+            if not self.enabled:
+                self.queue.rest_at(self._readings())
+            self.enabled, self._off_at = True, _NEVER
+
+    def stop(self, how: Stop) -> None:
+        """The drives' own stop, without the host's path."""
+        with self.lock:
+            now = self.advance()
+            self._homing = None
+            if how is Stop.OFF:
+                self._power_off()
+            elif self.enabled:
+                ends = self.queue.brake(now, [axis.amax for axis in self.config.axes])
+                if how is Stop.RAMP_OFF or self._off_at < _NEVER:
+                    self._off_at = ends
+
+    def home(self, name: str) -> None:
+        """Look for the home switch of one axis; an absolute axis has nothing to look for."""
+        with self.lock:
+            now = self.advance()
+            self._need_power()
+            index = self.names.index(name)
+            servo = self.servos[index]
+            if servo.axis.absolute:
+                return
+            rest, velocity = self.queue.demand_at(now)
+            if any(velocity) or self._homing is not None:
+                raise DriverError(f"{name} cannot home while an axis moves; wait for standstill")
+            pieces = straight(
+                now + self.config.commit,
+                rest,
+                index,
+                to=servo.switch,
+                speed=servo.axis.home_speed,
+                accel=servo.axis.amax,
+            )
+            self.queue.splice(pieces, now)
+            self._homing = (servo, self.queue.horizon(now) + _HOME_SETTLE)
+
+    def press_estop(self) -> None:
+        """The hardware chain: slides brake and lose power, the spindle too, whatever any program wants."""
+        with self.lock:
+            now = self.advance()
+            self.panel.estop = True
+            self.stop(Stop.RAMP_OFF)
+            self.spindle.cut(now)
+
+    def halt(self) -> None:
+        """From any thread: all off, unless somebody is stuck inside the machine itself."""
+        if not self.lock.acquire(timeout=_HALT):
+            raise DriverError("the simulated machine does not come back")
+        try:
+            self.stop(Stop.RAMP_OFF)
+            self.spindle.order(self.advance(), 0.0, coast=True)
+            self.terminals.safe(self.clock.now())
+        finally:
+            self.lock.release()
+
+    def trip(self, fault: str) -> None:
+        """A drive gives up: no axis is kept alive without the others."""
+        self.fault = self.fault or fault
+        self.stop(Stop.RAMP_OFF)
+
+    def clear_fault(self) -> None:
+        """The operator has seen it; the drives stay off until somebody switches them on."""
+        self.advance()
+        self.fault = ""
+        for servo in self.servos:
+            servo.over = 0.0
+
+    def _readings(self) -> tuple[float, ...]:
+        return tuple(servo.reading for servo in self.servos)
+
+    def _need_power(self) -> None:
+        if self.fault:
+            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
+        if not self.enabled or self._off_at < _NEVER:
+            raise DriverError("the drives are off; switch them on first", "power-lost")
+        if self._homing is not None:
+            raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
+
+    def _power_off(self) -> None:
+        self.enabled, self._off_at, self._homing = False, _NEVER, None
+        self.queue.rest_at(self._readings())
+        for servo in self.servos:
+            servo.power_lost()
+
+    def _slides(self, last: int) -> None:
+        """Step the servos up to grid point ``last``; a machine at rest is left alone."""
+        while self._k < last:
+            if self.t >= self._off_at:
+                self._power_off()
+            if self._resting():
+                off = int(min(self._off_at / self.config.step + 1, last))
+                self._k = max(self._k + 1, off)
+            else:
+                self._step()
+            self._reference()
+
+    def _resting(self) -> bool:
+        if not self.enabled:
+            return all(servo.v == 0.0 for servo in self.servos)
+        if self.queue.horizon(self.t) > self.t:
+            return False
+        rest, _ = self.queue.demand_at(self.t)
+        settled = [servo.settle(p) for servo, p in zip(self.servos, rest, strict=True)]
+        return all(settled)
+
+    def _step(self) -> None:
+        dt, t = self.config.step, self.t
+        self._k += 1
+        if not self.enabled:
+            for servo in self.servos:
+                servo.roll(dt)
+            return
+        p, v = self._setpoint(t)
+        for servo, position, speed in zip(self.servos, p, v, strict=True):
+            if servo.follow(position, speed, dt) and not self.fault:
+                self.fault = Fault(f"{servo.axis.name}: following error", "following")
+        if self.fault and self._off_at == _NEVER:
+            self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
+
+    def _setpoint(self, t: float) -> State:
+        """What the drives get: as queued; by the spindle's encoder it makes up for what they trail."""
+        if not self.queue.meshed:
+            return self.queue.demand_at(t)
+        if t > self.spindle.t:
+            self.spindle.advance(t)
+        p, v, a = self.queue.play(t, self.spindle.t, self.spindle.counted)
+        return tuple(servo.lead(*each) for servo, *each in zip(self.servos, p, v, a, strict=True)), v
+
+    def _reference(self) -> None:
+        if self._homing is not None and self.t >= self._homing[1]:
+            self._homing[0].reference()
+            self._homing = None
+            self.queue.rest_at(self._readings())

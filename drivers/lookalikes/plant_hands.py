@@ -1,0 +1,256 @@
+"""What an operator does at the simulated machine, and what breaks in it: by call, or at planned times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from core.ports import DriverError
+from drivers.lookalikes.plant import Plant
+from drivers.lookalikes.plant_config import PlannedFault
+from drivers.lookalikes.servo_axis import Servo
+
+
+class SimMachine:
+    """Buttons of the station and faults of the machine; every method may be called from any thread."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    # --- the operator's hands -----------------------------------------------------------------------------
+
+    def press_left(self) -> None:
+        """Left palm button down."""
+        self._palm("left", down=True)
+
+    def release_left(self) -> None:
+        """Left palm button up."""
+        self._palm("left", down=False)
+
+    def press_right(self) -> None:
+        """Right palm button down."""
+        self._palm("right", down=True)
+
+    def release_right(self) -> None:
+        """Right palm button up."""
+        self._palm("right", down=False)
+
+    def press_start(self) -> None:
+        """Both palms down together and up again."""
+        self.press_left()
+        self.press_right()
+        self.release_left()
+        self.release_right()
+
+    def press_hold(self) -> None:
+        """Feed hold button down."""
+        with self._plant.lock:
+            self._plant.panel.hold(True, self._plant.clock.now())
+
+    def release_hold(self) -> None:
+        """Feed hold button up."""
+        with self._plant.lock:
+            self._plant.panel.hold(False, self._plant.clock.now())
+
+    def press_estop(self) -> None:
+        """Hit the E-stop: it latches."""
+        self._plant.press_estop()
+
+    def release_estop(self) -> None:
+        """Twist the E-stop free."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.panel.estop = False
+
+    def set_spindle_auto(self, auto: bool) -> None:
+        """Spindle AUTO/OFF."""
+        with self._plant.lock:
+            self._plant.panel.spindle_auto = auto
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """Spindle override pot, 0…1."""
+        with self._plant.lock:
+            self._plant.panel.spindle_pot = min(max(fraction, 0.0), 1.0)
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Feed override pot, 0…1.5."""
+        with self._plant.lock:
+            self._plant.panel.feed_pot = min(max(fraction, 0.0), 1.5)
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the handwheel on by so many counts, signed."""
+        with self._plant.lock:
+            self._plant.panel.handwheel += counts
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Make an input of the machine file true or false; raises DriverError for an unknown name."""
+        with self._plant.lock:
+            self._plant.terminals.set_input(name, on)
+
+    # --- faults -------------------------------------------------------------------------------------------
+
+    def jam(self, axis: str, on: bool = True) -> None:
+        """Something blocks the slide."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).jammed = on
+
+    def encoder_stuck(self, axis: str, on: bool = True) -> None:
+        """The encoder no longer counts."""
+        with self._plant.lock:
+            self._plant.advance()
+            servo = self._servo(axis)
+            servo.stuck = servo.reading if on else None
+
+    def runaway(self, axis: str, speed: float) -> None:
+        """Its drive goes its own way at this speed, mm/s or degrees/s, while it has power; 0 mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).runaway = speed
+
+    def push(self, axis: str, way: float) -> None:
+        """Somebody moves a slide that has no power, or forces one that has."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._servo(axis).p += way
+
+    def switch_output(self, name: str, on: bool) -> None:
+        """Somebody else switches an output: a fuse, a terminal, a hand at the relay."""
+        with self._plant.lock:
+            self._plant.terminals.write(name, on, self._plant.advance())
+
+    def drive_fault(self, axis: str, text: str = "drive fault") -> None:
+        """A drive trips."""
+        with self._plant.lock:
+            self._plant.trip(f"{axis}: {text}")
+
+    def spindle_bog(self, fraction: float) -> None:
+        """The motor reaches only this fraction of what is commanded; 1 is healthy."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.bog = fraction
+
+    def spindle_wander(self, fraction: float, period: float = 2.0) -> None:
+        """The speed swings by this fraction about what is commanded, once in ``period`` seconds."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.wander = fraction
+            self._plant.spindle.faults.wander_period = period
+
+    def spindle_ignores_stop(self, on: bool = True) -> None:
+        """The inverter no longer obeys when asked to slow down."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.ignores_stop = on
+
+    def spindle_fault(self, text: str) -> None:
+        """The inverter trips and the spindle coasts; an empty text mends it."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.faults.fault = text
+
+    def collet_sensor_stuck(self, on: bool = True) -> None:
+        """The collet's switch stays where it is."""
+        with self._plant.lock:
+            self._plant.terminals.read(self._plant.advance())
+            self._plant.terminals.sensor_stuck = on
+
+    def station_silent(self, on: bool = True) -> None:
+        """The station's cable is off."""
+        with self._plant.lock:
+            self._plant.panel.silence(on, self._plant.clock.now())
+
+    def pot_noise(self, width: float) -> None:
+        """A worn wiper: both pots jump by up to ``width``."""
+        with self._plant.lock:
+            self._plant.panel.noise = width
+
+    # --- what only a simulation can know ------------------------------------------------------------------
+
+    def true_position(self) -> tuple[float, ...]:
+        """Where the slides really are, encoder or not."""
+        with self._plant.lock:
+            self._plant.advance()
+            return tuple(servo.p for servo in self._plant.servos)
+
+    def outputs(self) -> dict[str, bool]:
+        """What hangs on the outputs, whatever anybody has written."""
+        with self._plant.lock:
+            return dict(self._plant.terminals.outputs)
+
+    def spindle_turns(self) -> float:
+        """How many turns the spindle has really made, signed."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.turns
+
+    def spindle_rpm(self) -> float:
+        """How fast the spindle really turns."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.speed
+
+    def _palm(self, which: str, *, down: bool) -> None:
+        with self._plant.lock:
+            relay, now = self._plant.panel.relay, self._plant.clock.now()
+            if down:
+                relay.press(which, now)
+            else:
+                relay.release(which, now)
+
+    def _servo(self, axis: str) -> Servo:
+        return self._plant.servos[self._plant.names.index(axis)]
+
+
+# --- What breaks by itself, and when: the faults of a machine file.
+
+
+class Schedule:
+    """Breaks and mends as time passes; the plant calls it with the clock's time."""
+
+    def __init__(self, machine: SimMachine, faults: Sequence[PlannedFault]) -> None:
+        self._acts: list[tuple[float, Callable[[], None]]] = []
+        for fault in faults:
+            breaks, mends = _acts(machine, fault)
+            self._acts.append((fault.at, breaks))
+            if fault.seconds > 0.0 and mends is not None:
+                self._acts.append((fault.at + fault.seconds, mends))
+        self._acts.sort(key=lambda act: act[0])
+
+    def due(self, now: float) -> None:
+        """Everything up to ``now``, in order."""
+        while self._acts and self._acts[0][0] <= now:
+            self._acts.pop(0)[1]()
+
+
+def _acts(machine: SimMachine, fault: PlannedFault) -> tuple[Callable[[], None], Callable[[], None] | None]:
+    """How it breaks, and how it is mended; a drive's fault stays until somebody clears it."""
+    axis, value, text = fault.axis, fault.value, fault.text
+    known: dict[str, tuple[Callable[[], None], Callable[[], None] | None]] = {
+        "jam": (lambda: machine.jam(axis), lambda: machine.jam(axis, on=False)),
+        "encoder_stuck": (
+            lambda: machine.encoder_stuck(axis),
+            lambda: machine.encoder_stuck(axis, on=False),
+        ),
+        "runaway": (lambda: machine.runaway(axis, value), lambda: machine.runaway(axis, 0.0)),
+        "drive_fault": (lambda: machine.drive_fault(axis, text or "drive fault"), None),
+        "spindle_bog": (lambda: machine.spindle_bog(value), lambda: machine.spindle_bog(1.0)),
+        "spindle_wander": (lambda: machine.spindle_wander(value), lambda: machine.spindle_wander(0.0)),
+        "spindle_ignores_stop": (
+            machine.spindle_ignores_stop,
+            lambda: machine.spindle_ignores_stop(on=False),
+        ),
+        "spindle_fault": (
+            lambda: machine.spindle_fault(text or "spindle drive fault"),
+            lambda: machine.spindle_fault(""),
+        ),
+        "collet_sensor_stuck": (
+            machine.collet_sensor_stuck,
+            lambda: machine.collet_sensor_stuck(on=False),
+        ),
+        "station_silent": (machine.station_silent, lambda: machine.station_silent(on=False)),
+        "pot_noise": (lambda: machine.pot_noise(value), lambda: machine.pot_noise(0.0)),
+        "estop": (machine.press_estop, machine.release_estop),
+    }
+    if fault.what not in known:
+        raise DriverError(f"the simulation cannot break {fault.what!r}")
+    return known[fault.what]

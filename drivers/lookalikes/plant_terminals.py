@@ -1,0 +1,63 @@
+"""Inputs and outputs, and what hangs on them: the collet with its switch."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+
+from core.ports import DriverError
+from drivers.lookalikes.plant_config import SimCollet, SimOutput
+
+
+class Terminals:
+    """The terminal board: outputs as last written, inputs as wired or as a test sets them."""
+
+    def __init__(
+        self, outputs: Mapping[str, SimOutput], inputs: tuple[str, ...], collet: SimCollet, seed: int
+    ) -> None:
+        self._models = dict(outputs)
+        self.outputs = {name: model.initial for name, model in outputs.items()}
+        self.inputs = dict.fromkeys(inputs, False)
+        self.sensor_stuck = False
+        self._collet = collet
+        self._random = random.Random(seed)
+        self._closed_at = 0.0 if self.outputs.get(collet.output, False) else float("inf")
+
+    def write(self, name: str, on: bool, now: float) -> None:
+        """Switch an output; raises DriverError for a name that the machine has not."""
+        if name not in self.outputs:
+            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+        if name == self._collet.output and on != self.outputs[name]:
+            self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
+            self._opened_at = now + self._late(self._collet.open_time)
+        self.outputs[name] = on
+
+    def safe(self, now: float) -> None:
+        """Every output to its safe state; those without one keep what they do."""
+        for name, model in self._models.items():
+            if model.safe is not None:
+                self.write(name, model.safe, now)
+
+    def set_input(self, name: str, on: bool) -> None:
+        """Close or open a terminal by hand; raises DriverError for an unknown name."""
+        if name not in self.inputs:
+            raise DriverError(f"input {name!r} is not in the machine file; add it under [io.in]")
+        self.inputs[name] = on
+
+    def read(self, now: float) -> dict[str, bool]:
+        """All inputs; the collet's switch follows the collet unless it is stuck."""
+        name = self._collet.closed_input
+        if name in self.inputs and not self.sensor_stuck:
+            self.inputs[name] = self.closed(now)
+        return dict(self.inputs)
+
+    def closed(self, now: float) -> bool:
+        """Whether the collet truly grips. Opening takes its time too before the switch lets go."""
+        if self.outputs.get(self._collet.output, True):
+            return now >= self._closed_at
+        return now < self._opened_at
+
+    def _late(self, nominal: float) -> float:
+        return nominal * (1.0 + self._random.uniform(-self._collet.spread, self._collet.spread))
+
+    _opened_at = -float("inf")

@@ -1,0 +1,95 @@
+"""Spindle motor behind a frequency inverter: late to obey, ramps, a counting encoder, faults."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+
+from drivers.lookalikes.plant_config import SimSpindle
+
+
+@dataclass(slots=True)
+class SpindleFaults:
+    """What tests may break."""
+
+    bog: float = 1.0  # fraction of the commanded speed that the motor reaches
+    ignores_stop: bool = False
+    wander: float = 0.0  # fraction by which the speed swings about what it ought to be
+    wander_period: float = 2.0  # s
+    fault: str = ""
+
+
+class SpindleMotor:
+    """Speed and angle, advanced in closed form: ramps are straight lines."""
+
+    def __init__(self, config: SimSpindle) -> None:
+        self.config = config
+        self.faults = SpindleFaults()
+        self._even = 0.0  # rpm, without wander
+        self.turns = 0.0
+        self.t = 0.0
+        self._target = 0.0
+        self._coasting = False
+        self._orders: deque[tuple[float, float, bool]] = deque()
+
+    @property
+    def speed(self) -> float:
+        """rpm, signed."""
+        faults = self.faults
+        swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
+        return self._even * (1.0 + faults.wander * swing)
+
+    @property
+    def counted(self) -> float:
+        """Turns as the encoder counts them, in steps of its four edges."""
+        edges = 4 * self.config.ppr
+        return round(self.turns * edges) / edges
+
+    def order(self, now: float, rpm: float, coast: bool = False) -> None:
+        """A command that the inverter obeys after its latency."""
+        if self.faults.ignores_stop and abs(rpm) < abs(self._target):
+            return
+        limit = self.config.rpm_max
+        self._orders.append((now + self.config.latency, min(max(rpm, -limit), limit), coast))
+
+    def cut(self, now: float) -> None:
+        """Power off by hardware: coasts, whatever was ordered."""
+        self._orders.clear()
+        self._orders.append((now, 0.0, True))
+
+    def advance(self, now: float) -> None:
+        """Move on to ``now``, order by order."""
+        while self._orders and self._orders[0][0] <= now:
+            at, rpm, coast = self._orders.popleft()
+            self._ramp(max(at - self.t, 0.0))
+            self.t = max(self.t, at)
+            self._target, self._coasting = rpm, coast
+        self._ramp(now - self.t)
+        self.t = now
+
+    def _ramp(self, dt: float) -> None:
+        """Towards the target for ``dt`` seconds, then on at its speed."""
+        faults, t = self.faults, self.t
+        target = 0.0 if faults.fault else self._target * faults.bog
+        while dt > 0.0:
+            braking = self._even * target <= 0.0 < abs(self._even) or abs(target) < abs(self._even)
+            rate = self.config.decel if braking else self.config.accel
+            if braking and (self._coasting or faults.fault):
+                rate = self.config.coast
+            goal = 0.0 if self._even * target < 0.0 else target
+            used = min(dt, abs(goal - self._even) / rate)
+            before = self._even
+            reached = used < dt
+            self._even = goal if reached else before + (rate if goal > before else -rate) * used
+            self.turns += 0.5 * (before + self._even) / 60.0 * (used + self._swung(t, used))
+            dt, t = dt - used, t + used
+            if reached and goal == target:
+                self.turns += self._even / 60.0 * (dt + self._swung(t, dt))
+                return
+
+    def _swung(self, t: float, dt: float) -> float:
+        """What wander makes of ``dt`` seconds from ``t`` on, as seconds at an even speed."""
+        faults = self.faults
+        rate = 2.0 * math.pi / faults.wander_period
+        return faults.wander * (math.cos(rate * t) - math.cos(rate * (t + dt))) / rate

@@ -1,0 +1,202 @@
+"""The adapter: agents come in, every agent gets the whole state and then what changes."""
+
+from __future__ import annotations
+
+import logging
+import selectors
+import socket
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+from core.ports import Clock, DriverError
+from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
+from drivers.mtconnect.mtconnect_items import DataItem
+from drivers.mtconnect.shdr_lines import Report, Told, stamp
+
+LOOK = 0.1  # s between two looks at the machine
+MOST = 8  # agents at a time
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Where agents find the adapter, and how often they shall ping, in s."""
+
+    bind: str
+    port: int
+    heartbeat: float
+
+
+@dataclass(slots=True)
+class Counts:
+    """Since the adapter was opened."""
+
+    accepted: int = 0
+    refused: int = 0  # more than there is room for
+    lost: int = 0
+    ignored: int = 0  # lines that were no PING, of agents that are gone
+
+
+def utc_now() -> datetime:
+    """The time of day of this computer."""
+    return datetime.now(UTC)
+
+
+class Adapter:
+    """``report`` is the machine now, asked ten times a second by the caller of ``turn``. Nothing waits."""
+
+    def __init__(
+        self,
+        settings: Settings,
+        items: tuple[DataItem, ...],
+        report: Callable[[], Report],
+        clock: Clock,
+        utc: Callable[[], datetime] = utc_now,
+    ) -> None:
+        self._settings, self._report, self._clock, self._utc = settings, report, clock, utc
+        self._told = Told(items)
+        self._door: socket.socket | None = None
+        self._selector = selectors.DefaultSelector()
+        self._links: list[AgentLink] = []
+        self._next_look = 0.0
+        self.counts = Counts()
+
+    @property
+    def address(self) -> tuple[str, int]:
+        """Where it listens, once it is open."""
+        assert self._door is not None
+        host, port = self._door.getsockname()[:2]
+        return host, port
+
+    @property
+    def agents(self) -> int:
+        """How many are connected."""
+        return len(self._links)
+
+    def open(self) -> None:
+        """Begin to listen. Raises DriverError where it cannot."""
+        try:
+            self._door = listening(self._settings.bind, self._settings.port)
+        except DriverError:
+            self._selector.close()
+            raise
+        self._selector.register(self._door, selectors.EVENT_READ)
+        self.look()
+
+    def turn(self, patience: float = 0.0) -> None:
+        """Whatever is to be done now; waits at most ``patience`` s, or until the next look, for it."""
+        left = max(self._next_look - self._clock.now(), 0.0)
+        for key, _ in self._selector.select(min(patience, left)):
+            if key.data is None:
+                self._welcome()
+            else:
+                self._serve(key.data)
+        if self._clock.now() >= self._next_look:
+            self.look()
+
+    def close(self) -> None:
+        """Hang up on all agents: they then know by themselves that nothing is known any more."""
+        for link in self._links.copy():
+            self._forget(link)
+        if self._door is not None:
+            self._selector.unregister(self._door)
+            self._door.close()
+            self._door = None
+        self._selector.close()
+
+    def look(self) -> None:
+        """See what is new at the machine, and tell it."""
+        self._next_look = self._clock.now() + LOOK
+        changes = self._told.changes(self._report(), stamp(self._utc())).encode("utf-8")
+        for link in self._links.copy():
+            self._tell(link, changes)
+
+    def _tell(self, link: AgentLink, data: bytes) -> None:
+        try:
+            link.mind(self._clock.now())
+            link.put(data)
+            link.flush()
+        except LostError as lost:
+            self._lose(link, lost)
+
+    def _welcome(self) -> None:
+        assert self._door is not None
+        try:
+            wire = accepted(self._door)
+        except OSError:  # gone before it was let in, or no more files: the next turn tries again
+            return
+        if len(self._links) >= MOST:
+            self.counts.refused += 1
+            wire.close()
+            return
+        self.counts.accepted += 1
+        link = AgentLink(wire, self._settings.heartbeat)
+        self._links.append(link)
+        self._selector.register(wire, selectors.EVENT_READ, link)
+        self._tell(link, self._told.whole(stamp(self._utc())).encode("utf-8"))
+
+    def _serve(self, link: AgentLink) -> None:
+        try:
+            link.read(self._clock.now())
+            link.flush()
+        except LostError as lost:
+            self._lose(link, lost)
+
+    def _lose(self, link: AgentLink, why: LostError) -> None:
+        self.counts.lost += 1
+        level = logging.INFO if isinstance(why, GoneError) else logging.WARNING
+        _log.log(level, "an MTConnect agent is no longer served: %s; %d lines ignored", why, link.ignored)
+        self._forget(link)
+
+    def _forget(self, link: AgentLink) -> None:
+        self.counts.ignored += link.ignored
+        self._links.remove(link)
+        self._selector.unregister(link.wire)
+        link.wire.close()
+
+
+# --- The thread in which the adapter lives.
+
+
+_BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
+
+_log_keeper = logging.getLogger(__name__)
+
+
+class Keeper:
+    """Turns the adapter until it is closed. Should it fail, agents are hung up on and so know it."""
+
+    def __init__(self, adapter: Adapter) -> None:
+        self._adapter = adapter
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="mtconnect", daemon=True)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still tells."""
+        return self._thread.is_alive()
+
+    def start(self) -> None:
+        """Open the port, then begin. Raises DriverError where it cannot be opened; no thread is left then."""
+        self._adapter.open()
+        self._thread.start()
+
+    def close(self) -> None:
+        """Hang up, and end the thread; within a tenth of a second."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def _keep(self) -> None:
+        try:
+            while not self._closing.wait(_BREATH):
+                self._adapter.turn(LOOK)
+            self._adapter.look()  # how it ended is worth knowing too
+        finally:
+            if not self._closing.is_set():
+                _log_keeper.error(
+                    "there is no shop-floor data any more: a mistake of the control", exc_info=True
+                )
+            self._adapter.close()

@@ -1,0 +1,202 @@
+"""An operator station without wires: palms behind a two-hand relay, feed hold, E-stop, switch and pots."""
+
+from __future__ import annotations
+
+import dataclasses
+import random
+import threading
+from collections.abc import Callable
+
+from core.ports import Clock, Station, StationState
+
+# --- The operator station: two palm buttons behind a two-hand relay, hold, latching E-stop, switch and pots.
+
+
+class TwoHandRelay:
+    """Both palms within ``window`` seconds, and both let go before it works again (anti-tie-down).
+
+    On a real machine this is a safety relay; the control sees its one output and never the palms.
+    """
+
+    def __init__(self, window: float, pulse: float) -> None:
+        self._window = window
+        self._pulse = pulse
+        self._down: dict[str, float | None] = {"left": None, "right": None}
+        self._armed = True
+        self._on_from = -1.0
+        self._on_until = -1.0
+
+    def press(self, palm: str, now: float) -> None:
+        """A palm goes down."""
+        if self._down[palm] is not None:
+            return
+        self._down[palm] = now
+        left, right = self._down["left"], self._down["right"]
+        if left is None or right is None:
+            return
+        if self._armed and abs(left - right) <= self._window:
+            self._on_from, self._on_until = now, float("inf")
+        self._armed = False
+
+    def release(self, palm: str, now: float) -> None:
+        """A palm comes up: the output falls, but not before a pulse that a scan can see."""
+        self._down[palm] = None
+        if self._on_until > now:
+            self._on_until = max(now, self._on_from + self._pulse)
+        if all(since is None for since in self._down.values()):
+            self._armed = True
+
+    def output(self, now: float) -> bool:
+        """The relay's contact."""
+        return self._on_from <= now < self._on_until
+
+
+class Panel:
+    """Everything on the station, as the operator's hands leave it."""
+
+    def __init__(self, window: float, pulse: float, seed: int) -> None:
+        self.relay = TwoHandRelay(window, pulse)
+        self.estop = False
+        self.spindle_auto = True
+        self.spindle_pot = 1.0
+        self.feed_pot = 1.0
+        self.handwheel = 0  # counts
+        self.noise = 0.0  # half width of what a bad wiper adds to the pots
+        self._pulse = pulse
+        self._hold_down = False
+        self._hold_until = -1.0
+        self._silent: StationState | None = None
+        self._silent_since = 0.0
+        self._random = random.Random(seed)
+
+    def hold(self, down: bool, now: float) -> None:
+        """Feed hold button; seen for one pulse at least."""
+        self._hold_down = down
+        if down:
+            self._hold_until = now + self._pulse
+
+    def silence(self, on: bool, now: float) -> None:
+        """The station's cable is off, or on again."""
+        self._silent = self.state(now) if on else None
+        self._silent_since = now
+
+    def state(self, now: float) -> StationState:
+        """What the control reads; when silent, the last that came, with its age."""
+        if self._silent is not None:
+            return StationState(
+                estop=self._silent.estop or self.estop,  # the E-stop has a wire of its own
+                hold=self._silent.hold,
+                spindle_auto=self._silent.spindle_auto,
+                spindle_pot=self._silent.spindle_pot,
+                feed_pot=self._silent.feed_pot,
+                handwheel=self._silent.handwheel,
+                age=now - self._silent_since,
+            )
+        return StationState(
+            estop=self.estop,
+            start=self.relay.output(now),
+            hold=self._hold_down or now < self._hold_until,
+            spindle_auto=self.spindle_auto,
+            spindle_pot=self._noisy(self.spindle_pot, 1.0),
+            feed_pot=self._noisy(self.feed_pot, 1.5),
+            handwheel=self.handwheel,
+        )
+
+    def _noisy(self, value: float, top: float) -> float:
+        if not self.noise:
+            return value
+        return min(max(value + self._random.uniform(-self.noise, self.noise), 0.0), top)
+
+
+_WINDOW, _PULSE = 0.5, 0.1  # s, of the two-hand relay that the screen stands for
+
+
+class PanelStation:
+    """Hands on one side, ``core.ports.Station`` on the other; any thread may call.
+
+    ``estop`` reads the real E-stop where the machine has an input for it; it is pressed when either is.
+    ``wired`` is a station of which there is only a handwheel: it counts on.
+    """
+
+    def __init__(self, clock: Clock, estop: Callable[[], bool], wired: Station | None = None) -> None:
+        self._clock = clock
+        self._estop = estop
+        self._wired = wired
+        self._lock = threading.Lock()
+        self._panel = Panel(_WINDOW, _PULSE, seed=0)
+
+    def snapshot(self) -> StationState:
+        """The station now."""
+        with self._lock:
+            state = self._panel.state(self._clock.now())
+        wired = self._wired.snapshot() if self._wired is not None else StationState()
+        return dataclasses.replace(
+            state,
+            estop=state.estop or self._estop(),
+            handwheel=state.handwheel + wired.handwheel,
+            age=max(state.age, wired.age),
+        )
+
+    def press_left(self) -> None:
+        """Left palm button down."""
+        self._palm("left", down=True)
+
+    def release_left(self) -> None:
+        """Left palm button up."""
+        self._palm("left", down=False)
+
+    def press_right(self) -> None:
+        """Right palm button down."""
+        self._palm("right", down=True)
+
+    def release_right(self) -> None:
+        """Right palm button up."""
+        self._palm("right", down=False)
+
+    def press_hold(self) -> None:
+        """Feed hold button down."""
+        with self._lock:
+            self._panel.hold(True, self._clock.now())
+
+    def release_hold(self) -> None:
+        """Feed hold button up."""
+        with self._lock:
+            self._panel.hold(False, self._clock.now())
+
+    def press_estop(self) -> None:
+        """The screen's E-stop: the control stops everything it can. It is no safety device."""
+        with self._lock:
+            self._panel.estop = True
+
+    def release_estop(self) -> None:
+        """Free again."""
+        with self._lock:
+            self._panel.estop = False
+
+    def set_spindle_auto(self, auto: bool) -> None:
+        """Spindle AUTO/OFF."""
+        with self._lock:
+            self._panel.spindle_auto = auto
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """Spindle override, 0…1."""
+        with self._lock:
+            self._panel.spindle_pot = min(max(fraction, 0.0), 1.0)
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Feed override, 0…1.5."""
+        with self._lock:
+            self._panel.feed_pot = min(max(fraction, 0.0), 1.5)
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the drawn handwheel on by so many counts, signed."""
+        with self._lock:
+            self._panel.handwheel += counts
+
+    def _palm(self, which: str, *, down: bool) -> None:
+        with self._lock:
+            relay, now = self._panel.relay, self._clock.now()
+            if down:
+                relay.press(which, now)
+            else:
+                relay.release(which, now)

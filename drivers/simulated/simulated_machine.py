@@ -1,0 +1,209 @@
+"""The simulated machine behind ``core.ports``: default backend, and the machine of everyone who has none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from core.ports import AxisSample, Cam, Clock, DriverError, Geared, MachinePorts, Segments, StationState, Stop
+from drivers.lookalikes.plant import Plant
+from drivers.lookalikes.plant_config import SimConfig
+from drivers.lookalikes.plant_hands import Schedule, SimMachine
+
+# --- The simulated machine behind the ports: thin fronts on one plant.
+
+
+class SimAxes:
+    """``core.ports.AxisSink`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+        self.axes = plant.names
+        self.commit = plant.config.commit
+
+    def now(self) -> float:
+        """The machine's clock."""
+        return self._plant.clock.now()
+
+    def horizon(self) -> float:
+        """End of what is queued; now when nothing is."""
+        with self._plant.lock:
+            return self._plant.queue.horizon(self._plant.clock.now())
+
+    def splice(self, segments: Segments) -> None:
+        """Queue setpoints; raises DriverError as the port says."""
+        self._plant.splice(segments)
+
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Queued position and velocity at ``t``."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.queue.demand_at(t)
+
+    def sample(self) -> AxisSample:
+        """The axes now, on the model's grid."""
+        plant = self._plant
+        with plant.lock:
+            plant.advance()
+            actual = tuple([servo.reading for servo in plant.servos])
+            demand, velocity = plant.queue.demand_at(plant.t)
+            if not plant.enabled:
+                demand = actual
+            return AxisSample(
+                t=plant.t,
+                demand=demand,
+                actual=actual,
+                following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
+                enabled=plant.enabled,
+                homed=tuple([servo.homed for servo in plant.servos]),
+                moving=any(velocity) or any(abs(servo.v) > 0.01 for servo in plant.servos),
+                fault=plant.fault,
+            )
+
+    def enable(self, on: bool) -> None:
+        """Drives on or off; raises DriverError in E-stop or fault."""
+        self._plant.power(on)
+
+    def stop(self, how: Stop) -> None:
+        """The drives' own stop, at once."""
+        self._plant.stop(how)
+
+    def home(self, axis: str) -> None:
+        """Start looking for the home switch; ``sample().homed`` says when it is found."""
+        if axis not in self.axes:
+            raise DriverError(f"there is no axis {axis!r}")
+        self._plant.home(axis)
+
+    def clear_fault(self) -> None:
+        """Forget the fault; the drives stay off."""
+        with self._plant.lock:
+            self._plant.clear_fault()
+
+
+class SimGear:
+    """``core.ports.Gear`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    def mesh(self, cam: Cam) -> None:
+        """Follow the spindle; raises DriverError as the port says."""
+        self._plant.mesh(cam)
+
+    def geared(self) -> Geared | None:
+        """Where on the cam the slides are."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.queue.geared()
+
+
+class SimSpindlePort:
+    """``core.ports.Spindle`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed; raises DriverError in E-stop or inverter fault, unless asked to stop."""
+        plant = self._plant
+        with plant.lock:
+            now = plant.advance()
+            if rpm and plant.panel.estop:
+                raise DriverError(
+                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                )
+            if rpm and plant.spindle.faults.fault:
+                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}", "spindle-off")
+            plant.spindle.order(now, rpm)
+
+    def coast(self) -> None:
+        """No torque: it runs down by itself."""
+        with self._plant.lock:
+            self._plant.spindle.order(self._plant.advance(), 0.0, coast=True)
+
+    def speed(self) -> float:
+        """Measured rpm, signed."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.speed
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, revolutions counted), in steps of the encoder's four edges; None without an encoder."""
+        if not self._plant.config.spindle.ppr:
+            return None
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.t, self._plant.spindle.counted
+
+    def fault(self) -> str:
+        """What the inverter says is wrong; empty when well."""
+        return self._plant.spindle.faults.fault
+
+
+class SimIO:
+    """``core.ports.DigitalIO`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs by name, active is True."""
+        with self._plant.lock:
+            return self._plant.terminals.read(self._plant.advance())
+
+    def outputs(self) -> Mapping[str, bool]:
+        """All outputs as last written."""
+        with self._plant.lock:
+            return dict(self._plant.terminals.outputs)
+
+    def write(self, name: str, on: bool) -> None:
+        """Switch one output; raises DriverError for an unknown name."""
+        with self._plant.lock:
+            self._plant.terminals.write(name, on, self._plant.advance())
+
+    def safe(self) -> None:
+        """Every output to its safe state."""
+        with self._plant.lock:
+            self._plant.terminals.safe(self._plant.advance())
+
+
+class SimStation:
+    """``core.ports.Station`` on the plant."""
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+
+    def snapshot(self) -> StationState:
+        """The station as the control reads it now."""
+        with self._plant.lock:
+            return self._plant.panel.state(self._plant.clock.now())
+
+
+class Simulation(NamedTuple):
+    """The ports for the executor, and the handle for whoever plays the operator."""
+
+    ports: MachinePorts
+    machine: SimMachine
+
+
+def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
+    """One simulated machine on ``clock``: its ports and its handle."""
+    plant = Plant(config, clock)
+    ports = MachinePorts(
+        clock=clock,
+        axes=SimAxes(plant),
+        spindle=SimSpindlePort(plant),
+        io=SimIO(plant),
+        station=SimStation(plant),
+        gear=SimGear(plant),
+        halt=plant.halt,
+    )
+    machine = SimMachine(plant)
+    if config.faults:
+        plant.due = Schedule(machine, config.faults).due
+    return Simulation(ports, machine)
+
+
+def build_ports(config: SimConfig, clock: Clock) -> MachinePorts:
+    """The ports alone."""
+    return build_simulation(config, clock).ports

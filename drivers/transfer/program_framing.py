@@ -1,0 +1,266 @@
+"""Programs as characters of a line: framed by %, whole, every parity right, or not at all."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+from hashlib import sha256
+
+from core.ports import DriverError
+from drivers.serial_line import PARITIES, parity_of
+from drivers.transfer.transfer_settings import DC2, DC4, TransferSettings
+
+# --- Lines and name of what has come, as tapes and controls write them.
+
+
+_LINE_ENDS = re.compile(rb"[\r\n]+")
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
+
+
+def lines_of(text: bytes) -> list[bytes]:
+    """Lines ended by LF, CR LF, CR or, as on tapes, LF CR CR; empty ones between stay."""
+    lines: list[bytes] = []
+    at = 0
+    for ends in _LINE_ENDS.finditer(text):
+        count = ends[0].count(b"\n") or ends[0].count(b"\r")
+        lines += [text[at : ends.start()], *[b""] * (count - 1)]
+        at = ends.end()
+    return [*lines, text[at:]] if text[at:].strip() else lines
+
+
+def name_of(head: bytes, lines: list[bytes]) -> str:
+    """As written behind the first %, else the O number of the first line that has words."""
+    said = head.decode("ascii", "replace").strip().strip("()").strip()
+    header = re.fullmatch(r"_N_(.+)_(MPF|SPF)", said, re.IGNORECASE)
+    if header is not None:
+        said = f"{header[1]}.{header[2].lower()}"
+    if _NAME.fullmatch(said):
+        return said
+    first = next((line for line in lines if line.strip()), b"").decode("ascii", "replace")
+    number = re.match(r"\s*[O:](\d{1,8})\b", first, re.IGNORECASE)
+    return f"O{number[1]}" if number else ""
+
+
+LARGEST = 50_000_000  # bytes: no program is larger
+_SEVEN = 0x7F
+_CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
+_ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: the sender has no more
+_SKIPPED = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))  # leader, tape, flow; rubbed out
+
+
+class Phase(StrEnum):
+    """Where a reception is."""
+
+    WAITING = "waiting"  # for the first %
+    STORING = "storing"
+    WHOLE = "whole"
+
+
+class IncompleteError(DriverError):
+    """What has come is no whole program; nothing of it is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program that has come in whole. ``name`` as it calls itself, empty: it does not."""
+
+    text: bytes
+    name: str
+    lines: int
+    digest: str  # SHA-256
+    seven: bool  # it came with even parity through a line of eight bits
+    skipped: int  # characters before the first %
+
+
+class Incoming:
+    """``feed`` what comes; ``WHOLE``: take ``program()``. ``silence`` says that nothing comes any more.
+
+    Of a line of eight bits the first % tells what it carries: 25, eight bits; A5, seven and even parity.
+    """
+
+    def __init__(self, settings: TransferSettings) -> None:
+        self._settings = settings
+        self._wrap = settings.wrap.encode("ascii")
+        self._parity = PARITIES[settings.line.parity] if settings.own_parity else None
+        self._raw = bytearray()  # with parity bits; from behind the first % on
+        self._skipped = 0
+        self._begins = 0  # where the line begins that is coming in
+        self._feeds = self._returns = 0
+        self.phase = Phase.WAITING
+        self.count = 0  # characters that have come
+
+    @property
+    def lines(self) -> int:
+        """Lines that have come, that of the first % included."""
+        return self._feeds or self._returns
+
+    def feed(self, come: bytes) -> None:
+        """Raises IncompleteError at the first character that cannot be right."""
+        self.count += len(come)
+        if self.count > LARGEST:
+            raise IncompleteError(f"more than {LARGEST // 1_000_000} MB have come: that is no program")
+        for character in come:
+            if self.phase is Phase.WAITING:
+                self._wait(character)
+            elif self.phase is Phase.STORING:
+                self._store(character)
+
+    def silence(self) -> None:
+        """Nothing comes any more: a last % needs no line end. Raises IncompleteError when it is not there."""
+        if self.phase is Phase.WHOLE:
+            return
+        if self.phase is Phase.WAITING or (self._wrap and not self._at_end()):
+            raise IncompleteError(self._lacking())
+        self.phase = Phase.WHOLE
+
+    def program(self) -> Program:
+        """The whole program. Raises IncompleteError for what no program holds."""
+        raw = bytes(self._raw)
+        seven = self._parity is not None or (not self._wrap and _even(raw))
+        text = bytes(character & _SEVEN for character in raw) if seven else raw
+        head, lines = self._parted(text.translate(None, _SKIPPED))
+        for number, line in enumerate(lines, 1):
+            self._check(line, number)
+        whole = b"".join(line + b"\n" for line in lines)
+        if not whole.strip():
+            raise IncompleteError("the program that came is empty; send it again")
+        detected = seven and not self._settings.own_parity
+        digest = sha256(whole).hexdigest()
+        return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
+
+    def _parted(self, text: bytes) -> tuple[bytes, list[bytes]]:
+        """What stands behind the first %, and the lines."""
+        lines = lines_of(text)
+        if not self._wrap:
+            return b"", lines
+        if lines and lines[-1].strip() == self._wrap:
+            lines = lines[:-1]
+        return lines[0] if lines else b"", lines[1:]
+
+    def _check(self, line: bytes, number: int) -> None:
+        if self._wrap and line.lstrip().startswith(self._wrap):
+            raise IncompleteError(
+                f"line {number} begins with {self._settings.wrap}: more than one program came; send one alone"
+            )
+        for character in line:
+            if character < 0x20 and character != _TAB:
+                raise IncompleteError(
+                    f"line {number} holds the control character {character:02X}: the line is disturbed. "
+                    "Nothing is kept; send it again"
+                )
+
+    def _wait(self, character: int) -> None:
+        wrong = self._parity is not None and parity_of(character) != self._parity
+        plain = character & _SEVEN
+        begins = plain == self._wrap[0] if self._wrap else plain > 0x20 and plain != _SEVEN
+        if wrong or not begins:
+            self._skipped += 1
+            return
+        self.phase = Phase.STORING
+        if not self._wrap:
+            self._raw.append(character)
+        elif character > _SEVEN:
+            self._parity = PARITIES["E"]
+
+    def _store(self, character: int) -> None:
+        # A leader is not punched with parity.
+        if character and self._parity is not None and parity_of(character) != self._parity:
+            self._bad_parity(character)
+            return
+        plain = character if self._parity is None else character & _SEVEN
+        if plain in _ENDS or plain in {_CR, _LF}:
+            if self._wrap and self._at_end():
+                self.phase = Phase.WHOLE
+                return
+            if plain in _ENDS:
+                self._sender_ends(plain)
+                return
+            self._feeds, self._returns = self._feeds + (plain == _LF), self._returns + (plain == _CR)
+            self._raw.append(character)
+            self._begins = len(self._raw)
+        else:
+            self._raw.append(character)
+
+    def _sender_ends(self, plain: int) -> None:
+        if not self._wrap:
+            self.phase = Phase.WHOLE
+        elif plain != _DC3:  # which is also the XOFF of a line that is not held by us
+            raise IncompleteError(self._lacking())
+
+    def _bad_parity(self, character: int) -> None:
+        """What looked like a % with parity in noise before an eight-bit program is none."""
+        if not self._settings.own_parity and not self.lines:
+            self._skipped += len(self._raw) + 1
+            self._raw.clear()
+            self._parity, self.phase = None, Phase.WAITING
+            self._wait(character)
+            return
+        raise IncompleteError(
+            f"parity error in line {self.lines}: nothing is kept. Look at {self._settings.line.words}, at "
+            "shield and earth of the cable, and send it again"
+        )
+
+    def _at_end(self) -> bool:
+        """Whether the line that is coming in is the last %."""
+        line = bytes(character & _SEVEN for character in self._raw[self._begins :])
+        return bool(self._begins) and line.translate(None, _SKIPPED).strip() == self._wrap
+
+    def _lacking(self) -> str:
+        wrap = self._settings.wrap
+        if self.phase is Phase.WAITING:
+            came = f"{self.count} characters came, but no {wrap}" if self.count else "nothing came"
+            return f"{came}; look at the line settings and at the other side, and send it again"
+        return (
+            f"the last {wrap} is missing, {self.lines} lines came: the program is not whole and is not kept; "
+            "send it again"
+        )
+
+
+def _even(raw: bytes) -> bool:
+    """Whether every character is a seven-bit one with even parity: at least one must have its top bit set."""
+    return any(character > _SEVEN for character in raw) and not any(parity_of(c) for c in raw if c)
+
+
+# --- What goes out for a program: leader, DC2, %, lines, %, DC4, trailer.
+
+
+_LINE_END = re.compile(rb"\r\n|\r|\n")
+_TOP = 0x80
+
+
+def outgoing(text: bytes, settings: TransferSettings) -> bytes:
+    """The bytes for the line. Raises DriverError for what would not arrive as it is."""
+    eol, wrap = settings.eol.encode("ascii"), settings.wrap.encode("ascii")
+    lines = _LINE_END.split(text.rstrip(b"\x1a\r\n"))
+    if wrap:
+        lines = _bare(lines, wrap)
+    if not any(line.strip() for line in lines):
+        raise DriverError("the program is empty: there is nothing to send")
+    for number, line in enumerate(lines, 1):
+        _check(line, number, wrap, seven=settings.line.bits == 7)
+    framed = [wrap, *lines, wrap] if wrap else lines
+    body = b"".join(line + eol for line in framed)
+    nulls = bytes(settings.leader)
+    return nulls + (DC2 + body + DC4 if settings.dc_codes else body) + nulls
+
+
+def _bare(lines: list[bytes], wrap: bytes) -> list[bytes]:
+    """Without a frame of its own: it would be there twice."""
+    if lines and lines[0].strip() == wrap:
+        lines = lines[1:]
+    return lines[:-1] if lines and lines[-1].strip() == wrap else lines
+
+
+def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
+    if wrap and line.strip().startswith(wrap):
+        raise DriverError(
+            f"line {number} begins with {wrap.decode()}: the other side would take it for the end"
+        )
+    for character in line:
+        if character < 0x20 and character != 0x09:
+            raise DriverError(f"line {number} holds the control character {character:02X}; take it out")
+        if seven and character >= _TOP:
+            raise DriverError(
+                f"line {number} holds a letter that 7 bits cannot carry; take it out, or use 8 bits"
+            )

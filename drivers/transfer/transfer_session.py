@@ -1,0 +1,196 @@
+"""One transfer under way: a thread of the desk or the command line runs it, any other may look and cancel."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+
+from core.ports import Clock, DriverError
+from drivers.serial_line import FlowWire, table_of
+from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
+from drivers.transfer.transfer_settings import DC1, DC3, DC4, TransferSettings
+
+CHUNK = 64  # bytes: what a USB adapter may still send after the other side has said stop
+TICK = 0.05  # s
+HELD = 1.0  # s without a byte going out after which the line counts as held
+PATIENCE = 120.0  # s that the other side may hold the line
+AGAIN = 5.0  # s after which DC1 is said again while nothing comes
+LAST = 0.5  # s of silence behind a last % without a line end
+# What a transfer waits for: the screen has the words.
+HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME = "held", "dc1", "sender", "frame"
+QUIET = 10.0  # s of silence within a program after which it will not go on
+
+
+class CancelledError(DriverError):
+    """The operator has given it up; nothing is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """How far it has come. ``total`` 0: nobody knows; ``what`` it waits for: one of the words above."""
+
+    done: int = 0
+    total: int = 0
+    lines: int = 0
+    what: str = ""
+
+
+class _Transfer:
+    """What both directions share. ``reach`` is replaced whole and may be read by any thread."""
+
+    def __init__(self, wire: FlowWire, clock: Clock, settings: TransferSettings) -> None:
+        self._wire, self._clock, self._settings = wire, clock, settings
+        self._cancelled = threading.Event()
+        self.reach = Reach()
+
+    def cancel(self) -> None:
+        """Give it up; takes effect within a tenth of a second."""
+        self._cancelled.set()
+
+    def _go_on(self) -> None:
+        if self._cancelled.is_set():
+            raise CancelledError("cancelled")
+
+
+class Sending(_Transfer):
+    """Bytes out, 64 at a time, as fast as the other side lets them."""
+
+    def __init__(self, wire: FlowWire, clock: Clock, settings: TransferSettings, data: bytes) -> None:
+        super().__init__(wire, clock, settings)
+        self._data = data
+        self._needed = len(data.rstrip(b"\r\n\x00" + DC4))  # what comes behind need not be taken
+        self._moved = clock.now()
+        self._lines = 0
+        self._held = False  # by a DC3 that the kernel did not obey
+        self.reach = Reach(0, len(data))
+
+    def run(self) -> int:
+        """Send all of it; how many bytes went out. Raises CancelledError, WireError, DriverError."""
+        try:
+            if self._settings.wait:
+                self._wait_for_start()
+            self._send()
+        except CancelledError:
+            self._wire.drop_output()
+            raise
+        finally:
+            self._wire.close()
+        return len(self._data)
+
+    def _wait_for_start(self) -> None:
+        until = self._clock.now() + PATIENCE
+        self._tell(0, FOR_DC1)
+        come = b""
+        while DC1[0] not in {character & 0x7F for character in come}:
+            self._go_on()
+            if self._clock.now() > until:
+                raise DriverError(
+                    "the other side has not asked for a program (DC1) for 2 minutes; start it there"
+                )
+            come = self._wire.receive(TICK)
+        if self._settings.line.flow == "xonxoff":
+            self._wire.obey_codes()
+        self._heed(come)
+
+    def _send(self) -> None:
+        taken = out = 0
+        self._moved = self._clock.now()
+        while out < len(self._data):
+            self._go_on()
+            if not self._held and not self._wire.waiting() and taken < len(self._data):
+                taken += self._wire.offer(self._data[taken : taken + CHUNK])
+            before, out = out, taken - self._wire.waiting()
+            self._watch(out, moved=out > before)
+            if out >= self._needed and (self._held or self.reach.what == HELD_BACK):
+                return  # DC3 behind the last %: that was enough
+            if out < len(self._data):
+                self._pause(taken - out)
+
+    def _watch(self, out: int, *, moved: bool) -> None:
+        now = self._clock.now()
+        if moved:
+            self._moved = now
+        still = now - self._moved
+        if still > PATIENCE:
+            raise DriverError(
+                f"the other side has held the line for 2 minutes after {out} bytes; look whether it is ready"
+            )
+        self._tell(out, HELD_BACK if still > HELD else "")
+
+    def _pause(self, waiting: int) -> None:
+        """As long as what waits takes to go out, or until something comes back."""
+        self._heed(self._wire.receive(min(max(waiting, 1) * self._settings.line.character, TICK)))
+
+    def _heed(self, come: bytes) -> None:
+        """DC3 and DC1 come here where the kernel does not obey them. Nothing else was asked for."""
+        if self._settings.line.flow != "xonxoff":
+            return
+        for character in come:
+            plain = character & 0x7F
+            if plain in {DC1[0], DC3[0]}:
+                self._held = plain == DC3[0]
+
+    def _tell(self, out: int, what: str) -> None:
+        line_end = self._settings.eol[-1].encode("ascii")
+        self._lines += self._data.count(line_end, self.reach.done, out)
+        self.reach = Reach(out, len(self._data), self._lines, what)
+
+
+class Receiving(_Transfer):
+    """A program in, complete or not at all."""
+
+    def run(self) -> Program:
+        """Raises CancelledError, IncompleteError, WireError; then nothing is kept."""
+        try:
+            return self._receive()
+        finally:
+            self._wire.close()
+
+    def _receive(self) -> Program:
+        incoming, clock = Incoming(self._settings), self._clock
+        heard = asked = clock.now()
+        self._ask()
+        while incoming.phase is not Phase.WHOLE:
+            self._go_on()
+            come = self._wire.receive(TICK)
+            now = clock.now()
+            if come:
+                heard = now
+                self._take(incoming, come)
+            elif incoming.phase is Phase.WAITING:
+                if now - max(asked, heard) >= AGAIN:
+                    asked = now
+                    self._ask()
+            elif now - heard >= LAST:
+                self._ended(incoming, gone=now - heard >= QUIET)
+        self._say(DC3)
+        return incoming.program()
+
+    def _take(self, incoming: Incoming, come: bytes) -> None:
+        incoming.feed(come)
+        if self._wire.damaged and incoming.phase is not Phase.WAITING:
+            raise IncompleteError(
+                f"a damaged character in line {incoming.lines}: nothing is kept. Look at the line settings, "
+                "at shield and earth of the cable, and send it again"
+            )
+        what = "" if incoming.phase is not Phase.WAITING else FOR_FRAME
+        self.reach = Reach(incoming.count, 0, incoming.lines, what)
+
+    def _ended(self, incoming: Incoming, *, gone: bool) -> None:
+        """A last % may have no line end; without one, the sender may only have been slow."""
+        if not self._settings.wrap and not gone:
+            return
+        try:
+            incoming.silence()
+        except IncompleteError:
+            if gone:
+                raise
+
+    def _ask(self) -> None:
+        self.reach = Reach(what=FOR_SENDER)
+        self._say(DC1)
+
+    def _say(self, code: bytes) -> None:
+        if self._settings.dc_codes or self._settings.line.flow == "xonxoff":
+            own = self._settings.own_parity
+            self._wire.offer(code.translate(table_of(self._settings.line.parity)) if own else code)
