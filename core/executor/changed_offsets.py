@@ -17,8 +17,8 @@ class ChangedOffsets:
     part waits for it, and a program that does not pass the proof with the new offsets is not repeated.
     """
 
-    def __init__(self, bench: MachineContext) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
         self._asked: Renew | None = None
 
     @property
@@ -47,11 +47,11 @@ class ChangedOffsets:
         if asked.trouble or asked.job is None:
             return asked.trouble
         why = start_conditions.unproved(asked.job, asked.proof) or start_conditions.beyond(
-            self._bench, asked.proof
+            self._context, asked.proof
         )
         return why or outdated(asked.job, left)
 
-    def take_up(self, standing: ControlStatus) -> None:
+    def take_up(self, status: ControlStatus) -> None:
         """Between two parts, or when the program is over: what was asked for is the program now.
 
         Without its proof nothing can be started: the old offsets are not those of the tables any more.
@@ -59,12 +59,12 @@ class ChangedOffsets:
         asked, self._asked = self._asked, None
         if asked is None:
             return
-        standing.proof = asked.proof
+        status.proof = asked.proof
         if asked.job is not None:
             setup = asked.job.setup
-            standing.job = asked.job
-            standing.modal = modal_with_offsets(standing.modal, setup.tools, setup.secondary)
-            self._bench.say("offsets", "the changed offsets are in force")
+            status.job = asked.job
+            status.modal = modal_with_offsets(status.modal, setup.tools, setup.secondary)
+            self._context.say("offsets", "the changed offsets are in force")
 
     def forget(self) -> None:
         """Another program is loaded."""

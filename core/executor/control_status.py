@@ -48,10 +48,10 @@ class ControlStatus:
 # --- the modal state between two programs ---------------------------------------------------------------
 
 
-def modal_at_power_up(bench: MachineContext) -> Modal:
+def modal_at_power_up(context: MachineContext) -> Modal:
     """The state that the control is switched on with: it counts in what the machine's builder counts in."""
-    machine = bench.machine
-    return modal_as_machine(Modal(metric=not machine.inch, rapid_rate=machine.manual_rapid), bench)
+    machine = context.machine
+    return modal_as_machine(Modal(metric=not machine.inch, rapid_rate=machine.manual_rapid), context)
 
 
 def modal_given_up(modal: Modal) -> Modal:
@@ -64,19 +64,19 @@ def modal_interrupted(modal: Modal) -> Modal:
     return modal._replace(c_locked=False, c_rpm=None)
 
 
-def modal_as_machine(modal: Modal, bench: MachineContext) -> Modal:
+def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
     """M functions as they are at the machine: an alarm, a reset or a hand may have switched them since.
 
     A stopped spindle releases C; nose compensation and plane switching never outlive their program.
     """
-    on = {name for name, lit in bench.ports.io.outputs().items() if lit}
-    assigned = {name for name, _ in bench.machine.m_codes.values()}
-    asked = bench.spindle.asked
+    on = {name for name, lit in context.ports.io.outputs().items() if lit}
+    assigned = {name for name, _ in context.machine.m_codes.values()}
+    asked = context.spindle.asked
     return modal._replace(
         spindle=modal.spindle if asked else 0,
         c_locked=modal.c_locked and not asked,
         coolant="coolant" in on,
-        collet_closed="collet" in on if "collet" in bench.machine.outputs else modal.collet_closed,
+        collet_closed="collet" in on if "collet" in context.machine.outputs else modal.collet_closed,
         outputs=frozenset(on & assigned),
         nose_comp=40,
         mill=None,

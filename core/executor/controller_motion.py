@@ -143,8 +143,8 @@ class ControllerMotion:
     Single block acts at the end of the last block that the controller has, ``BlockSink.ahead`` away at most.
     """
 
-    def __init__(self, bench: MachineContext, sink: BlockSink) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext, sink: BlockSink) -> None:
+        self._context = context
         self._sink = sink
         self._waiting: deque[Block] = deque()  # not yet cut
         self._pieces: deque[BlockPart] = deque()  # cut, not yet handed over
@@ -157,7 +157,7 @@ class ControllerMotion:
         self._still = False  # held because an override is 0
         self._lost: tuple[Block, float] | None = None  # thread without its spindle, and where X goes
         self._active = False
-        self._seen = bench.now  # when it was last followed
+        self._seen = context.now  # when it was last followed
         self._dry = False  # it was followed too late
 
     # --- how it stands ------------------------------------------------------------------------------------
@@ -207,7 +207,7 @@ class ControllerMotion:
     def begin(self, blocks: list[Block]) -> None:
         """A new stretch, from rest. Raises TroubleError, DriverError."""
         self.forget()
-        self._active, self._shown, self._seen = True, blocks[0], self._bench.now
+        self._active, self._shown, self._seen = True, blocks[0], self._context.now
         self._thread = blocks[0].kind is Kind.THREAD
         self._waiting.extend(blocks)
         self._override()
@@ -215,7 +215,7 @@ class ControllerMotion:
 
     def go_on(self, behind: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
         """From rest within the stretch: the controller goes on, or gets the next block."""
-        self._last, self._dry, self._seen = None, False, self._bench.now
+        self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:
             self._sink.resume()
         self._hand_over()
@@ -269,7 +269,7 @@ class ControllerMotion:
         """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
         assert self._lost is not None
         block, out = self._lost
-        x, z = self._bench.sample.actual[:2]
+        x, z = self._context.sample.actual[:2]
         if abs(x - out) < _NEAR or self._sink.state().hindrance:
             raise AlarmError("thread-lost", line=block.line)
         self._pieces.append(BlockPart(RapidOp(out, z, block.modal.rapid_rate), block, 0.0))
@@ -308,19 +308,19 @@ class ControllerMotion:
 
     def _left_alone(self) -> None:
         """A control that was away for longer than its blocks last does not go on: nobody expects it."""
-        away, self._seen = self._bench.now - self._seen, self._bench.now
+        away, self._seen = self._context.now - self._seen, self._context.now
         self._dry = self._dry or (away > _AWAY and bool(self._pieces or self._waiting))
 
     def _resting(self) -> Progress:
         if self._still:
             return Progress.STILL
-        stepped = self._bench.switches.single_block and self._last is not None
+        stepped = self._context.switches.single_block and self._last is not None
         return Progress.BLOCK_END if stepped else Progress.MOVING
 
     def _override(self) -> None:
         """Feed and rapid override; at 0 the controller is held. Threads know neither."""
-        feed = self._bench.feed_override
-        turn = round(self._bench.spindle.override, 2)
+        feed = self._context.feed_override
+        turn = round(self._context.spindle.override, 2)
         self._scales = Overrides(feed, min(feed, 1.0), turn)
         if feed and turn:
             self._sink.override(feed, min(feed, 1.0))
@@ -335,7 +335,7 @@ class ControllerMotion:
         return sum(piece.seconds for piece in self._pieces) + (_CUT if self._waiting else 0.0)
 
     def _hand_over(self) -> None:
-        turning = Turning(self._scales.turn, self._bench.spindle.highest)
+        turning = Turning(self._scales.turn, self._context.spindle.highest)
         while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
             self._pieces.extend(pieces_of(self._waiting.popleft(), turning, self._sink.fastest))
         while self._pieces and self._may(self._pieces[0]):
@@ -356,7 +356,7 @@ class ControllerMotion:
         return (self._seconds - self._sent[0].piece.seconds) / slow < self._sink.ahead
 
     def _single(self, block: Block) -> bool:
-        if not self._bench.switches.single_block or self._thread:
+        if not self._context.switches.single_block or self._thread:
             self._last = None
             return True
         if self._last is None:

@@ -30,21 +30,21 @@ class Cycle:
 
     def __init__(
         self,
-        bench: MachineContext,
+        context: MachineContext,
         mover: PathMotion,
         source: ProgramPass,
         begins: Modal,
         enter: Callable[[State], None],
         ended: Callable[[ProgramEnd | None], None],
     ) -> None:
-        self._bench = bench
+        self._context = context
         self._mover = mover
         self._enter = enter
         self._ended = ended
         self._needs_end = source.left is None
-        self._feed = ReadAhead(source, lambda block: check_block(block, bench.machine))
+        self._feed = ReadAhead(source, lambda block: check_block(block, context.machine))
         self._state = State.RUN
-        self._still = Standstill(bench, self._feed)
+        self._still = Standstill(context, self._feed)
         self._spin_up: Wait | None = None  # before motion that was stopped goes on
         self._held_at = 0.0
         self._retreating = False
@@ -87,8 +87,8 @@ class Cycle:
             self._reason = self._reason or reason
         if self._state not in _GOING:
             return
-        self._reason, self._held_at = reason, self._bench.now
-        self._bench.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
+        self._reason, self._held_at = reason, self._context.now
+        self._context.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
         if self._mover.moving:
             self._mover.hold()
             self._change(State.HOLDING)
@@ -100,8 +100,8 @@ class Cycle:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
         self._mover.let_stop()
         if self._state in _GOING:
-            self._reason, self._held_at = CATALOGUE[code].text.upper(), self._bench.now
-            self._bench.stopped(code, detail)
+            self._reason, self._held_at = CATALOGUE[code].text.upper(), self._context.now
+            self._context.stopped(code, detail)
             self._change(State.HOLDING)
 
     def wait_for(self, label: str) -> None:
@@ -117,7 +117,7 @@ class Cycle:
 
     def why_not_on(self) -> str:
         """Why a stopped cycle cannot go on now; empty when it can."""
-        spindle = self._bench.spindle
+        spindle = self._context.spindle
         return spindle.kept_still.lower() if spindle.waits and self._turns_next() else ""
 
     def go_on(self, *, starts_spindle: bool = False) -> None:
@@ -128,11 +128,11 @@ class Cycle:
         self._still.done = within
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
-        self._still.held(self._bench.now - self._held_at)
+        self._still.held(self._context.now - self._held_at)
         self._change(State.RUN)
         self._behind = self.current if stopped is State.BLOCK_END else None
         self._spin_up = self._slow_spindle() if within or starts_spindle else None
-        self._held_at = self._bench.now
+        self._held_at = self._context.now
         if within and self._spin_up is None:
             self._mover.go_on(self._behind)
 
@@ -151,7 +151,7 @@ class Cycle:
             self._advance()
 
     def _read(self) -> None:
-        self._feed.pull(_BLOCKS, _BUFFER * self._bench.machine.timing.lookahead)
+        self._feed.pull(_BLOCKS, _BUFFER * self._context.machine.timing.lookahead)
 
     def _slow_down(self) -> None:
         self._mover.keep_up()
@@ -163,8 +163,8 @@ class Cycle:
             self._change(State.HOLD)
 
     def _advance(self) -> None:
-        if self._bench.spindle.waits and self._turns_next():
-            self.hold(self._bench.spindle.waits)
+        if self._context.spindle.waits and self._turns_next():
+            self.hold(self._context.spindle.waits)
         elif self._spin_up is not None:
             self._speed_up(self._spin_up)
         else:
@@ -180,22 +180,22 @@ class Cycle:
 
     def _slow_spindle(self) -> Wait | None:
         """What motion waits for that goes on: the spindle, when the program has it turning."""
-        spindle = self._bench.spindle
-        if not spindle.asked or spindle.at_speed(self._bench.now):
+        spindle = self._context.spindle
+        if not spindle.asked or spindle.at_speed(self._context.now):
             return None
-        return at_speed(self._bench)
+        return at_speed(self._context)
 
     def _speed_up(self, wait: Wait) -> None:
         """A spindle that does not come to speed is a hold here: the program is not lost with it."""
         try:
-            over = wait.over(self._bench.now)
+            over = wait.over(self._context.now)
         except AlarmError:
             self._spin_up = None
             self.hold("SPINDLE NOT AT ITS SPEED")
             return
         if over:
             self._spin_up = None
-            self._still.held(self._bench.now - self._held_at)
+            self._still.held(self._context.now - self._held_at)
             if self._mover.active and not self._mover.complete:
                 self._mover.go_on(self._behind)
         self._change(State.RUN if over else State.WAIT)
@@ -248,16 +248,16 @@ class Cycle:
 
     def _act(self, block: Block) -> bool:
         """The block that needed the standstill. False when the cycle stops or ends with it."""
-        bench, action = self._bench, block.action
+        context, action = self._context, block.action
         if action is not None:
             self._show(block)
         if isinstance(action, ProgramEnd):
             self._feed.pass_stop()
             self._ended(action)
             return False
-        if isinstance(action, ProgramStop) and (bench.switches.optional_stop or not action.optional):
+        if isinstance(action, ProgramStop) and (context.switches.optional_stop or not action.optional):
             self.message = action.message
-            bench.stopped("optional-stop" if action.optional else "program-stop", action.message)
+            context.stopped("optional-stop" if action.optional else "program-stop", action.message)
             self._change(State.PROGRAM_STOP)
             return False
         self._still.carry_out(block)
@@ -265,11 +265,11 @@ class Cycle:
 
     def _watch_spindle(self, block: Block) -> None:
         """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
-        spindle = self._bench.spindle
+        spindle = self._context.spindle
         if not needs_speed(block) or self._retreating or not spindle.lost:
             return
         if block.kind is Kind.THREAD and not self._mover.release():
-            self._bench.say("thread", "spindle lost in a thread")
+            self._context.say("thread", "spindle lost in a thread")
             self._mover.retreat(block)
             self._retreating = True
             self._change(State.HOLDING)
@@ -284,9 +284,9 @@ class Cycle:
     def _show(self, block: Block) -> None:
         self.current = block
         self.modal = block.modal
-        self._bench.line = block.line
+        self._context.line = block.line
         if block.moves:
-            self._bench.spindle.follow(block)
+            self._context.spindle.follow(block)
 
     def _change(self, state: State) -> None:
         if state is not self._state:

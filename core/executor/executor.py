@@ -61,7 +61,7 @@ class Executor:
         self._ports = ports
         spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock)
         outputs = CommandedOutputs(ports.io, machine.outputs)
-        self._bench = MachineContext(
+        self._context = MachineContext(
             machine,
             replace(ports, io=outputs),
             on_event,
@@ -72,8 +72,8 @@ class Executor:
             outputs,
         )
         self._station = StationWatch()
-        self._conductor = MachineControl(self._bench, passes, note, left)
-        self._orders = Orders(self._bench, self._conductor, self._station)
+        self._control = MachineControl(self._context, passes, note, left)
+        self._orders = Orders(self._context, self._control, self._station)
         self._publisher = Publisher()
         self._told = 1.0
         self.ticks = 0  # so many have ended: what the watchdog looks at
@@ -107,11 +107,11 @@ class Executor:
         then stands still. Should this executor ever tick again, the alarm is what it begins with.
         """
         self._silent = why
-        alarm = make_alarm("control-silent", why, self._bench.line, self.snapshot.t)
+        alarm = make_alarm("control-silent", why, self._context.line, self.snapshot.t)
         log_alarm(alarm)
         shown = replace(self.snapshot, state=State.FAULT, alarms=(*self.snapshot.alarms, alarm))
         self.snapshot = shown
-        self._bench.tell(Event(shown.t, "alarm", log_line(alarm), alarm.line, alarm))
+        self._context.tell(Event(shown.t, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _mind_watchdog(self) -> None:
         if self._silent:
@@ -121,14 +121,14 @@ class Executor:
     def failed(self, error: BaseException) -> None:
         """A driver that does not answer, or a mistake of the control itself: nothing may go on."""
         if isinstance(error, DriverError):
-            self._conductor.alarm(AlarmError(error.code, str(error)))
+            self._control.alarm(AlarmError(error.code, str(error)))
         else:
-            self._conductor.failed(error)
+            self._control.failed(error)
 
     def shut(self) -> None:
         """The end of the executor: nothing is left moving or switched on. Raises nothing."""
         with ReportedAttempt(self.failed):
-            self._conductor.shut()
+            self._control.shut()
         self._show()
 
     def _show(self) -> None:
@@ -136,59 +136,59 @@ class Executor:
         with ReportedAttempt(self.failed) as publishing:
             self.snapshot = self._publish()
         if publishing.error is not None:
-            standing = self._conductor.standing
+            status = self._control.status
             self.snapshot = replace(
-                self.snapshot, t=self._bench.now, state=standing.state, alarms=standing.alarms
+                self.snapshot, t=self._context.now, state=status.state, alarms=status.alarms
             )
 
     def _blind(self) -> None:
         """Something cannot be read: what was seen before starts nothing, and E-stop is still obeyed."""
-        bench = self._bench
-        bench.heard = bench.heard._replace(start=False)
+        context = self._context
+        context.signals = context.signals._replace(start=False)
         with Attempt():
-            bench.heard = bench.heard._replace(estop=self._ports.station.snapshot().estop)
+            context.signals = context.signals._replace(estop=self._ports.station.snapshot().estop)
 
     def _look(self) -> None:
-        bench, before = self._bench, self._bench.now
-        bench.now = self._ports.clock.now()
-        bench.sample = self._ports.axes.sample()
-        bench.inputs = dict(self._ports.io.inputs())
-        bench.outputs.look(bench.now)
-        bench.spindle.guard_open = guard_open(bench)
-        bench.spindle.look()
-        bench.heard = self._station.hear(self._ports.station.snapshot(), bench.now)
-        bench.spindle.override, bench.spindle.auto = bench.heard.spindle, bench.heard.auto
+        context, before = self._context, self._context.now
+        context.now = self._ports.clock.now()
+        context.sample = self._ports.axes.sample()
+        context.inputs = dict(self._ports.io.inputs())
+        context.outputs.look(context.now)
+        context.spindle.guard_open = guard_open(context)
+        context.spindle.look()
+        context.signals = self._station.hear(self._ports.station.snapshot(), context.now)
+        context.spindle.override, context.spindle.auto = context.signals.spindle, context.signals.auto
         self._tell_override()
-        if self._conductor.state in ACTIVE:
-            self._conductor.counters.cycle += bench.now - before
-            if bench.now - before > _STALL:
-                bench.say("starved", f"the control was away for {bench.now - before:.2f} s")
+        if self._control.state in ACTIVE:
+            self._control.counters.cycle += context.now - before
+            if context.now - before > _STALL:
+                context.say("starved", f"the control was away for {context.now - before:.2f} s")
 
     def _tell_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""
-        fraction = self._bench.feed_override
+        fraction = self._context.feed_override
         if abs(fraction - self._told) >= _TOLD or (fraction == 0.0) != (self._told == 0.0):
             self._told = fraction
-            self._bench.say("override", f"feed {100 * fraction:.0f} %")
+            self._context.say("override", f"feed {100 * fraction:.0f} %")
 
     def _obey(self) -> None:
         """E-stop first, then what was posted, then the station's buttons."""
-        heard, conductor = self._bench.heard, self._conductor
-        conductor.mirror_estop(heard.estop)
+        signals, control = self._context.signals, self._control
+        control.mirror_estop(signals.estop)
         for command in self._posted():
             self.patient = self.patient or isinstance(command, _WAITED_FOR)
             self._guarded(partial(self._orders.obey, command))
-        if heard.hold:
-            conductor.feed_hold("", "the button at the station")
-        elif heard.trouble:
-            conductor.feed_hold(heard.trouble)
-        elif self._bench.spindle.guard_open and conductor.state in ACTIVE:
-            conductor.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
-        if heard.start:
-            conductor.start()
-        if heard.turned_on:
-            conductor.spindle_switch()
-        conductor.follow_wheel()
+        if signals.hold:
+            control.feed_hold("", "the button at the station")
+        elif signals.trouble:
+            control.feed_hold(signals.trouble)
+        elif self._context.spindle.guard_open and control.state in ACTIVE:
+            control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
+        if signals.start:
+            control.start()
+        if signals.turned_on:
+            control.spindle_switch()
+        control.follow_wheel()
 
     def _posted(self) -> Iterator[Command]:
         for _ in range(_COMMANDS):
@@ -196,25 +196,25 @@ class Executor:
                 posted, command = self._commands.get_nowait()
             except queue.Empty:
                 return
-            if isinstance(command, _STARTS) and self._bench.now - posted > _STALE:
-                self._bench.say("refused", f"{type(command).__name__} came too late to be obeyed")
+            if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
+                self._context.say("refused", f"{type(command).__name__} came too late to be obeyed")
             else:
                 yield command
 
     def _supervise(self) -> None:
-        self._conductor.disturbance.look()
-        self._conductor.supervisor.look(self._conductor.state)
-        if self._conductor.state in _POWERED and not self._bench.sample.enabled:
+        self._control.disturbance.look()
+        self._control.supervisor.look(self._control.state)
+        if self._control.state in _POWERED and not self._context.sample.enabled:
             raise AlarmError("power-lost")
 
     def _go_on(self) -> None:
-        self._conductor.go_on()
+        self._control.go_on()
 
     def _turn(self) -> None:
-        cycle = self._conductor.cycle
+        cycle = self._control.cycle
         block = cycle.current if cycle else None
-        offset = block.offset_x if block else self._conductor.modal.offset_x
-        self._bench.spindle.update(self._bench.now, self._bench.sample.demand[0] - offset)
+        offset = block.offset_x if block else self._control.modal.offset_x
+        self._context.spindle.update(self._context.now, self._context.sample.demand[0] - offset)
 
     def _guarded(self, part: Callable[[], None]) -> None:
         """What a part of a tick has to tell becomes an alarm, and the other parts go on."""
@@ -222,13 +222,13 @@ class Executor:
             try:
                 part()
             except AlarmError as trouble:
-                self._conductor.alarm(trouble)
+                self._control.alarm(trouble)
             except MotionError as error:
-                self._conductor.alarm(AlarmError("program", str(error)))
+                self._control.alarm(AlarmError("program", str(error)))
             except TrippedError:
                 pass  # refused, since the feeder has stopped something: the next look tells what
             except DriverError as error:
-                self._conductor.alarm(AlarmError(error.code, str(error)))
+                self._control.alarm(AlarmError(error.code, str(error)))
 
     def _publish(self) -> Snapshot:
-        return self._publisher.snapshot(self._bench, self._conductor)
+        return self._publisher.snapshot(self._context, self._control)

@@ -92,9 +92,9 @@ class _OneAxis:
             code: Code = "standstill" if rest > axis.still_time else "following"
             raise AlarmError(code, f"{axis.name} is {self._words(error)} off its setpoint")
         if rest > axis.still_time:
-            self._standing(error, rest)
+            self._at_standstill(error, rest)
 
-    def _standing(self, error: float, rest: float) -> None:
+    def _at_standstill(self, error: float, rest: float) -> None:
         """Nothing has sent it away for a while, and it does not arrive: the nearer the longer it may take."""
         axis, unmoved = self._axis, self._t - self._counted_at
         pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)

@@ -63,11 +63,11 @@ _ROUNDING = 1e-9
 class Handwheel:
     """``axis`` is what it moves, empty for nothing; ``ended`` tells why it was taken away."""
 
-    def __init__(self, bench: MachineContext, jogger: Jogger) -> None:
-        model = bench.machine.hardware.analog.get(WHEEL)
-        self._bench = bench
+    def __init__(self, context: MachineContext, jogger: Jogger) -> None:
+        model = context.machine.hardware.analog.get(WHEEL)
+        self._context = context
         self._jogger = jogger
-        self._there = model is not None and bench.ports.blocks is None
+        self._there = model is not None and context.ports.blocks is None
         self._clicks = WheelClicks(model.counts_per_click if model else 1)
         self.axis = ""
         self.ended = ""
@@ -86,7 +86,7 @@ class Handwheel:
         elif (command.axis, command.step) != (self.axis, self._step):
             self._stop(state)
             self.axis, self._step, self._ready = command.axis, command.step, False
-        self._until = self._bench.now + min(command.lease, LONGEST_LEASE)
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
 
     def off(self, state: State) -> None:
         """Nobody asks any more. Raises DriverError."""
@@ -97,12 +97,12 @@ class Handwheel:
         """Take it away, and say why. Raises DriverError."""
         self._stop(state)
         self.axis, self.ended = "", why
-        self._bench.say("refused", f"handwheel: {why}")
+        self._context.say("refused", f"handwheel: {why}")
 
     def turn(self, state: State) -> bool:
         """Once a tick; True when the axis moves. Raises DriverError."""
-        bench, jogger = self._bench, self._jogger
-        clicks = self._clicks.take(bench.heard.wheel, bench.now)
+        context, jogger = self._context, self._jogger
+        clicks = self._clicks.take(context.signals.wheel, context.now)
         if not self.axis:
             return False
         if why := self._lost(state, self.axis):
@@ -123,14 +123,14 @@ class Handwheel:
         """Why a key moves nothing because of the wheel; empty when it may."""
         if self._jogger.goal is not None:
             self._together("a key or finger came while it was turned", state)
-        if self._bench.now >= self._apart:
+        if self._context.now >= self._apart:
             return ""
-        self._apart = self._bench.now + _APART
+        self._apart = self._context.now + _APART
         return "key and handwheel at once move nothing"
 
     def _together(self, why: str, state: State) -> None:
         self._jogger.stop()
-        self._apart = self._bench.now + _APART
+        self._apart = self._context.now + _APART
         self.end(why, state)
 
     def _stop(self, state: State) -> None:
@@ -138,12 +138,12 @@ class Handwheel:
             self._jogger.stop()
 
     def _refusal(self, command: Wheel) -> str:
-        bench = self._bench
+        context = self._context
         if not self._there:
             return "this machine has none"
         if why := self._jogger.missing(command.axis):
             return why
-        longest = LONGEST_TURN if bench.machine.axis(command.axis).rotary else LONGEST_CLICK
+        longest = LONGEST_TURN if context.machine.axis(command.axis).rotary else LONGEST_CLICK
         if not 0.0 < command.step <= longest + _ROUNDING:
             return f"a click is longer than 0 and no longer than {longest:g}, not {command.step:g}"
         if not 0.0 < command.lease < math.inf:
@@ -152,13 +152,13 @@ class Handwheel:
 
     def _lost(self, state: State, axis: str) -> str:
         """What takes the wheel away in this tick."""
-        bench, heard, inputs = self._bench, self._bench.heard, self._bench.inputs
+        context, signals, inputs = self._context, self._context.signals, self._context.inputs
         reasons = (
             (state not in {State.IDLE, State.JOG}, f"it moves nothing in state {state.value}"),
-            (heard.trouble != "", heard.trouble.lower()),
-            (heard.hold, "feed hold"),
+            (signals.trouble != "", signals.trouble.lower()),
+            (signals.hold, "feed hold"),
             (self._clicks.leapt, "its counts leap: check its cable"),
-            (self.axis != "" and bench.now > self._until, "the page that asked for it was silent"),
+            (self.axis != "" and context.now > self._until, "the page that asked for it was silent"),
             (not inputs.get(ENABLE, True), "its enabling switch is not held"),
             (not inputs.get(selector(axis), True), f"the station's switch does not select {axis}"),
         )
@@ -166,11 +166,11 @@ class Handwheel:
         return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
 
     def _follow(self, clicks: int) -> bool:
-        bench, jogger = self._bench, self._jogger
-        index = bench.ports.axes.axes.index(self.axis)
-        start = bench.sample.demand[index] if jogger.goal is None else jogger.goal
+        context, jogger = self._context, self._jogger
+        index = context.ports.axes.axes.index(self.axis)
+        start = context.sample.demand[index] if jogger.goal is None else jogger.goal
         wanted = self._within(index, start + clicks * self._step)
-        found = _Ride(bench.machine.axes[index], self._top(index), self._step, wanted)
+        found = _Ride(context.machine.axes[index], self._top(index), self._step, wanted)
         jogger.chase(self.axis, found.pieces, wanted)
         if jogger.goal is not None and found.goal != wanted:
             jogger.goal = found.goal
@@ -178,14 +178,14 @@ class Handwheel:
         return jogger.goal is not None
 
     def _top(self, index: int) -> float:
-        return self._jogger.top(self._bench.machine.axes[index], self._bench.sample.homed[index])
+        return self._jogger.top(self._context.machine.axes[index], self._context.sample.homed[index])
 
     def _within(self, index: int, wanted: float) -> float:
         """Up to the soft limit, and no click kept beyond it."""
-        axis = self._bench.machine.axes[index]
-        if axis.travel is None or not self._bench.sample.homed[index]:
+        axis = self._context.machine.axes[index]
+        if axis.travel is None or not self._context.sample.homed[index]:
             return wanted
-        here = self._bench.sample.demand[index]
+        here = self._context.sample.demand[index]
         low, high = axis.travel[0] + jogging.LIMIT_MARGIN, axis.travel[1] - jogging.LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
@@ -195,7 +195,7 @@ class Handwheel:
     def _tell(self, what: str) -> None:
         if what != self._told:
             self._told = what
-            self._bench.say("refused", f"handwheel: {what}")
+            self._context.say("refused", f"handwheel: {what}")
 
 
 class _Ride:

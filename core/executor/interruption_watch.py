@@ -35,14 +35,14 @@ class InterruptionWatch:
 
     def __init__(
         self,
-        bench: MachineContext,
-        standing: ControlStatus,
+        context: MachineContext,
+        status: ControlStatus,
         parts: PartCount,
         note: Note,
         left: InterruptedJob | None,
     ) -> None:
         """``left`` is what the control found at its start."""
-        self._bench, self._standing, self._parts, self._keep = bench, standing, parts, note
+        self._context, self._status, self._parts, self._keep = context, status, parts, note
         self._begin: Begin | None = None
         self._before: InterruptedJob | None = None  # what a restart under way goes on with
         self._noted: InterruptedJob | None = None
@@ -51,48 +51,48 @@ class InterruptionWatch:
         self._rests_since: float | None = None
         self._settled = True
         self._answered: float | None = None
-        standing.interrupted = left
+        status.interrupted = left
 
     # --- the program under way ----------------------------------------------------------------------------
 
     @property
     def begun(self) -> int:
         """Elementary blocks of the piece in the collet that are begun already."""
-        standing = self._standing
-        job, before = standing.job, standing.interrupted
+        status = self._status
+        job, before = status.job, status.interrupted
         return before.begun if job is not None and before is not None and _of(before, job) else 0
 
     def begin(self, begin: Begin | None) -> None:
         """The program begins, or a restart in it: from here on a power cut leaves an interrupted job."""
-        standing, before = self._standing, self._standing.interrupted
-        assert standing.job is not None
+        status, before = self._status, self._status.interrupted
+        assert status.job is not None
         self._begin, self._before, self._answered = begin, None, None
-        if before is not None and begin is not None and _of(before, standing.job):
+        if before is not None and begin is not None and _of(before, status.job):
             self._before = before
         elif before is not None:
             self._over(f"{before.words}; the program begins anew")
-        standing.interrupted = None
-        self._note(self._now(standing.job, None))
+        status.interrupted = None
+        self._note(self._now(status.job, None))
 
     def look(self, cycle: Cycle | None) -> None:
         """Every tick: keep what has changed. ``cycle`` is that of a program, None: none is under way."""
-        if self._standing.state is not State.IDLE:
+        if self._status.state is not State.IDLE:
             self._answered = None
         block = cycle.current if cycle is not None else None
         if cycle is None:
             self._settle()
-        elif self._standing.job is not None and block is not None:
-            stopped = self._standing.state in STOPPED and cycle.at_rest
+        elif self._status.job is not None and block is not None:
+            stopped = self._status.state in STOPPED and cycle.at_rest
             if self._worth_a_note(block, just_stopped=stopped and not self._stopped):
-                self._note(self._now(self._standing.job, block))
+                self._note(self._now(self._status.job, block))
             self._stopped = stopped
 
     def _worth_a_note(self, block: Block, *, just_stopped: bool) -> bool:
-        noted, at = self._noted, self._bench.sample.actual
+        noted, at = self._noted, self._context.sample.actual
         if noted is None or noted.tool != block.modal.tool or noted.block == 0 or just_stopped:
             return True
         moved = noted.block != block.n or math.dist(noted.where, at) > _MOVED
-        return moved and self._bench.now >= self._next
+        return moved and self._context.now >= self._next
 
     def finished(self) -> None:
         """The program has come to its end."""
@@ -104,34 +104,34 @@ class InterruptionWatch:
 
         Without a block nothing of it has begun.
         """
-        job = self._standing.job
+        job = self._status.job
         if job is None or (block is None and self._before is None):
             self.finished()
             return
         found = replace(self._now(job, block), why=why)
         self._noted = self._before = None
         self._settled, self._rests_since = False, None
-        self._standing.interrupted = found
+        self._status.interrupted = found
         self._keep(found)
-        self._bench.say("interrupted", found.words)
+        self._context.say("interrupted", found.words)
 
     def _settle(self) -> None:
         """The slides still brake when an E-stop is seen: the tool stands where it has come to rest."""
-        found, now = self._standing.interrupted, self._bench.now
+        found, now = self._status.interrupted, self._context.now
         if self._settled or found is None:
             return
-        if self._bench.sample.moving or self._rests_since is None:
+        if self._context.sample.moving or self._rests_since is None:
             self._rests_since = now
         self._settled = now - self._rests_since >= _STANDS
-        self._standing.interrupted = replace(found, where=self._bench.sample.actual)
+        self._status.interrupted = replace(found, where=self._context.sample.actual)
         if self._settled:
-            self._keep(self._standing.interrupted)
+            self._keep(self._status.interrupted)
 
     # --- between two programs -----------------------------------------------------------------------------
 
     def loaded(self, job: Job) -> None:
         """Another program takes its place; the same one read again does not."""
-        before = self._standing.interrupted
+        before = self._status.interrupted
         self._answered = None
         if before is not None and not _of(before, job):
             self._over(f"{before.words}; {job.source.name} was loaded in its place")
@@ -139,12 +139,12 @@ class InterruptionWatch:
     def answer(self, at: str) -> str:
         """The operator has read what a start at the first line does; why that does not count, or nothing."""
         self._answered = None
-        found = self._standing.interrupted
+        found = self._status.interrupted
         if not at:
             return ""  # taken back
-        if found is None or found.at != at or self._standing.state is not State.IDLE:
+        if found is None or found.at != at or self._status.state is not State.IDLE:
             return "there is no interrupted job to be answered for now"
-        self._answered = self._bench.now
+        self._answered = self._context.now
         return ""
 
     def withdraw(self) -> None:
@@ -154,15 +154,15 @@ class InterruptionWatch:
     @property
     def answered(self) -> bool:
         """Whether that was said, and not too long ago."""
-        return self._answered is not None and self._bench.now - self._answered <= _ANSWERED
+        return self._answered is not None and self._context.now - self._answered <= _ANSWERED
 
     @property
     def refusal(self) -> str:
         """Why a start at the first line has to be confirmed; empty when it has not."""
-        found = self._standing.interrupted
-        if found is None or self._standing.starts is not Starts.PROGRAM or self.answered:
+        found = self._status.interrupted
+        if found is None or self._status.starts is not Starts.PROGRAM or self.answered:
             return ""
-        job = self._standing.job
+        job = self._status.job
         there = job is None or job.source.dialect is Dialect.OMNITURN
         how = "go on there by SEARCHTO (F6), or press Y" if there else "jog it clear, press Y"
         return (
@@ -171,15 +171,15 @@ class InterruptionWatch:
         )
 
     def _over(self, words: str) -> None:
-        self._standing.interrupted = None
+        self._status.interrupted = None
         self._settled = True
         self._keep(None)
-        self._bench.say("cleared", words)
+        self._context.say("cleared", words)
 
     # --- what is noted ------------------------------------------------------------------------------------
 
     def _note(self, what: InterruptedJob) -> None:
-        self._noted, self._next = what, self._bench.now + _EVERY
+        self._noted, self._next = what, self._context.now + _EVERY
         self._keep(what)
 
     def _now(self, job: Job, block: Block | None) -> InterruptedJob:
@@ -191,7 +191,7 @@ class InterruptionWatch:
         if before is not None and (
             block is None or (begin is not None and block.n <= begin.checkpoint.blocks)
         ):
-            return replace(before, where=self._bench.sample.actual, why=CONTROL_LOST, at=utc_now())
+            return replace(before, where=self._context.sample.actual, why=CONTROL_LOST, at=utc_now())
         done = block.n if block is not None else 0
         return InterruptedJob(
             program=job.source.name,
@@ -200,10 +200,10 @@ class InterruptionWatch:
             line=block.line if block is not None else begin.line if begin is not None else 1,
             block=done,
             begun=self._parts.piece.begun_to(done),
-            tool=block.modal.tool if block is not None else self._standing.modal.tool,
+            tool=block.modal.tool if block is not None else self._status.modal.tool,
             part=self._parts.counters.made + 1,
-            axes=tuple(axis.name for axis in self._bench.machine.axes),
-            where=self._bench.sample.actual,
+            axes=tuple(axis.name for axis in self._context.machine.axes),
+            where=self._context.sample.actual,
             why=CONTROL_LOST,
             at=utc_now(),
         )

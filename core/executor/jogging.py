@@ -122,8 +122,8 @@ _MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the cloc
 class Jogger:
     """The jog that is under way, if any: held by a lease, or a step of a given length."""
 
-    def __init__(self, bench: MachineContext) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
         self._axis = -1
         self.stepping = False
         self._short = False  # the step was stopped before its end
@@ -133,7 +133,7 @@ class Jogger:
     @property
     def axis(self) -> str:
         """Name of the axis that moves, empty without one."""
-        return self._bench.machine.axes[self._axis].name if self._axis >= 0 else ""
+        return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
     def refusal(self, name: str, velocity: float, lease: float) -> str:
         """Why this jog is refused; empty when it may begin or go on."""
@@ -159,14 +159,14 @@ class Jogger:
 
     def missing(self, name: str) -> str:
         """Why there is no such axis to move by hand; empty when there is."""
-        machine = self._bench.machine
+        machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
         there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
         return "" if there else f"this machine has no axis {name} to jog"
 
     def _barred(self, name: str) -> str:
-        bench = self._bench
-        if bench.heard.hold:
+        context = self._context
+        if context.signals.hold:
             return "feed hold is pressed"
         if self.axis and self.axis != name:
             return f"{self.axis} is still being jogged"
@@ -174,24 +174,24 @@ class Jogger:
 
     def spinning(self, name: str) -> str:
         """Why C does not move as long as it turns as the spindle."""
-        bench = self._bench
-        turns = bench.spindle.asked or not bench.spindle.stopped
-        if name == "C" and bench.machine.spindle_is_c and turns:
+        context = self._context
+        turns = context.spindle.asked or not context.spindle.stopped
+        if name == "C" and context.machine.spindle_is_c and turns:
             return "C is the spindle, and the spindle turns; stop it first"
         return ""
 
     def uncoupled(self, name: str) -> str:
         """Why C does not move yet: the spindle's drive has to become C first, which begins here."""
-        if name != "C" or not self._bench.machine.spindle_is_c or self._bench.spindle.hold(orient=False):
+        if name != "C" or not self._context.machine.spindle_is_c or self._context.spindle.hold(orient=False):
             return ""
         return "the spindle's drive becomes C: let go, and begin again in two seconds"
 
     def _too_far(self, name: str, distance: float) -> str:
         """A step that would leave the travel is not shortened: it would no longer be what was asked."""
-        index = self._bench.ports.axes.axes.index(name)
-        axis, here = self._bench.machine.axes[index], self._bench.sample.demand[index]
+        index = self._context.ports.axes.axes.index(name)
+        axis, here = self._context.machine.axes[index], self._context.sample.demand[index]
         if (
-            not self._bench.sample.homed[index]
+            not self._context.sample.homed[index]
             or abs(distance) <= room_to_limit(axis, here, distance) + _STEP_ROUNDING
         ):
             return ""
@@ -199,20 +199,20 @@ class Jogger:
 
     def step(self, name: str, distance: float, speed: float) -> None:
         """Begin a step from rest. Raises DriverError."""
-        index = self._bench.ports.axes.axes.index(name)
-        axis = self._bench.machine.axes[index]
-        top = min(speed, self.top(axis, self._bench.sample.homed[index]))
+        index = self._context.ports.axes.axes.index(name)
+        axis = self._context.machine.axes[index]
+        top = min(speed, self.top(axis, self._context.sample.homed[index]))
         self._splice(index, lambda _start, _p, _v: step_ramps(distance, top, axis.amax))
         self._axis, self.stepping = index, True
 
     def move(self, name: str, velocity: float, lease: float) -> bool:
         """Begin or renew; False when there is no way to go in that direction. Raises DriverError."""
-        bench = self._bench
-        index = bench.ports.axes.axes.index(name)
-        axis = bench.machine.axes[index]
-        homed = bench.sample.homed[index]
+        context = self._context
+        index = context.ports.axes.axes.index(name)
+        axis = context.machine.axes[index]
+        homed = context.sample.homed[index]
         speed = math.copysign(min(abs(velocity), self.top(axis, homed)), velocity)
-        until = bench.now + min(lease, LONGEST_LEASE)
+        until = context.now + min(lease, LONGEST_LEASE)
 
         def go(start: float, p: float, v: float) -> list[Ramp]:
             way = room_to_limit(axis, p, speed) if homed else math.inf
@@ -225,7 +225,7 @@ class Jogger:
 
     def chase(self, name: str, rides: Callable[[float, float, float], list[Ramp]], goal: float) -> None:
         """Go where the handwheel sends the axis, from whatever it does now. Raises DriverError."""
-        index = self._bench.ports.axes.axes.index(name)
+        index = self._context.ports.axes.axes.index(name)
         if self._splice(index, rides):
             self._axis, self.goal, self.ending = index, goal, False
 
@@ -234,13 +234,13 @@ class Jogger:
         if self._axis < 0:
             return
         self._short = self._short or self.stepping
-        amax = self._bench.machine.axes[self._axis].amax
+        amax = self._context.machine.axes[self._axis].amax
         self._splice(self._axis, lambda _start, _p, v: jog_ramps(v, 0.0, amax, 0.0, math.inf))
         self.stepping, self.goal, self.ending = False, None, True
 
     def over(self) -> bool:
         """Whether it has come to rest."""
-        axes = self._bench.ports.axes
+        axes = self._context.ports.axes
         horizon = axes.horizon()
         if not at_rest(horizon, axes.now()):
             return False
@@ -250,7 +250,7 @@ class Jogger:
     def ended(self) -> None:
         """It rests; a step that was cut short is said to be so."""
         if self._short:
-            self._bench.say("refused", f"{self.axis} was stopped before the end of its step")
+            self._context.say("refused", f"{self.axis} was stopped before the end of its step")
         self.forget()
 
     def forget(self) -> None:
@@ -263,7 +263,7 @@ class Jogger:
 
         False when it makes nothing. Raises DriverError.
         """
-        axes = self._bench.ports.axes
+        axes = self._context.ports.axes
         for margin in _MARGINS:
             start = axes.now() + axes.commit + margin
             p, v = axes.demand_at(start)
@@ -282,7 +282,7 @@ class Jogger:
     def top(self, axis: Axis, homed: bool) -> float:
         """How fast an axis goes by hand at most."""
         endless = axis.travel is None or axis.rotary
-        rapid = axis.vmax if endless else min(axis.vmax, self._bench.machine.manual_rapid)
+        rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.manual_rapid)
         return rapid if homed else _UNHOMED * rapid
 
 
@@ -294,16 +294,16 @@ def at_the_end(name: str, direction: float) -> str:
 # --- jog by the controller ------------------------------------------------------------------------------
 
 
-def jogger_of(bench: MachineContext) -> Jogger:
+def jogger_of(context: MachineContext) -> Jogger:
     """By setpoints, or by the controller's own jog."""
-    return Jogger(bench) if bench.ports.blocks is None else BlockJogger(bench, bench.ports.blocks)
+    return Jogger(context) if context.ports.blocks is None else BlockJogger(context, context.ports.blocks)
 
 
 class BlockJogger(Jogger):
     """Same questions and refusals; the controller moves."""
 
-    def __init__(self, bench: MachineContext, sink: BlockSink) -> None:
-        super().__init__(bench)
+    def __init__(self, context: MachineContext, sink: BlockSink) -> None:
+        super().__init__(context)
         self._sink = sink
 
     def refusal(self, name: str, velocity: float, lease: float) -> str:
@@ -317,14 +317,14 @@ class BlockJogger(Jogger):
     def step(self, name: str, distance: float, speed: float) -> None:
         """Begin a step from rest. Raises DriverError."""
         index, top = self._speed(name, speed)
-        self._sink.jog_to(name, self._bench.sample.demand[index] + distance, top)
+        self._sink.jog_to(name, self._context.sample.demand[index] + distance, top)
         self._axis, self.stepping = index, True
 
     def move(self, name: str, velocity: float, lease: float) -> bool:
         """Begin or renew; False when there is no way to go in that direction. Raises DriverError."""
         index, top = self._speed(name, abs(velocity))
-        axis = self._bench.machine.axes[index]
-        limits = axis.travel if self._bench.sample.homed[index] else None
+        axis = self._context.machine.axes[index]
+        limits = axis.travel if self._context.sample.homed[index] else None
         if limits is not None:
             limits = limits[0] + LIMIT_MARGIN, limits[1] - LIMIT_MARGIN
         moves = self._sink.jog(name, math.copysign(top, velocity), min(lease, LONGEST_LEASE), limits)
@@ -348,9 +348,9 @@ class BlockJogger(Jogger):
         return True
 
     def _speed(self, name: str, speed: float) -> tuple[int, float]:
-        index = self._bench.ports.axes.axes.index(name)
-        axis = self._bench.machine.axes[index]
-        return index, min(speed, self.top(axis, self._bench.sample.homed[index]))
+        index = self._context.ports.axes.axes.index(name)
+        axis = self._context.machine.axes[index]
+        return index, min(speed, self.top(axis, self._context.sample.homed[index]))
 
     def _unready(self) -> str:
         state = self._sink.state()

@@ -43,7 +43,7 @@ class MachineContext:
     sample: AxisSample
     inputs: dict[str, bool]
     outputs: CommandedOutputs  # the same as ``ports.io``
-    heard: StationSignals = _QUIET
+    signals: StationSignals = _QUIET
     switches: Switches = field(default_factory=Switches)
     soft_override: float = 1.0
     line: int = 0  # of the block being executed, for the log
@@ -53,7 +53,7 @@ class MachineContext:
     @property
     def feed_override(self) -> float:
         """Pot times key, 0…1.5 of the programmed feed; steps of half a per cent."""
-        fraction = min(self.heard.feed * self.soft_override, 1.5)
+        fraction = min(self.signals.feed * self.soft_override, 1.5)
         return round(fraction / _LEAST) * _LEAST
 
     def say(self, kind: str, text: str) -> None:

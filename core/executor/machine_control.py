@@ -36,52 +36,52 @@ class MachineControl:
 
     def __init__(
         self,
-        bench: MachineContext,
+        context: MachineContext,
         passes: Callable[[Job, Setup], ProgramPass],
         note: Note,
         left: InterruptedJob | None,
     ) -> None:
-        self._bench = bench
-        self.rounds = ProgramRun(bench, passes, self.enter, note, left)
-        self.standing = self.rounds.standing
-        self.standing.modal = modal_at_power_up(bench)
-        self.counters = self.rounds.counters
-        self.supervisor = Supervisor(bench)
-        self.safe = SafeStop(bench)
-        self.jogger = jogger_of(bench)
-        self.wheel = Handwheel(bench, self.jogger)
-        self.homing = Homing(bench)
+        self._context = context
+        self.program_run = ProgramRun(context, passes, self.enter, note, left)
+        self.status = self.program_run.status
+        self.status.modal = modal_at_power_up(context)
+        self.counters = self.program_run.counters
+        self.supervisor = Supervisor(context)
+        self.safe = SafeStop(context)
+        self.jogger = jogger_of(context)
+        self.wheel = Handwheel(context, self.jogger)
+        self.homing = Homing(context)
         self.announcement = Announcement()
-        self.disturbance = OutputsWatch(bench, self.rounds)
+        self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts]
         self._giving_up = False
 
     @property
     def state(self) -> State:
         """The present state."""
-        return self.standing.state
+        return self.status.state
 
     @property
     def cycle(self) -> Cycle | None:
         """The cycle under way, if any."""
-        return self.rounds.cycle
+        return self.program_run.cycle
 
     @property
     def modal(self) -> Modal:
         """In force now: of the block being executed, or what stands between two programs."""
-        return self.rounds.modal
+        return self.program_run.modal
 
     def enter(self, state: State) -> None:
         """Change the state; raises TransitionError for a change that the table does not hold."""
         if state is self.state:
             return
         demand_allowed(self.state, state)
-        self.standing.state = state
+        self.status.state = state
         if state is State.BLOCK_END:
-            self._bench.stopped("single-block")
+            self._context.stopped("single-block")
         elif state in _GOES_ON:
-            self._bench.stop = None
-        self._bench.say("state", state.value)
+            self._context.stop = None
+        self._context.say("state", state.value)
 
     # --- what is asked ------------------------------------------------------------------------------------
 
@@ -92,40 +92,42 @@ class MachineControl:
             return
         if state in STOPPED and cycle is not None:
             if not self.refuse(
-                start_conditions.busy(self._bench) or cycle.why_not_on() or self._unannounced()
+                start_conditions.busy(self._context) or cycle.why_not_on() or self._unannounced()
             ):
-                waits = bool(self._bench.spindle.waits)
+                waits = bool(self._context.spindle.waits)
                 self.announcement.begin()
                 cycle.go_on(starts_spindle=waits)
-        elif not self.refuse(self.rounds.refusal(state) or self._unannounced()):
+        elif not self.refuse(self.program_run.refusal(state) or self._unannounced()):
             self.announcement.begin()
-            self.rounds.begin()
+            self.program_run.begin()
 
     def refuse(self, why: str) -> bool:
         """Keep and log why a start is refused; False when there is no reason."""
-        self.standing.start_refused = why
+        self.status.start_refused = why
         if why:
-            self._bench.say("refused", why)
+            self._context.say("refused", why)
         return bool(why)
 
     def spindle_switch(self) -> None:
         """From OFF to AUTO by hand: between programs that starts the spindle, under one the palms do."""
-        spindle = self._bench.spindle
+        spindle = self._context.spindle
         if self.state not in BY_HAND or not spindle.waits:
             return
-        why = start_conditions.unclamped(self._bench) or self.announcement.refusal(self._bench.now, SPINDLE)
+        why = start_conditions.unclamped(self._context) or self.announcement.refusal(
+            self._context.now, SPINDLE
+        )
         if why:
-            self._bench.say("refused", why)
+            self._context.say("refused", why)
         else:
             self.announcement.begin(SPINDLE)
 
     def _unannounced(self) -> str:
-        unclamped = start_conditions.unclamped(self._bench) if self._bench.spindle.waits else ""
-        return unclamped or self.announcement.refusal(self._bench.now)
+        unclamped = start_conditions.unclamped(self._context) if self._context.spindle.waits else ""
+        return unclamped or self.announcement.refusal(self._context.now)
 
     def _spindle_starts(self) -> Iterator[Starting]:
         """One that waits: in a cycle for the palms alone, between programs for its switch too."""
-        spindle = self._bench.spindle
+        spindle = self._context.spindle
         rpm, by_hand = spindle.would_turn, self.state in BY_HAND
         if rpm and (by_hand or (self.state in STOPPED and not spindle.kept_still)):
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
@@ -144,18 +146,18 @@ class MachineControl:
         elif self.state is State.HOME:
             self._stop_homing()
         elif self.cycle is not None and self.state in ACTIVE:
-            self._bench.spindle.break_off()
+            self._context.spindle.break_off()
             self.cycle.hold(reason, by)
 
     def reset(self) -> None:
         """Give the program up, stop the spindle, acknowledge alarms."""
-        self.standing.start_refused = ""
+        self.status.start_refused = ""
         self.safe.functions_off()
-        if self.standing.alarms:
+        if self.status.alarms:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
-            job = self.standing.job
-            self._bench.noted("reset", f"{job.source.name} was given up" if job is not None else "")
+            job = self.status.job
+            self._context.noted("reset", f"{job.source.name} was given up" if job is not None else "")
             self._giving_up = True
             self.cycle.abandon()
             self._leave()
@@ -173,7 +175,7 @@ class MachineControl:
         """The hardware has stopped everything; the control follows, and nothing starts on release."""
         if pressed and self.state is not State.ESTOP:
             self.safe.react(Reaction.OFF)
-            self._bench.stopped("estop")
+            self._context.stopped("estop")
             self._give_up(ESTOP)
             self.enter(State.ESTOP)
         elif not pressed and self.state is State.ESTOP:
@@ -184,7 +186,7 @@ class MachineControl:
     def go_on(self) -> None:
         """Whatever is under way. Raises TroubleError, MotionError, DriverError."""
         self._finish_stopping()
-        self.rounds.look()
+        self.program_run.look()
         if self.cycle is not None and self.state in CYCLE:
             if self._giving_up:
                 self._leave()
@@ -199,15 +201,15 @@ class MachineControl:
 
     def _mind_the_queue(self, cycle: Cycle) -> None:
         """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
-        mover = self.rounds.mover
-        left = mover.starving - self._bench.now
-        if mover.active and left < self._bench.machine.timing.low_water:
+        mover = self.program_run.mover
+        left = mover.starving - self._context.now
+        if mover.active and left < self._context.machine.timing.low_water:
             self.counters.underruns += 1
-            self._bench.say("starved", "setpoints ran low; the slides stop on the path")
+            self._context.say("starved", "setpoints ran low; the slides stop on the path")
             cycle.starve()
 
     def _leave(self) -> None:
-        if self.rounds.leave():
+        if self.program_run.leave():
             self._giving_up = False
 
     def _stop_homing(self) -> None:
@@ -218,20 +220,20 @@ class MachineControl:
 
     def alarm(self, trouble: AlarmError) -> None:
         """Stop the machine and say why. The same alarm twice is one."""
-        bench = self._bench
-        alarm, reaction = alarm_and_reaction(trouble, bench.line, bench.now)
-        if any(old.code == alarm.code for old in self.standing.alarms):
+        context = self._context
+        alarm, reaction = alarm_and_reaction(trouble, context.line, context.now)
+        if any(old.code == alarm.code for old in self.status.alarms):
             return
         log_alarm(alarm)
         if reaction is Reaction.HOLD and self._holds(trouble):
             return
-        self.standing.alarms = (*self.standing.alarms, alarm)
-        self.standing.power_off = self.standing.power_off or reaction is Reaction.OFF
+        self.status.alarms = (*self.status.alarms, alarm)
+        self.status.power_off = self.status.power_off or reaction is Reaction.OFF
         self.safe.react(reaction)
         self._give_up(f"ALARM {alarm.number}: {alarm.text}")
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
-        bench.tell(Event(bench.now, "alarm", log_line(alarm), alarm.line, alarm))
+        context.tell(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
 
     def _holds(self, trouble: AlarmError) -> bool:
         """What need not cost the part is a hold; False where there is nothing that could be held."""
@@ -239,8 +241,8 @@ class MachineControl:
             self.cycle.starve(trouble.code, trouble.detail)
         elif self.state in BY_HAND:
             self.jogger.stop()
-            stop = self._bench.noted(trouble.code, trouble.detail)
-            self._bench.say("refused", stop.text.lower())
+            stop = self._context.noted(trouble.code, trouble.detail)
+            self._context.say("refused", stop.text.lower())
         else:
             return False
         return True
@@ -248,23 +250,23 @@ class MachineControl:
     def failed(self, error: BaseException) -> None:
         """A mistake of the control itself, whatever the table of states says about it."""
         if self.state is not State.ESTOP:
-            self.standing.state = State.FAULT
+            self.status.state = State.FAULT
         self.alarm(AlarmError("internal", f"{type(error).__name__}: {error}"))
 
     def _give_up(self, why: str) -> None:
         """What was under way is over, whether or not what it stood on still answers."""
         self._giving_up = False
         with Attempt() as trial:
-            self.rounds.forget(why)
+            self.program_run.forget(why)
         if trial.error is not None:
-            self.rounds.drop()
-            self._bench.say("alarm", f"while giving the program up: {trial.error}")
+            self.program_run.drop()
+            self._context.say("alarm", f"while giving the program up: {trial.error}")
 
     def _finish_stopping(self) -> None:
         """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
         if self.state in _STOPPED:
             self.safe.again()
-            if self.safe.undone and not any(each.code in CUT_OFF for each in self.standing.alarms):
+            if self.safe.undone and not any(each.code in CUT_OFF for each in self.status.alarms):
                 self.alarm(AlarmError("not-safe", f"a driver does not obey: {self.safe.undone}"))
 
     def shut(self) -> None:
@@ -272,20 +274,20 @@ class MachineControl:
         self.safe.react(Reaction.OFF)
         self._give_up(CLOSED)
         if self.state is not State.ESTOP:
-            self.standing.state = State.DISABLED
+            self.status.state = State.DISABLED
 
     def _acknowledge(self) -> None:
         """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
-        bench, standing = self._bench, self.standing
-        if bench.sample.moving:
-            bench.say("refused", "reset: wait until the slides are at rest")
+        context, status = self._context, self.status
+        if context.sample.moving:
+            context.say("refused", "reset: wait until the slides are at rest")
             return
-        if standing.power_off:
-            bench.ports.axes.enable(False)
-        bench.ports.axes.clear_fault()
-        standing.power_off, standing.alarms = False, ()
+        if status.power_off:
+            context.ports.axes.enable(False)
+        context.ports.axes.clear_fault()
+        status.power_off, status.alarms = False, ()
         self.safe.forget()
         self.supervisor.acknowledged()
-        bench.sample = bench.ports.axes.sample()
+        context.sample = context.ports.axes.sample()
         if self.state is State.FAULT:
-            self.enter(State.IDLE if bench.sample.enabled else State.DISABLED)
+            self.enter(State.IDLE if context.sample.enabled else State.DISABLED)

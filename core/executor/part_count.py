@@ -48,15 +48,15 @@ class Workpiece:
 class PartCount:
     """Counts parts and keeps cycle times; ``counters`` is what everybody reads."""
 
-    def __init__(self, bench: MachineContext) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
         self.counters = Counters()
         self.piece = Workpiece()
 
     @property
     def why_none(self) -> str:
         """Why the program under way will make no part; empty when it will make one."""
-        return "NO COUNT is on" if self._bench.switches.no_count else self.piece.why_none
+        return "NO COUNT is on" if self._context.switches.no_count else self.piece.why_none
 
     def ended(self) -> None:
         """The program has come to its end. The time of a restart is not that of a cycle."""
@@ -66,9 +66,9 @@ class PartCount:
         if not self.piece.restarted:
             counters.last_cycle = seconds
         if why:
-            self._bench.say("uncounted", f"{why}; {seconds:.2f} s")
+            self._context.say("uncounted", f"{why}; {seconds:.2f} s")
         else:
             counters.parts += 1
             counters.made += 1
-            self._bench.say("part", f"part {counters.parts}, {seconds:.2f} s")
+            self._context.say("part", f"part {counters.parts}, {seconds:.2f} s")
         self.piece.end()

@@ -167,13 +167,13 @@ class PlanQueue:
             tracks.append(Track(end, end, tail))
         arrays = [np.concatenate(part) for part in zip(*parts, strict=True)]
         if not len(arrays[0]):
-            arrays = _standing(t, profile)
+            arrays = _rest_setpoints(t, profile)
         self._axes.splice(Segments(*arrays))
         self._tracks.replace(t, tracks, self._axes.now())
         self._queued_to = end
 
 
-def _standing(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
+def _rest_setpoints(t: float, profile: Profile) -> list[np.ndarray[tuple[int, ...], np.dtype[np.float64]]]:
     """Setpoints that stay where the plan stands: they cut off whatever was queued behind."""
     still = np.zeros((1, len(profile.path.start)))
     return [np.array([t]), np.zeros(1), profile.path.point(np.array([profile.end_s])), still, still]

@@ -30,21 +30,21 @@ class ProgramRun:
 
     def __init__(
         self,
-        bench: MachineContext,
+        context: MachineContext,
         passes: Callable[[Job, Setup], ProgramPass],
         enter: Callable[[State], None],
         note: Note,
         left: InterruptedJob | None,
     ) -> None:
-        self._bench = bench
+        self._context = context
         self._passes = passes
         self._enter = enter
-        self.mover = _mover(bench)
-        self.standing = ControlStatus()
-        self.parts = PartCount(bench)
+        self.mover = _mover(context)
+        self.status = ControlStatus()
+        self.parts = PartCount(context)
         self.counters = self.parts.counters
-        self.interruption = InterruptionWatch(bench, self.standing, self.parts, note, left)
-        self.renewal = ChangedOffsets(bench)
+        self.interruption = InterruptionWatch(context, self.status, self.parts, note, left)
+        self.changed_offsets = ChangedOffsets(context)
         self.cycle: Cycle | None = None
         self._source: ProgramPass | None = None
         self._line = False  # what is under way is a line of MDI
@@ -52,28 +52,28 @@ class ProgramRun:
 
     def refusal(self, state: State) -> str:
         """Why what Cycle Start would begin may not begin; empty when it may."""
-        return start_conditions.start_refusal(self._bench, state, self.standing) or self.interruption.refusal
+        return start_conditions.start_refusal(self._context, state, self.status) or self.interruption.refusal
 
     def begin(self) -> None:
         """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
-        standing, bench = self.standing, self._bench
-        job = start_conditions.job_of(standing)
+        status, context = self.status, self._context
+        job = start_conditions.job_of(status)
         assert job is not None
         self.counters.cycle = 0.0
-        self._line = standing.starts is Starts.LINE
+        self._line = status.starts is Starts.LINE
         self.counters.lines += self._line
-        if standing.starts is Starts.RESTART:
-            standing.starts = Starts.PROGRAM
-        standing.prepared = standing.prepared_proof = None
+        if status.starts is Starts.RESTART:
+            status.starts = Starts.PROGRAM
+        status.prepared = status.prepared_proof = None
         if not self._line:
             self.parts.piece.begin(job, self.interruption.begun)
             self.interruption.begin(job.setup.begin)
         self._open(job)
         self._enter(State.RUN)
-        bench.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
+        context.say("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
         if begin is not None and not begin.single:
-            bench.say("restart", f"from line {begin.line}")
+            context.say("restart", f"from line {begin.line}")
 
     @property
     def will_count(self) -> bool:
@@ -93,7 +93,7 @@ class ProgramRun:
         kind = "mdi" if self._line else "end"
         self.forget(GIVEN_UP)
         self._enter(State.IDLE)
-        self._bench.say(kind, said)
+        self._context.say(kind, said)
         return True
 
     def forget(self, why: str) -> None:
@@ -113,42 +113,42 @@ class ProgramRun:
         """The same where nothing answers any more: only that nothing goes on counts."""
         self.cycle = self._source = None
         self._between = False
-        self._bench.line = 0
+        self._context.line = 0
 
     def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
         """Nothing is under way any more; offsets that were changed meanwhile count from here on."""
         self._stand(left, tool_open=tool_open)
         self.cycle = self._source = None
         self._between = False
-        self._bench.line = 0
+        self._context.line = 0
         self.mover.forget()
-        self.renewal.take_up(self.standing)
+        self.changed_offsets.take_up(self.status)
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
         """Unit and rapid rate are OmniTurn's own: what other dialects did with theirs does not count."""
-        job, before = self.standing.job, self.standing.modal
+        job, before = self.status.job, self.status.modal
         if not self._line and job is not None and job.source.dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
-        self.standing.modal, self.standing.tool_open = modal, tool_open
+        self.status.modal, self.status.tool_open = modal, tool_open
 
     def look(self) -> None:
         """Between two cycles: what stands is what the machine really does; the next part may begin."""
         self.interruption.look(None if self._line or self._between else self.cycle)
         if self.cycle is None:
-            self.standing.modal = modal_as_machine(self.standing.modal, self._bench)
-        elif self._between and self.standing.state in {State.RUN, State.WAIT}:
+            self.status.modal = modal_as_machine(self.status.modal, self._context)
+        elif self._between and self.status.state in {State.RUN, State.WAIT}:
             self._go_round(self.cycle)
 
     def _open(self, job: Job) -> None:
         """A pass from where the slides stand now; nothing is kept of an earlier one."""
-        at, _ = self._bench.ports.axes.demand_at(self._bench.now)
-        setup = circumstances(job.setup, at, self._bench.terminal)
+        at, _ = self._context.ports.axes.demand_at(self._context.now)
+        setup = circumstances(job.setup, at, self._context.terminal)
         self.mover.forget()
         begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
             begins = setup.begin.checkpoint.modal
         self._source = self._passes(job, setup)
-        self.cycle = Cycle(self._bench, self.mover, self._source, begins, self._enter, self._ended)
+        self.cycle = Cycle(self._context, self.mover, self._source, begins, self._enter, self._ended)
 
     def _ended(self, end: ProgramEnd | None) -> None:
         """M30 and M02, or the end of a line of MDI."""
@@ -159,7 +159,7 @@ class ProgramRun:
             return
         self.parts.ended()
         self.interruption.finished()
-        self._between = end is not None and end.reset and self._bench.switches.cycle_repeat
+        self._between = end is not None and end.reset and self._context.switches.cycle_repeat
         if self.cycle is not None and self._between:
             self._go_round(self.cycle)
         else:
@@ -167,32 +167,32 @@ class ProgramRun:
 
     def _go_round(self, cycle: Cycle) -> None:
         """The next part begins once changed offsets are proved; or why it does not is said."""
-        repeat = self._bench.switches.cycle_repeat
-        if repeat and self.renewal.pending:
+        repeat = self._context.switches.cycle_repeat
+        if repeat and self.changed_offsets.pending:
             cycle.wait_for("PROOF WITH THE CHANGED OFFSETS")
             return
         why = self._why_not_again(cycle.modal)
         if why or not repeat:
             self._program_ended(why)
             return
-        self.renewal.take_up(self.standing)
+        self.changed_offsets.take_up(self.status)
         self._between = False
         self.counters.cycle = 0.0
-        assert self.standing.job is not None
+        assert self.status.job is not None
         self.interruption.begin(None)
-        self._open(self.standing.job)
+        self._open(self.status.job)
         self._enter(State.RUN)
 
     def _why_not_again(self, left: Modal) -> str:
-        if self.renewal.wanted:
-            return self.renewal.refusal(left)
-        old = outdated(self.standing.job, left) if self.standing.job is not None else ""
+        if self.changed_offsets.wanted:
+            return self.changed_offsets.refusal(left)
+        old = outdated(self.status.job, left) if self.status.job is not None else ""
         return f"{old}, and the program says nothing of it" if old else ""
 
     def _program_ended(self, no_repeat: str = "") -> None:
         if no_repeat:
-            self._bench.say("refused", f"no repeat: {no_repeat}")
-        self._bench.say("end", "program end")
+            self._context.say("refused", f"no repeat: {no_repeat}")
+        self._context.say("end", "program end")
         self._put_away(self.modal)
         self._enter(State.IDLE)
 
@@ -200,29 +200,29 @@ class ProgramRun:
         """What the line leaves to the next one, where the interpreter tells it."""
         source = self._source
         left = source.left() if source is not None and source.left is not None else None
-        modal = self.modal if left is None else modal_as_machine(left.modal, self._bench)
+        modal = self.modal if left is None else modal_as_machine(left.modal, self._context)
         self._put_away(modal, tool_open=left is not None and left.tool_line != 0)
         self._enter(State.IDLE)
-        self._bench.say("mdi", "done")
+        self._context.say("mdi", "done")
 
     @property
     def modal(self) -> Modal:
         """In force now: of the block being executed, or what stands between two programs."""
-        return self.cycle.modal if self.cycle is not None else self.standing.modal
+        return self.cycle.modal if self.cycle is not None else self.status.modal
 
     def _end_functions(self) -> None:
         """M30 ends what M functions have begun; the collet stays."""
-        bench = self._bench
-        bench.spindle.stop()
-        for name, on in bench.ports.io.outputs().items():
+        context = self._context
+        context.spindle.stop()
+        for name, on in context.ports.io.outputs().items():
             if on and name != "collet":
-                bench.ports.io.write(name, False)
+                context.ports.io.write(name, False)
 
 
-def _mover(bench: MachineContext) -> PathMotion:
+def _mover(context: MachineContext) -> PathMotion:
     """By setpoints, or block by block where the controller plans by itself."""
-    machine = bench.machine
-    if bench.ports.blocks is not None:
-        return ControllerMotion(bench, bench.ports.blocks)
+    machine = context.machine
+    if context.ports.blocks is not None:
+        return ControllerMotion(context, context.ports.blocks)
     limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
-    return SetpointMotion(bench, Player(bench.ports.axes, limits, machine.timing.lookahead))
+    return SetpointMotion(context, Player(context.ports.axes, limits, machine.timing.lookahead))

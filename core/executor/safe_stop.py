@@ -23,8 +23,8 @@ Step = tuple[str, Callable[[], None]]
 class SafeStop:
     """``react`` does every step, ``again`` those that failed. Ctrl-C is all that they let through."""
 
-    def __init__(self, bench: MachineContext) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
         self._failed: list[Step] = []
         self._tried_at = 0.0
         self._tries = 0
@@ -45,7 +45,7 @@ class SafeStop:
         self._begin(self._functions(coast=False))
 
     def _functions(self, *, coast: bool) -> list[Step]:
-        return [*self._bench.spindle.safe_steps(coast=coast), ("the outputs", self._outputs_safe)]
+        return [*self._context.spindle.safe_steps(coast=coast), ("the outputs", self._outputs_safe)]
 
     def _begin(self, steps: list[Step]) -> None:
         self._tries = 0
@@ -53,7 +53,7 @@ class SafeStop:
 
     def again(self) -> None:
         """Once a tick: what could not be done is tried again, ten times a second."""
-        if self._failed and self._bench.now - self._tried_at >= _AGAIN:
+        if self._failed and self._context.now - self._tried_at >= _AGAIN:
             self._carry_out(self._failed)
 
     def forget(self) -> None:
@@ -61,7 +61,7 @@ class SafeStop:
         self._failed = []
 
     def _carry_out(self, steps: list[Step]) -> None:
-        self._tried_at, self._tries = self._bench.now, self._tries + 1
+        self._tried_at, self._tries = self._context.now, self._tries + 1
         self._failed = [step for step in steps if not self._done(*step)]
 
     def _done(self, name: str, step: Callable[[], None]) -> bool:
@@ -72,12 +72,12 @@ class SafeStop:
         if error is not None and self._tries == 1:
             if not isinstance(error, DriverError):
                 _log.error("while stopping %s", name, exc_info=error)
-            self._bench.say("alarm", f"while stopping {name}: {str(error) or type(error).__name__}")
+            self._context.say("alarm", f"while stopping {name}: {str(error) or type(error).__name__}")
         return error is None
 
     def _brake(self, how: Stop) -> None:
         """Drives that break over being asked to brake lose their power."""
-        axes = self._bench.ports.axes
+        axes = self._context.ports.axes
         with Attempt() as trial:
             axes.stop(how)
         if trial.error is not None:
@@ -87,11 +87,11 @@ class SafeStop:
 
     def _outputs_safe(self) -> None:
         """All at once; where that fails each by itself."""
-        io = self._bench.ports.io
+        io = self._context.ports.io
         with Attempt() as trial:
             io.safe()
         if trial.error is not None:
-            for output in self._bench.machine.outputs.values():
+            for output in self._context.machine.outputs.values():
                 if output.safe is not None:
                     self._done(output.name, partial(io.write, output.name, output.safe))
             raise trial.error

@@ -35,7 +35,7 @@ class Player:
         self._axes = axes
         self._limits = limits
         self._queue = PlanQueue(axes, lookahead)
-        self._stretch: PathSection | None = None
+        self._section: PathSection | None = None
         self._pass: ThreadPass | GearedThreadPass | None = None  # instead of a stretch
         self._shown: Block | None = None
         self._stepped: int | None = None  # the block at whose end single block has come to rest
@@ -43,7 +43,7 @@ class Player:
     @property
     def active(self) -> bool:
         """Whether there is a stretch at all."""
-        return self._stretch is not None or self._pass is not None
+        return self._section is not None or self._pass is not None
 
     @property
     def out_of_step(self) -> bool:
@@ -63,8 +63,8 @@ class Player:
     def begin(self, blocks: Iterable[Block], rpm_max: float) -> None:
         """A new stretch from where the slides rest. Raises MotionError for a block that cannot be moved."""
         self.forget()
-        self._stretch = PathSection(self._limits, rpm_max)
-        self._stretch.add(blocks)
+        self._section = PathSection(self._limits, rpm_max)
+        self._section.add(blocks)
 
     def begin_pass(self, blocks: Sequence[Block], turns: SpindleAngle, gear: Gear | None) -> None:
         """A thread pass: it follows the spindle, so overrides, holds and single blocks act at its end.
@@ -82,12 +82,12 @@ class Player:
 
     def add(self, blocks: Iterable[Block]) -> None:
         """More of the stretch; planned with the next ``go``."""
-        assert self._stretch is not None
-        self._stretch.add(blocks, self._reached())
+        assert self._section is not None
+        self._section.add(blocks, self._reached())
 
     def forget(self) -> None:
         """The stretch is over, or nothing of it holds any more."""
-        self._stretch = self._shown = self._pass = self._stepped = None
+        self._section = self._shown = self._pass = self._stepped = None
         self._queue.clear()
 
     def go(self, scales: Overrides, last: int | None = None, *, soon: bool = True) -> None:
@@ -135,10 +135,10 @@ class Player:
         """The first block at or after ``last`` at whose end the slides can still come to rest."""
         if self._pass is not None:
             return self._pass.blocks[-1].n
-        assert self._stretch is not None
+        assert self._section is not None
         if self._queue.last is None:
-            return self._stretch.stoppable(last, -np.inf)
-        return self._stretch.stoppable(last, self._plan_stop(self._queue.lead(now), Overrides()).end_s)
+            return self._section.stoppable(last, -np.inf)
+        return self._section.stoppable(last, self._plan_stop(self._queue.lead(now), Overrides()).end_s)
 
     def at_rest(self) -> bool:
         """Nothing that was queued moves any more. The clock goes on between two questions: ask it last."""
@@ -150,59 +150,59 @@ class Player:
         if self._pass is not None:
             return self._pass.complete
         track = self._queue.last
-        if self._stretch is None or not self._stretch.length:
+        if self._section is None or not self._section.length:
             return True
-        return track is not None and track.profile.end_s >= self._stretch.end_s - 1e-9
+        return track is not None and track.profile.end_s >= self._section.end_s - 1e-9
 
     def step_over(self, last: int) -> bool:
         """At rest: whether block ``last`` is done, with way or without; it then is the one being played."""
         if self._pass is not None:
             return self._pass.complete
-        assert self._stretch is not None
+        assert self._section is not None
         track = self._queue.last
-        if track is None or track.profile.end_s < self._stretch.end_of(last) - 1e-9:
+        if track is None or track.profile.end_s < self._section.end_of(last) - 1e-9:
             return False
         self._stepped = last
         return True
 
     def steps_left(self) -> bool:
         """At rest: whether there are blocks behind the one that was reached, if only such as go nowhere."""
-        if self._stretch is None:
+        if self._section is None:
             return False
         at = self.block(self._axes.now())
-        return at is None or bool(self._stretch.behind(at.n))
+        return at is None or bool(self._section.behind(at.n))
 
     def block(self, now: float) -> Block | None:
         """The block being played, not one planned ahead."""
         if self._pass is not None:
             return self._pass.block(now)
-        if self._stretch is None:
+        if self._section is None:
             return None
         track = self._queue.at(now)
-        playing = self._stretch.block(track.block(now)) if track else None
+        playing = self._section.block(track.block(now)) if track else None
         if self._stepped is not None and (playing is None or playing.n < self._stepped):
-            playing = self._stretch.block(self._stepped)
-        self._shown = playing or self._shown or self._stretch.first_block
+            playing = self._section.block(self._stepped)
+        self._shown = playing or self._shown or self._section.first_block
         return self._shown
 
     def ended_with(self) -> Block | None:
         """At the end of the stretch: its last block, which may go nowhere."""
         if self._pass is not None:
             return self._pass.blocks[-1]
-        return self._stretch.last_block if self._stretch is not None else None
+        return self._section.last_block if self._section is not None else None
 
     def following(self) -> Block | None:
         """The block behind the one being played, when it belongs to the stretch."""
         if self._pass is not None:
             behind = self.behind(self._pass.block(self._axes.now()))
             return behind[0] if behind else None
-        return self._stretch.block(self._shown.n + 1) if self._stretch and self._shown else None
+        return self._section.block(self._shown.n + 1) if self._section and self._shown else None
 
     def behind(self, block: Block) -> list[Block]:
         """Blocks of the stretch that come after this one."""
         if self._pass is not None:
             return [each for each in self._pass.blocks if each.n > block.n]
-        return self._stretch.behind(block.n) if self._stretch else []
+        return self._section.behind(block.n) if self._section else []
 
     def _reached(self) -> float:
         """Distance before which the motion under way can come to rest, from when it can be changed on."""
@@ -214,14 +214,14 @@ class Player:
         return s + v * v / (2.0 * _LEAST * self._limits.plane_acceleration)
 
     def _plan_on(self, t: float, scales: Overrides, last: int | None) -> Profile:
-        assert self._stretch is not None
+        assert self._section is not None
         playing = self.block(self._axes.now())
-        self._stretch.drop_before(playing.n if playing else None)
-        return _planned(self._stretch.path(scales, last), self._queue.at(t), t)
+        self._section.drop_before(playing.n if playing else None)
+        return _planned(self._section.path(scales, last), self._queue.at(t), t)
 
     def _plan_stop(self, t: float, scales: Overrides) -> Profile:
-        assert self._stretch is not None
-        return _planned(self._stretch.path(scales, None), self._queue.at(t), t, stop=True)
+        assert self._section is not None
+        return _planned(self._section.path(scales, None), self._queue.at(t), t, stop=True)
 
 
 def _planned(path: Path, playing: Track | None, t: float, *, stop: bool = False) -> Profile:
@@ -239,8 +239,8 @@ _RETRACTED = 1e-6  # mm
 INCH = 25.4
 
 
-def _why_lost(bench: MachineContext) -> str:
-    spindle = bench.spindle
+def _why_lost(context: MachineContext) -> str:
+    spindle = context.spindle
     if spindle.why_slow:
         return spindle.why_slow.lower()
     if spindle.measured * spindle.command < 0.0:
@@ -251,22 +251,22 @@ def _why_lost(bench: MachineContext) -> str:
 class ThreadRetract:
     """Begins with braking; ``step`` raises TroubleError once X is back."""
 
-    def __init__(self, bench: MachineContext, player: Player, block: Block) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext, player: Player, block: Block) -> None:
+        self._context = context
         self._player = player
         self._block = block
         behind = player.behind(block)
         self._x = [block, *behind][-1].mx  # where the pass would have pulled out to
         self._cutting = bool(behind)  # else it was in its pull-out
-        self._why = _why_lost(bench)
+        self._why = _why_lost(context)
         player.brake()
 
     def step(self) -> None:
         """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
-        (x, z, c), _ = self._bench.ports.axes.demand_at(self._bench.now)
+        (x, z, c), _ = self._context.ports.axes.demand_at(self._context.now)
         if abs(x - self._x) < _RETRACTED:
             raise AlarmError("thread-lost", self._left(z), self._block.line)
-        self._player.begin([self._away((x, z, c))], self._bench.spindle.highest)
+        self._player.begin([self._away((x, z, c))], self._context.spindle.highest)
         self._player.go(Overrides())
 
     def _left(self, z: float) -> str:
@@ -297,8 +297,8 @@ class ThreadRetract:
 class SetpointMotion:
     """``Moving`` by setpoints: plans with the overrides and switches of now, and again when they change."""
 
-    def __init__(self, bench: MachineContext, player: Player) -> None:
-        self._bench = bench
+    def __init__(self, context: MachineContext, player: Player) -> None:
+        self._context = context
         self.player = player
         self._scales = Overrides()
         self._single = False  # the present plan stops at the end of a block
@@ -319,7 +319,7 @@ class SetpointMotion:
     @property
     def block(self) -> Block | None:
         """The block being played."""
-        return self.player.block(self._bench.now)
+        return self.player.block(self._context.now)
 
     @property
     def following(self) -> Block | None:
@@ -329,7 +329,7 @@ class SetpointMotion:
     @property
     def complete(self) -> bool:
         """Whether what is queued ends where the stretch does."""
-        left = self._bench.switches.single_block and self.player.steps_left()
+        left = self._context.switches.single_block and self.player.steps_left()
         return self.player.complete() and not left
 
     @property
@@ -346,9 +346,9 @@ class SetpointMotion:
         """A new stretch, from rest; a thread pass is tied to the spindle."""
         self._single_from = None
         if blocks[0].kind is Kind.THREAD:
-            self.player.begin_pass(blocks, self._bench.spindle.turns, self._bench.ports.gear)
+            self.player.begin_pass(blocks, self._context.spindle.turns, self._context.ports.gear)
         else:
-            self.player.begin(blocks, self._bench.spindle.highest)
+            self.player.begin(blocks, self._context.spindle.highest)
         self.go()
 
     def go_on(self, behind: Block | None) -> None:
@@ -358,9 +358,9 @@ class SetpointMotion:
 
     def go(self, *, soon: bool = True) -> None:
         """Plan on from the present state. Raises MotionError and DriverError."""
-        bench, player = self._bench, self.player
+        context, player = self._context, self.player
         self._scales = self.wanted()
-        self._single = bench.switches.single_block
+        self._single = context.switches.single_block
         self._last = self._last_block() if self._single else None
         if not self._single:
             self._single_from = None
@@ -371,7 +371,7 @@ class SetpointMotion:
         player = self.player
         if not player.active:
             return Progress.DONE
-        if self.wanted() != self._scales or self._bench.switches.single_block != self._single:
+        if self.wanted() != self._scales or self._context.switches.single_block != self._single:
             self.go()
         if self.moving:
             self._refill(feed)
@@ -387,7 +387,7 @@ class SetpointMotion:
 
     def keep_up(self) -> None:
         """Keep the queue filled while the slides come to rest."""
-        self.player.extend(self._bench.now)
+        self.player.extend(self._context.now)
 
     def hold(self) -> None:
         """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
@@ -407,7 +407,7 @@ class SetpointMotion:
 
     def retreat(self, block: Block) -> None:
         """Begin to leave a thread whose spindle is lost."""
-        self._retreat = ThreadRetract(self._bench, self.player, block)
+        self._retreat = ThreadRetract(self._context, self.player, block)
 
     def retreated(self) -> None:
         """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
@@ -421,11 +421,11 @@ class SetpointMotion:
 
     def wanted(self) -> Overrides:
         """The scales of now. A rapid is never faster than its rate; G95 follows the spindle's pot."""
-        feed = self._bench.feed_override
-        return Overrides(feed, min(feed, 1.0), round(self._bench.spindle.override, 2))
+        feed = self._context.feed_override
+        return Overrides(feed, min(feed, 1.0), round(self._context.spindle.override, 2))
 
     def _last_block(self) -> int | None:
-        now = self._bench.now
+        now = self._context.now
         current = self.player.block(now)
         first = self._single_from if self._single_from is not None else (current.n if current else None)
         last = self.player.settle_at(first, now)
@@ -434,16 +434,16 @@ class SetpointMotion:
 
     def _refill(self, feed: ReadAhead) -> None:
         """Read-ahead blocks join the stretch before its braking end comes near."""
-        player, now = self.player, self._bench.now
+        player, now = self.player, self._context.now
         left = player.planned_to - now
-        ahead = self._bench.machine.timing.lookahead
+        ahead = self._context.machine.timing.lookahead
         wanted = feed.seconds > 0.25 * ahead or feed.dry or left < 0.75 * ahead
         if feed.pending and wanted and left < 1.5 * ahead:
             player.add(feed.take())
             self.go(soon=False)
         player.extend(now)
         if player.out_of_step:
-            self._bench.say(
+            self._context.say(
                 "thread",
                 "the spindle changed its speed faster than the slides could follow: check the thread",
             )

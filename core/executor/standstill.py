@@ -56,36 +56,36 @@ class Wait:
         self.since += held
 
 
-def in_position(bench: MachineContext) -> Wait:
+def in_position(context: MachineContext) -> Wait:
     """Until the slides are where they were sent."""
-    return Wait(lambda: "", lambda _: bench.in_position(), bench.now, _IN_POSITION, "in-position")
+    return Wait(lambda: "", lambda _: context.in_position(), context.now, _IN_POSITION, "in-position")
 
 
-def at_speed(bench: MachineContext, *, thread: bool = False) -> Wait:
+def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
     """Until the spindle turns as commanded, and for a thread until its encoder is read again after a stall.
 
     While the operator keeps it still there is no time limit.
     """
-    spindle = bench.spindle
+    spindle = context.spindle
     wait = Wait(
         lambda: spindle.why_slow or "AT SPEED",
-        lambda _: spindle.at_speed(bench.now),
-        bench.now,
-        bench.machine.spindle.timeout,
+        lambda _: spindle.at_speed(context.now),
+        context.now,
+        context.machine.spindle.timeout,
         "at-speed",
     )
 
     def done(_: float) -> bool:
         if spindle.why_slow:
-            wait.since = bench.now
-        read = spindle.turns.known or bench.ports.spindle.angle() is None
-        return spindle.at_speed(bench.now) and (read or not thread)
+            wait.since = context.now
+        read = spindle.turns.known or context.ports.spindle.angle() is None
+        return spindle.at_speed(context.now) and (read or not thread)
 
     wait.done = done
     return wait
 
 
-def carry_out(block: Block, bench: MachineContext) -> Wait | None:
+def carry_out(block: Block, context: MachineContext) -> Wait | None:
     """Do what an action block says; returns what has to be waited for. Raises TroubleError, DriverError.
 
     Stops and ends of the program are the cycle's own business and do nothing here; offsets, shifts and
@@ -93,72 +93,72 @@ def carry_out(block: Block, bench: MachineContext) -> Wait | None:
     """
     match block.action:
         case SpindleRun():
-            _start_spindle(block, bench)
+            _start_spindle(block, context)
         case SpindleStop():
-            bench.spindle.stop()
+            context.spindle.stop()
         case SpindleLock(orient=orient):
-            return _lock_spindle(bench, orient=orient)
+            return _lock_spindle(context, orient=orient)
         case Coolant(on=on):
-            bench.ports.io.write("coolant", on)
+            context.ports.io.write("coolant", on)
         case Output(name=name, on=on):
-            bench.ports.io.write(name, on)
+            context.ports.io.write(name, on)
         case Collet(closed=closed):
-            return _move_collet(closed, bench)
+            return _move_collet(closed, context)
         case RepeatOff():
-            bench.switches.cycle_repeat = False
-            bench.say("switch", "cycle repeat off by M31")
+            context.switches.cycle_repeat = False
+            context.say("switch", "cycle repeat off by M31")
         case Dwell(seconds=seconds):
-            return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, bench.now)
+            return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
         case WaitInput(terminal=terminal, closed=closed):
-            return Wait(lambda: terminal, lambda _: bench.terminal(terminal) == closed, bench.now)
+            return Wait(lambda: terminal, lambda _: context.terminal(terminal) == closed, context.now)
         case _:
             pass
     return None
 
 
-def _start_spindle(block: Block, bench: MachineContext) -> None:
-    if start_conditions.unclamped(bench):
+def _start_spindle(block: Block, context: MachineContext) -> None:
+    if start_conditions.unclamped(context):
         raise AlarmError("collet-open", line=block.line)
-    bench.spindle.ask(SpindleDemand.of(block))
+    context.spindle.ask(SpindleDemand.of(block))
 
 
-def _lock_spindle(bench: MachineContext, *, orient: bool) -> Wait:
+def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
     """C may move once the spindle stands and its drive positions; held already it is only kept."""
-    spindle, change = bench.spindle, 0.0
-    if bench.ports.lock is None or not spindle.held:
+    spindle, change = context.spindle, 0.0
+    if context.ports.lock is None or not spindle.held:
         spindle.stop()
-        change = 0.0 if bench.ports.lock is None else _CHANGE_OVER
-    limit = bench.machine.spindle.timeout + change
+        change = 0.0 if context.ports.lock is None else _CHANGE_OVER
+    limit = context.machine.spindle.timeout + change
     return Wait(
         lambda: "C AXIS" if spindle.stopped else "SPINDLE STOP",
         lambda _: spindle.stopped and spindle.hold(orient=orient),
-        bench.now,
+        context.now,
         limit,
         "ignores-stop",
     )
 
 
-def _move_collet(closed: bool, bench: MachineContext) -> Wait:
+def _move_collet(closed: bool, context: MachineContext) -> Wait:
     """Where the machine file forbids unclamping at speed, opening waits until the spindle has run down."""
-    waits = not closed and not bench.machine.interlocks.unclamp_while_turning
-    if waits and bench.spindle.asked:
-        raise AlarmError("unclamp", f"the spindle turns at {bench.spindle.measured:.0f} rpm")
-    timing = bench.machine.timing
+    waits = not closed and not context.machine.interlocks.unclamp_while_turning
+    if waits and context.spindle.asked:
+        raise AlarmError("unclamp", f"the spindle turns at {context.spindle.measured:.0f} rpm")
+    timing = context.machine.timing
     time = timing.collet_close if closed else timing.collet_open
     moved_at: list[float] = []
 
     def done(passed: float) -> bool:
         if not moved_at:
-            if waits and not bench.spindle.stopped:
+            if waits and not context.spindle.stopped:
                 return False
-            bench.ports.io.write("collet", closed)
+            context.ports.io.write("collet", closed)
             moved_at.append(passed)
             return False
-        switch = bench.inputs.get("collet_closed")
+        switch = context.inputs.get("collet_closed")
         return passed - moved_at[0] >= time if switch is None else switch == closed
 
-    limit = time + _COLLET_LATE + (bench.machine.spindle.timeout if waits else 0.0)
-    return Wait(lambda: "COLLET" if moved_at else "SPINDLE STOP", done, bench.now, limit, "collet")
+    limit = time + _COLLET_LATE + (context.machine.spindle.timeout if waits else 0.0)
+    return Wait(lambda: "COLLET" if moved_at else "SPINDLE STOP", done, context.now, limit, "collet")
 
 
 class Next(Enum):
@@ -176,8 +176,8 @@ class Next(Enum):
 class Standstill:
     """``done`` is for single block: something was executed since the last stop."""
 
-    def __init__(self, bench: MachineContext, feed: ReadAhead) -> None:
-        self._bench, self._feed = bench, feed
+    def __init__(self, context: MachineContext, feed: ReadAhead) -> None:
+        self._context, self._feed = context, feed
         self._wait: Wait | None = None
         self._settled = True  # in position since the last motion
         self.done = False
@@ -193,9 +193,9 @@ class Standstill:
         if self._wait is not None:
             return self._look(self._wait)
         if not self._settled:
-            self._wait = in_position(self._bench)
+            self._wait = in_position(self._context)
             return Next.GO_ON
-        if self.done and self._bench.switches.single_block:
+        if self.done and self._context.switches.single_block:
             return Next.BLOCK_END
         if feed.pending:
             self._settled, self.done = False, True
@@ -209,16 +209,16 @@ class Standstill:
     def carry_out(self, block: Block) -> None:
         """Do what an action says, or wait for the speed that a cutting block needs. Raises as ``waits``."""
         if block.action is not None:
-            self._wait = carry_out(block, self._bench)
+            self._wait = carry_out(block, self._context)
         elif needs_speed(block):
-            self._wait = at_speed(self._bench, thread=block.kind is Kind.THREAD)
+            self._wait = at_speed(self._context, thread=block.kind is Kind.THREAD)
         if self._wait is None:
             self._waited()
 
     def wait_for(self, label: str) -> None:
         """Stand until another cycle takes the place of this one."""
         if self._wait is None:
-            self._wait = Wait(lambda: label, lambda _: False, self._bench.now)
+            self._wait = Wait(lambda: label, lambda _: False, self._context.now)
 
     def held(self, seconds: float) -> None:
         """The cycle was held so long: it does not count."""
@@ -226,7 +226,7 @@ class Standstill:
             self._wait.shift(seconds)
 
     def _look(self, wait: Wait) -> Next:
-        if not wait.over(self._bench.now):
+        if not wait.over(self._context.now):
             return Next.WAIT
         self._wait = None
         self._waited()

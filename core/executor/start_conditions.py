@@ -23,53 +23,53 @@ _BUSY = {
 }
 
 
-def guard_open(bench: MachineContext) -> bool:
+def guard_open(context: MachineContext) -> bool:
     """Whether the guard is open at a machine whose file says that it stops the cycle; off is open."""
-    return bench.machine.interlocks.guard_stops and not bench.inputs.get("guard", False)
+    return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
-def busy(bench: MachineContext) -> str:
+def busy(context: MachineContext) -> str:
     """What at the station keeps a cycle from going on."""
-    if bench.heard.hold:
+    if context.signals.hold:
         return "feed hold is pressed"
-    if guard_open(bench):
+    if guard_open(context):
         return "the guard is open: close it"
-    return bench.heard.trouble.lower()
+    return context.signals.trouble.lower()
 
 
-def unclamped(bench: MachineContext) -> str:
+def unclamped(context: MachineContext) -> str:
     """Why the spindle may not be started as the collet is; empty when it may."""
-    if bench.machine.interlocks.spindle_with_collet_open or bench.inputs.get("collet_closed", True):
+    if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
     return "the spindle is not started with the collet open: close it first"
 
 
-def hindrance(bench: MachineContext, state: State) -> str:
+def hindrance(context: MachineContext, state: State) -> str:
     """What keeps any cycle from being started at this machine now."""
     if state in _BUSY:
         return _BUSY[state]
-    if busy(bench):
-        return busy(bench)
-    if bench.ports.blocks is not None and bench.ports.blocks.state().hindrance:
-        return bench.ports.blocks.state().hindrance
-    away = [a.name for a, homed in zip(bench.machine.axes, bench.sample.homed, strict=True) if not homed]
+    if busy(context):
+        return busy(context)
+    if context.ports.blocks is not None and context.ports.blocks.state().hindrance:
+        return context.ports.blocks.state().hindrance
+    away = [a.name for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed]
     if away:
         return f"{', '.join(away)} must be homed first"
     return ""
 
 
-def job_refusal(bench: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
+def job_refusal(context: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
     """Why this job may not be started now; empty when it may."""
-    return hindrance(bench, state) or unproved(job, proof) or beyond(bench, proof)
+    return hindrance(context, state) or unproved(job, proof) or beyond(context, proof)
 
 
-def beyond(bench: MachineContext, proof: Proof | None) -> str:
+def beyond(context: MachineContext, proof: Proof | None) -> str:
     """What the program asks for and this machine cannot do; empty when nothing."""
-    blocks = bench.ports.blocks
+    blocks = context.ports.blocks
     for need in proof.needs if proof is not None else ():
         if blocks is not None and need.what not in blocks.caps:
             return f"line {need.line}: this controller cannot do {need.words}"
-        if blocks is None and need.what == THREAD and bench.ports.spindle.angle() is None:
+        if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
             return f"line {need.line}: a thread needs an encoder on the spindle, and there is none"
     return ""
 
@@ -100,42 +100,42 @@ _NOTHING = {
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
 
 
-def job_of(standing: ControlStatus) -> Job | None:
+def job_of(status: ControlStatus) -> Job | None:
     """The job that Cycle Start would begin."""
-    return standing.job if standing.starts is Starts.PROGRAM else standing.prepared
+    return status.job if status.starts is Starts.PROGRAM else status.prepared
 
 
-def start_refusal(bench: MachineContext, state: State, standing: ControlStatus) -> str:
+def start_refusal(context: MachineContext, state: State, status: ControlStatus) -> str:
     """Why Cycle Start does nothing now; empty when it may start."""
-    job, proof = job_of(standing), standing.proof
-    if standing.starts is not Starts.PROGRAM:
-        proof = standing.prepared_proof
-    if job is None and standing.starts in _NOTHING:
-        return hindrance(bench, state) or _NOTHING[standing.starts]
-    return job_refusal(bench, state, job, proof) or (_moved(bench, job) or _changed(bench, standing, job))
+    job, proof = job_of(status), status.proof
+    if status.starts is not Starts.PROGRAM:
+        proof = status.prepared_proof
+    if job is None and status.starts in _NOTHING:
+        return hindrance(context, state) or _NOTHING[status.starts]
+    return job_refusal(context, state, job, proof) or (_moved(context, job) or _changed(context, status, job))
 
 
-def _moved(bench: MachineContext, job: Job | None) -> str:
+def _moved(context: MachineContext, job: Job | None) -> str:
     if job is None or job.setup.begin is None:
         return ""
-    at, _ = bench.ports.axes.demand_at(bench.now)
+    at, _ = context.ports.axes.demand_at(context.now)
     away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
     if away <= _SAME:
         return ""
     return f"the slides have moved since this was proved: {_again(job.setup.begin)}"
 
 
-def _changed(bench: MachineContext, standing: ControlStatus, job: Job | None) -> str:
+def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
     """Whether what the program, the line or the restart was proved for is still so."""
     if job is None:
         return ""
     begin = job.setup.begin
     if begin is None:
-        old = outdated(job, standing.modal)
+        old = outdated(job, status.modal)
         return f"{old}, and the program says nothing of it: load it again" if old else ""
-    now = modal_as_machine(standing.modal, bench)
+    now = modal_as_machine(status.modal, context)
     if not begin.single:
-        return _changed_for_restart(standing, job, begin, now)
+        return _changed_for_restart(status, job, begin, now)
     same = now == begin.checkpoint.modal
     return "" if same else f"the state has changed since the line was proved: {_again(begin)}"
 
@@ -147,15 +147,15 @@ def _again(begin: Begin) -> str:
     return "search for the line again"
 
 
-def _changed_for_restart(standing: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
+def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
     """The program must still be the one that is loaded, and the collet as the line has it."""
-    if standing.job is None or standing.job.digest != job.part_of:
+    if status.job is None or status.job.digest != job.part_of:
         return "the program was loaded anew: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
     if now.collet_closed != wanted:
         is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
         return f"the collet is {is_now} and must be {must} at line {begin.line}: use MDI"
-    return unproved(standing.job, standing.proof)
+    return unproved(status.job, status.proof)
 
 
 # --- what a start will start ----------------------------------------------------------------------------

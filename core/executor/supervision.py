@@ -19,9 +19,9 @@ from core.ports import AxisSample, Trip, code_of
 class Supervisor:
     """Sees faults and raises them as TroubleError."""
 
-    def __init__(self, bench: MachineContext) -> None:
-        self._bench = bench
-        self._axes = FollowingErrorWatch(bench.machine.axes)
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
+        self._axes = FollowingErrorWatch(context.machine.axes)
         self.max_following_error = 0.0
 
     def acknowledged(self) -> None:
@@ -30,15 +30,17 @@ class Supervisor:
 
     def look(self, state: State) -> None:
         """Raises TroubleError for the first thing that must stop the machine."""
-        sample, bench = self._bench.sample, self._bench
+        sample, context = self._context.sample, self._context
         if sample.fault:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
         self._numbers(sample)
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
         self._axes.look(sample, unpowered=state is State.DISABLED)
-        turning = not bench.spindle.stopped and bench.spindle.asked
-        gripped = bench.inputs.get("collet_closed", True) or not bench.ports.io.outputs().get("collet", True)
-        if turning and not gripped and not bench.machine.interlocks.spindle_with_collet_open:
+        turning = not context.spindle.stopped and context.spindle.asked
+        gripped = context.inputs.get("collet_closed", True) or not context.ports.io.outputs().get(
+            "collet", True
+        )
+        if turning and not gripped and not context.machine.interlocks.spindle_with_collet_open:
             self._collet_lost()
         else:
             self._open_since = None
@@ -46,7 +48,7 @@ class Supervisor:
     def _numbers(self, sample: AxisSample) -> None:
         """No comparison ever trips on what is no number."""
         each = zip(
-            self._bench.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
+            self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )
         for axis, *told in each:
             if not all(map(math.isfinite, told)):
@@ -54,9 +56,9 @@ class Supervisor:
 
     def _collet_lost(self) -> None:
         """The switch may bounce while the collet closes; it must be off for its closing time."""
-        now = self._bench.now
+        now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
-        if now - self._open_since > 2.0 * self._bench.machine.timing.collet_close:
+        if now - self._open_since > 2.0 * self._context.machine.timing.collet_close:
             raise AlarmError("collet-lost")
 
     _open_since: float | None = None
@@ -68,26 +70,26 @@ class Supervisor:
 class OutputsWatch:
     """``look`` once a tick; ``starts`` is a source of the announcement. On the executor's thread alone."""
 
-    def __init__(self, bench: MachineContext, rounds: ProgramRun) -> None:
-        self._bench = bench
-        self._rounds = rounds
+    def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
+        self._context = context
+        self._program_run = program_run
         self._told: frozenset[str] = (
             frozenset()
         )  # outputs of which it is known that they are not as commanded
 
     def look(self) -> None:
         """Raises DriverError, TroubleError."""
-        trips = self._bench.ports.trips
+        trips = self._context.ports.trips
         trip = trips.tripped() if trips is not None else None
         if trips is not None and trip is not None:
             trips.acknowledge(trip)  # first: the hold is setpoints too
             self._tripped(trip)
-        if self._rounds.standing.state not in CYCLE:
+        if self._program_run.status.state not in CYCLE:
             self._told = frozenset()
-            for each in self._bench.outputs.accept():
-                self._bench.say("disturbed", f"{each.words} BY ITSELF")
+            for each in self._context.outputs.accept():
+                self._context.say("disturbed", f"{each.words} BY ITSELF")
             return
-        differing = self._bench.outputs.differing()
+        differing = self._context.outputs.differing()
         new = [each for each in differing if each.name not in self._told]
         self._told = frozenset(each.name for each in differing)
         if new:
@@ -95,31 +97,31 @@ class OutputsWatch:
 
     def starts(self) -> Iterator[Starting]:
         """Outputs that going on switches as the program has them."""
-        if self._rounds.standing.state in STOPPED:
-            for name, wanted in self._bench.outputs.differing():
+        if self._program_run.status.state in STOPPED:
+            for name, wanted in self._context.outputs.differing():
                 words = f"{name.upper()} {'COMES ON' if wanted else 'GOES OFF'}"
-                begin = partial(self._bench.outputs.write, name, wanted)
+                begin = partial(self._context.outputs.write, name, wanted)
                 yield Starting(f"output {name}", words, begin)
 
     def _tripped(self, trip: Trip) -> None:
-        bench = self._bench
+        context = self._context
         off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in trip.outputs)]
         if trip.spindle:
-            bench.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
-        bench.outputs.fell(trip.outputs)
+            context.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
+        context.outputs.fell(trip.outputs)
         self._told |= set(trip.outputs)
         self._disturbed(
             "feeder-tripped", f"CONTROL WAS SILENT FOR {trip.away:.1f} S, SWITCHED OFF: {', '.join(off)}"
         )
 
     def _disturbed(self, code: Code, words: str) -> None:
-        rounds, state = self._rounds, self._rounds.standing.state
-        self._bench.say("disturbed", words)
-        if rounds.cycle is None or state not in CYCLE:
+        program_run, state = self._program_run, self._program_run.status.state
+        self._context.say("disturbed", words)
+        if program_run.cycle is None or state not in CYCLE:
             return
-        rounds.disturb(words.lower())
+        program_run.disturb(words.lower())
         if state in ACTIVE:
-            self._bench.spindle.break_off()
+            self._context.spindle.break_off()
         else:
-            self._bench.stopped(code, words.lower())
-        rounds.cycle.hold(words, code=code)
+            self._context.stopped(code, words.lower())
+        program_run.cycle.hold(words, code=code)

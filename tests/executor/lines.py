@@ -64,7 +64,7 @@ def mdi(rig: Rig, *lines: str) -> None:
 
 def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int = 0) -> Job | None:
     """The job that goes on from a line of the loaded program at the machine as it stands; None: it cannot."""
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     now = now_of(rig.shot, whole)
     found = StateRebuild(whole.source, whole.setup, lambda _count: None).find(line, number, now.broken)

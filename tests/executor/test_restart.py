@@ -131,7 +131,7 @@ def test_the_spindle_of_mdi_is_stopped_where_the_line_has_none() -> None:
 def test_a_program_is_repeated_from_its_first_line_after_a_restart() -> None:
     rig = Rig()
     broken_off(rig)
-    rig.executor._bench.switches.cycle_repeat = True
+    rig.executor._context.switches.cycle_repeat = True
     restart(rig, 8)
     rig.until_true(lambda shot: shot.parts == 1)
     rig.until_true(lambda shot: shot.line == 3)
@@ -218,7 +218,7 @@ def test_an_unproved_restart_does_not_start() -> None:
 def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
-    job = rig.executor._conductor.standing.job
+    job = rig.executor._control.status.job
     assert job is not None
     rig.post(Prepare(Starts.RESTART, job))
     assert "is under way" in rig.said("refused")[-1]
@@ -229,7 +229,7 @@ def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
 def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
     rig = Rig()
     broken_off(rig)
-    rig.executor._bench.switches.single_block = True
+    rig.executor._context.switches.single_block = True
     restart(rig, 4)  # so early that the way has more blocks than the program before it
     texts = []
     for _ in range(20):
@@ -248,7 +248,7 @@ def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     bare = replace(whole, tools_set=frozenset())
     rig.post(LoadJob(bare, Proof(bare.digest, (), tools=(1,))))
@@ -282,7 +282,7 @@ def stopped_in_a_groove(rig: Rig, at_z: float = -0.4) -> None:
 def way_out_alone(rig: Rig) -> None:
     """What F4 of SEARCHTO prepares."""
     rig.run(0.4)
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
@@ -395,7 +395,7 @@ def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
     rig.until(State.DISABLED)
     rig.ready()
     rig.run(0.5)
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())
@@ -407,7 +407,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     rig = Rig()
     stopped_in_a_groove(rig)
     rig.load(GROOVE.replace("LS3", "LS2"), TOOLS)
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     assert rig.shot.interrupted_line == 7
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
@@ -420,7 +420,7 @@ def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
     rig = Rig()
     stopped_in_a_groove(rig)
     rig.run(0.4)
-    whole = rig.executor._conductor.standing.job
+    whole = rig.executor._control.status.job
     assert whole is not None
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = leaving_of(cut, rig.shot, whole, Choices())

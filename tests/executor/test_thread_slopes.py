@@ -253,7 +253,7 @@ def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytes
 def test_a_spindle_that_turns_the_other_way_at_its_full_speed_is_lost() -> None:
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(at_z(0.1))
-    spindle = rig.executor._bench.spindle
+    spindle = rig.executor._context.spindle
     assert not spindle.lost
     spindle.measured = -spindle.measured
     assert spindle.lost

@@ -138,7 +138,7 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     before = jog.executor.snapshot.modal
-    jog.executor._conductor.standing.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
+    jog.executor._control.status.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
     jog.run(0.05)
     touch(jog, "x", "1")
     jog.run(0.05)
