@@ -151,7 +151,7 @@ class ControllerMotion:
         self._sent: deque[_Sent] = deque()  # handed over, not yet done
         self._seconds = 0.0  # that the sent ones take
         self._shown: Block | None = None
-        self._scales = Overrides()
+        self._overrides = Overrides()
         self._last: int | None = None  # single block: nothing behind this block is handed over
         self._thread = False
         self._still = False  # held because an override is 0
@@ -259,13 +259,13 @@ class ControllerMotion:
         """The controller alone knows whether it still waits."""
         return False
 
-    def retreat(self, block: Block) -> None:
+    def retract(self, block: Block) -> None:
         """Stop, to draw X back then."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.brake()
 
-    def retreated(self) -> None:
+    def retracted(self) -> None:
         """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
         assert self._lost is not None
         block, out = self._lost
@@ -321,7 +321,7 @@ class ControllerMotion:
         """Feed and rapid override; at 0 the controller is held. Threads know neither."""
         feed = self._context.feed_override
         turn = round(self._context.spindle.override, 2)
-        self._scales = Overrides(feed, min(feed, 1.0), turn)
+        self._overrides = Overrides(feed, min(feed, 1.0), turn)
         if feed and turn:
             self._sink.override(feed, min(feed, 1.0))
             if self._still:
@@ -335,7 +335,7 @@ class ControllerMotion:
         return sum(piece.seconds for piece in self._pieces) + (_CUT if self._waiting else 0.0)
 
     def _hand_over(self) -> None:
-        turning = Turning(self._scales.turn, self._context.spindle.highest)
+        turning = Turning(self._overrides.spindle, self._context.spindle.highest)
         while self._waiting and sum(piece.seconds for piece in self._pieces) < _CUT:
             self._pieces.extend(pieces_of(self._waiting.popleft(), turning, self._sink.fastest))
         while self._pieces and self._may(self._pieces[0]):
@@ -352,7 +352,7 @@ class ControllerMotion:
             return False
         if self._thread or not self._sent:
             return True
-        slow = max(min(self._scales.feed, 1.0), _SLOWEST)
+        slow = max(min(self._overrides.feed, 1.0), _SLOWEST)
         return (self._seconds - self._sent[0].piece.seconds) / slow < self._sink.ahead
 
     def _single(self, block: Block) -> bool:

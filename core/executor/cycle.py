@@ -5,21 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.alarms import CATALOGUE, Code
+from core.executor.controller_motion import ControllerMotion
 from core.executor.machine_context import MachineContext
-from core.executor.path_section import PathMotion, Progress
+from core.executor.path_section import Progress
 from core.executor.raised_alarm import AlarmError, code_of_hold
-from core.executor.read_ahead import ProgramPass, ReadAhead, check_block, needs_speed
+from core.executor.read_ahead import ProgramPass, ReadAhead
+from core.executor.setpoint_motion import SetpointMotion
 from core.executor.snapshot import State
 from core.executor.standstill import Next, Standstill, Wait, at_speed
 from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
+from core.interpreter.path_sections import needs_speed
 
 _BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
 _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _GOING = frozenset({State.RUN, State.WAIT})
 _SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
+
+PathMotion = SetpointMotion | ControllerMotion
+"""What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
 
 
 class Cycle:
@@ -31,23 +37,23 @@ class Cycle:
     def __init__(
         self,
         context: MachineContext,
-        mover: PathMotion,
+        motion: PathMotion,
         source: ProgramPass,
         begins: Modal,
         enter: Callable[[State], None],
         ended: Callable[[ProgramEnd | None], None],
     ) -> None:
         self._context = context
-        self._mover = mover
+        self._motion = motion
         self._enter = enter
         self._ended = ended
         self._needs_end = source.left is None
-        self._feed = ReadAhead(source, lambda block: check_block(block, context.machine))
+        self._feed = ReadAhead(source, context.machine)
         self._state = State.RUN
         self._still = Standstill(context, self._feed)
         self._spin_up: Wait | None = None  # before motion that was stopped goes on
         self._held_at = 0.0
-        self._retreating = False
+        self._retracting = False
         self._reason = ""  # why the cycle was held, when not by the button
         self.message = ""  # of M00 and M01 while the stop lasts
         self.current: Block | None = None
@@ -68,12 +74,12 @@ class Cycle:
     @property
     def next_block(self) -> Block | None:
         """What comes after the block that is being executed."""
-        return self._mover.following or self._feed.next_block
+        return self._motion.following or self._feed.next_block
 
     @property
     def at_rest(self) -> bool:
         """Nothing moves any more."""
-        return not self._mover.moving
+        return not self._motion.moving
 
     # --- what the operator asks ---------------------------------------------------------------------------
 
@@ -89,16 +95,16 @@ class Cycle:
             return
         self._reason, self._held_at = reason, self._context.now
         self._context.stopped(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
-        if self._mover.moving:
-            self._mover.hold()
+        if self._motion.moving:
+            self._motion.hold()
             self._change(State.HOLDING)
         else:
-            self._mover.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
+            self._motion.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
             self._change(State.HOLD)
 
     def starve(self, code: Code = "low-queue", detail: str = "") -> None:
         """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
-        self._mover.let_stop()
+        self._motion.let_stop()
         if self._state in _GOING:
             self._reason, self._held_at = CATALOGUE[code].text.upper(), self._context.now
             self._context.stopped(code, detail)
@@ -110,8 +116,8 @@ class Cycle:
 
     def abandon(self) -> None:
         """Come to rest and be given up; the caller waits for ``at_rest``."""
-        if self._mover.moving:
-            self._mover.brake()
+        if self._motion.moving:
+            self._motion.brake()
         if self._state in _GOING:
             self._change(State.HOLDING)
 
@@ -124,7 +130,7 @@ class Cycle:
         """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
         stopped = self._state
         self._reason = self.message = ""
-        within = self._mover.active and not self._mover.complete
+        within = self._motion.active and not self._motion.complete
         self._still.done = within
         if stopped is State.PROGRAM_STOP:
             self._feed.pass_stop()
@@ -134,13 +140,13 @@ class Cycle:
         self._spin_up = self._slow_spindle() if within or starts_spindle else None
         self._held_at = self._context.now
         if within and self._spin_up is None:
-            self._mover.go_on(self._behind)
+            self._motion.go_on(self._behind)
 
     # --- every tick ---------------------------------------------------------------------------------------
 
     def step(self) -> None:
         """Keep the queue filled, then do what comes next. Raises TroubleError, MotionError, DriverError."""
-        playing = self._mover.block if self._mover.moving else None
+        playing = self._motion.block if self._motion.moving else None
         if playing is not None:
             self._show(playing)
             self._watch_spindle(playing)
@@ -154,11 +160,11 @@ class Cycle:
         self._feed.pull(_BLOCKS, _BUFFER * self._context.machine.timing.lookahead)
 
     def _slow_down(self) -> None:
-        self._mover.keep_up()
-        if self._mover.moving:
+        self._motion.keep_up()
+        if self._motion.moving:
             return
-        if self._retreating:
-            self._mover.retreated()
+        if self._retracting:
+            self._motion.retracted()
         else:
             self._change(State.HOLD)
 
@@ -172,7 +178,7 @@ class Cycle:
 
     def _turns_next(self) -> bool:
         """Whether what is done now, or comes next, is meant for a spindle that turns."""
-        within = self._mover.active and not self._mover.complete
+        within = self._motion.active and not self._motion.complete
         if within or self._still.label is not None or self._feed.pending:
             return True
         stop = self._feed.stop
@@ -196,23 +202,23 @@ class Cycle:
         if over:
             self._spin_up = None
             self._still.held(self._context.now - self._held_at)
-            if self._mover.active and not self._mover.complete:
-                self._mover.go_on(self._behind)
+            if self._motion.active and not self._motion.complete:
+                self._motion.go_on(self._behind)
         self._change(State.RUN if over else State.WAIT)
 
     def _progress(self) -> None:
-        match self._mover.progress(self._feed):
+        match self._motion.progress(self._feed):
             case Progress.MOVING:
                 self._change(State.RUN)
             case Progress.STILL:
                 self._change(State.WAIT)
             case Progress.BLOCK_END:
-                self._show_later(self._mover.block)
+                self._show_later(self._motion.block)
                 self._change(State.BLOCK_END)
             case Progress.HELD:
                 self.hold("THE CONTROLLER HOLDS")
             case Progress.DONE:
-                self._show_later(self._mover.ended_with)
+                self._show_later(self._motion.ended_with)
                 self._stand()
 
     def _stand(self) -> None:
@@ -238,7 +244,7 @@ class Cycle:
             case Next.MOTION:
                 self._change(State.RUN)
                 self._read()
-                self._mover.begin(self._feed.take())
+                self._motion.begin(self._feed.take())
             case Next.END if self._needs_end:
                 raise AlarmError("no-end")
             case Next.END:
@@ -266,12 +272,12 @@ class Cycle:
     def _watch_spindle(self, block: Block) -> None:
         """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
         spindle = self._context.spindle
-        if not needs_speed(block) or self._retreating or not spindle.lost:
+        if not needs_speed(block) or self._retracting or not spindle.lost:
             return
-        if block.kind is Kind.THREAD and not self._mover.release():
+        if block.kind is Kind.THREAD and not self._motion.release():
             self._context.say("thread", "spindle lost in a thread")
-            self._mover.retreat(block)
-            self._retreating = True
+            self._motion.retract(block)
+            self._retracting = True
             self._change(State.HOLDING)
         elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
             self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")

@@ -201,9 +201,9 @@ class MachineControl:
 
     def _mind_the_queue(self, cycle: Cycle) -> None:
         """A host that comes back too late finds the slides braking on their path, or at rest: a hold."""
-        mover = self.program_run.mover
-        left = mover.starving - self._context.now
-        if mover.active and left < self._context.machine.timing.low_water:
+        motion = self.program_run.motion
+        left = motion.starving - self._context.now
+        if motion.active and left < self._context.machine.timing.low_water:
             self.counters.underruns += 1
             self._context.say("starved", "setpoints ran low; the slides stop on the path")
             cycle.starve()

@@ -5,22 +5,31 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable
 from enum import Enum
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.read_ahead import ReadAhead
 from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path, PathBuilder
 
 
+class Progress(Enum):
+    """How far the present path section is."""
+
+    DONE = "there is none, or it has come to its end"
+    MOVING = "it moves"
+    BLOCK_END = "at rest where single block wants it"
+    STILL = "at rest because the override is 0"
+    HELD = "at rest because something outside the control holds it"
+
+
 class Overrides(NamedTuple):
-    """Fractions of the programmed speeds. ``turn`` is spindle speed over programmed spindle speed."""
+    """Fractions of the programmed speeds. ``spindle``: its speed over the programmed one."""
 
     feed: float = 1.0
     rapid: float = 1.0
-    turn: float = 1.0
+    spindle: float = 1.0
 
 
 class PathSection:
@@ -76,16 +85,16 @@ class PathSection:
         for old in [number for number in self._blocks if number not in kept and number < n]:
             del self._blocks[old]
 
-    def path(self, scales: Overrides, last: int | None) -> Path:
+    def path(self, overrides: Overrides, last: int | None) -> Path:
         """The path with its speeds scaled; behind block ``last`` they are 0, so that a plan stops there.
 
-        Limits do not depend on the scales, so a plan made from a moving state meets the limits of the plan
+        Limits do not depend on the overrides, so a plan made from a moving state meets the limits of the plan
         that it replaces.
         """
         path = self._builder.path()
-        if last is None and scales == (1.0, 1.0, 1.0):
+        if last is None and overrides == (1.0, 1.0, 1.0):
             return path
-        factors = [self._factor(n, scales, last) for n in path.blocks.tolist()]
+        factors = [self._factor(n, overrides, last) for n in path.blocks.tolist()]
         rate = path.pieces.rate * np.repeat(factors, np.diff(path.first))
         return dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=rate))
 
@@ -99,107 +108,11 @@ class PathSection:
                 return n
         return None
 
-    def _factor(self, n: int, scales: Overrides, last: int | None) -> float:
+    def _factor(self, n: int, overrides: Overrides, last: int | None) -> float:
         if last is not None and n > last:
             return 0.0
         block = self._blocks[n]
         if block.rapid:
-            return scales.rapid
+            return overrides.rapid
         turns = block.per_rev and not block.modal.c_locked
-        return scales.feed * scales.turn if turns else scales.feed
-
-
-# --- what a cycle asks of motion ------------------------------------------------------------------------
-
-
-class Progress(Enum):
-    """How far the present stretch is."""
-
-    DONE = "there is none, or it has come to its end"
-    MOVING = "it moves"
-    BLOCK_END = "at rest where single block wants it"
-    STILL = "at rest because the override is 0"
-    HELD = "at rest because something outside the control holds it"
-
-
-class PathMotion(Protocol):
-    """Blocks from rest to rest, under overrides, single block and read-ahead."""
-
-    @property
-    def active(self) -> bool:
-        """Whether there is a stretch at all."""
-        ...
-
-    @property
-    def moving(self) -> bool:
-        """Whether anything still moves."""
-        ...
-
-    @property
-    def block(self) -> Block | None:
-        """The block being moved."""
-        ...
-
-    @property
-    def following(self) -> Block | None:
-        """The block behind it, when it belongs to the stretch."""
-        ...
-
-    @property
-    def complete(self) -> bool:
-        """Whether nothing of the stretch is left to be begun."""
-        ...
-
-    @property
-    def ended_with(self) -> Block | None:
-        """At the end of the stretch: its last block, which may go nowhere."""
-        ...
-
-    @property
-    def starving(self) -> float:
-        """When the slides stop for want of setpoints; endless where that cannot be."""
-        ...
-
-    def begin(self, blocks: list[Block]) -> None:
-        """A new stretch, from rest. Raises TroubleError, MotionError, DriverError."""
-        ...
-
-    def go_on(self, behind: Block | None) -> None:
-        """From rest within the stretch; with single block to the end of the block after it."""
-        ...
-
-    def progress(self, feed: ReadAhead) -> Progress:
-        """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
-        ...
-
-    def keep_up(self) -> None:
-        """While it is being stopped: what must go on until the slides rest."""
-        ...
-
-    def hold(self) -> None:
-        """Come to rest as soon as the path allows; a thread pass ends behind its pull-out."""
-        ...
-
-    def brake(self) -> None:
-        """Come to rest at once on the path, to be given up."""
-        ...
-
-    def let_stop(self) -> None:
-        """The queue was not refilled in time: the slides stop where it ends."""
-        ...
-
-    def release(self) -> bool:
-        """Give a thread pass back that still waits for its index; False when it moves."""
-        ...
-
-    def retreat(self, block: Block) -> None:
-        """Begin to leave a thread whose spindle is lost."""
-        ...
-
-    def retreated(self) -> None:
-        """At rest: draw back, or be done. Raises TroubleError("thread-lost") in the end."""
-        ...
-
-    def forget(self) -> None:
-        """The stretch is over, or nothing of it holds any more."""
-        ...
+        return overrides.feed * overrides.spindle if turns else overrides.feed

@@ -8,21 +8,19 @@ from core.executor import start_conditions
 from core.executor.changed_offsets import ChangedOffsets
 from core.executor.control_status import ControlStatus, modal_as_machine, modal_given_up, modal_interrupted
 from core.executor.controller_motion import ControllerMotion
-from core.executor.cycle import Cycle
+from core.executor.cycle import Cycle, PathMotion
 from core.executor.interrupted_job import GIVEN_UP, InterruptedJob
 from core.executor.interruption_watch import InterruptionWatch, Note
 from core.executor.job import Job, circumstances, outdated
 from core.executor.machine_context import MachineContext
 from core.executor.part_count import PartCount
-from core.executor.path_section import PathMotion
 from core.executor.read_ahead import ProgramPass
-from core.executor.setpoint_motion import Player, SetpointMotion
+from core.executor.setpoint_motion import SetpointMotion
 from core.executor.snapshot import Starts, State
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect
-from core.motion.axis_limits import MotionLimits
 
 
 class ProgramRun:
@@ -39,7 +37,7 @@ class ProgramRun:
         self._context = context
         self._passes = passes
         self._enter = enter
-        self.mover = _mover(context)
+        self.motion = _motion_of(context)
         self.status = ControlStatus()
         self.parts = PartCount(context)
         self.counters = self.parts.counters
@@ -103,7 +101,7 @@ class ProgramRun:
         """
         cycle = self.cycle
         if cycle is None:
-            self.mover.forget()
+            self.motion.forget()
             return
         if not (self._line or self._between):
             self.interruption.broke_off(cycle.current, why)
@@ -121,7 +119,7 @@ class ProgramRun:
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
-        self.mover.forget()
+        self.motion.forget()
         self.changed_offsets.take_up(self.status)
 
     def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
@@ -143,12 +141,12 @@ class ProgramRun:
         """A pass from where the slides stand now; nothing is kept of an earlier one."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
         setup = circumstances(job.setup, at, self._context.terminal)
-        self.mover.forget()
+        self.motion.forget()
         begins = Modal(metric=setup.metric, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
             begins = setup.begin.checkpoint.modal
         self._source = self._passes(job, setup)
-        self.cycle = Cycle(self._context, self.mover, self._source, begins, self._enter, self._ended)
+        self.cycle = Cycle(self._context, self.motion, self._source, begins, self._enter, self._ended)
 
     def _ended(self, end: ProgramEnd | None) -> None:
         """M30 and M02, or the end of a line of MDI."""
@@ -219,10 +217,7 @@ class ProgramRun:
                 context.ports.io.write(name, False)
 
 
-def _mover(context: MachineContext) -> PathMotion:
+def _motion_of(context: MachineContext) -> PathMotion:
     """By setpoints, or block by block where the controller plans by itself."""
-    machine = context.machine
-    if context.ports.blocks is not None:
-        return ControllerMotion(context, context.ports.blocks)
-    limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
-    return SetpointMotion(context, Player(context.ports.axes, limits, machine.timing.lookahead))
+    blocks = context.ports.blocks
+    return SetpointMotion(context) if blocks is None else ControllerMotion(context, blocks)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
 from core.geometry.lines_and_arcs import arc_length
-from core.interpreter.actions import SpindleRun
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.machine.machine_model import Axis, Machine
 
@@ -27,26 +27,18 @@ class ProgramPass(NamedTuple):
     left: Callable[[], Checkpoint] | None = None
 
 
-def needs_speed(block: Block) -> bool:
-    """Whether this block must not begin before the spindle is at its speed; rapids may."""
-    return block.moves and not block.rapid
-
-
 class ReadAhead:
-    """``pending`` may be moved in one stretch; ``stop`` waits behind it for a standstill.
+    """``pending`` belongs to one path section; ``stop`` waits behind it for a standstill (``SectionEnds``).
 
-    A standstill is needed by every action, by the first block after a change of speed that is no rapid, and
-    before and behind each thread pass, which is the thread and what pulls out of it.
     Nothing behind ``stop`` is read before it has been carried out, so that a program that asks inputs asks
-    them at their time.
+    them at their time. Each block is checked once more against the machine as it is read.
     """
 
-    def __init__(self, source: ProgramPass, check: Callable[[Block], None]) -> None:
+    def __init__(self, source: ProgramPass, machine: Machine) -> None:
         self._source = source
-        self._check = check
-        self._said = 0
-        self._new_speed = False
-        self._pass = 0  # blocks of the thread pass that is being read
+        self._machine = machine
+        self._reported = 0  # problems of the interpreter that were looked at
+        self._ends = SectionEnds()
         self.pending: deque[Block] = deque()
         self.seconds = 0.0  # what the pending blocks take at least
         self.stop: Block | None = None
@@ -66,7 +58,7 @@ class ReadAhead:
     def pull(self, blocks: int, seconds: float) -> None:
         """Read on until so many blocks were read or so many seconds are pending, pull-outs of threads too."""
         for _ in range(blocks):
-            if self.dry or (self.seconds >= seconds and not self._pass):
+            if self.dry or (self.seconds >= seconds and not self._ends.in_thread):
                 return
             block = self._next()
             if block is not None:
@@ -82,11 +74,10 @@ class ReadAhead:
     def pass_stop(self) -> None:
         """The standstill has been used: an action is done, a cutting block may start."""
         block, self.stop = self.stop, None
-        if block is None or block.action is not None:
-            return
-        self._new_speed = self._new_speed and not needs_speed(block)
-        self._pass = int(block.kind is Kind.THREAD)
-        self._append(block)
+        if block is not None:
+            self._ends.rested(block)
+            if block.moves:
+                self._append(block)
 
     def _next(self) -> Block | None:
         try:
@@ -104,24 +95,18 @@ class ReadAhead:
     def _find_error(self) -> None:
         """An error that the live run met and the proof could not."""
         problems = self._source.problems()
-        for problem in problems[self._said :]:
+        for problem in problems[self._reported :]:
             if problem.severity is Severity.ERROR and self.trouble is None:
                 self.trouble = AlarmError("program", problem.message, problem.line)
-        self._said = len(problems)
+        self._reported = len(problems)
 
     def _sort(self, block: Block) -> None:
         try:
-            self._check(block)
+            check_block(block, self._machine)
         except AlarmError as trouble:
             self.trouble = trouble
             return
-        if block.action is not None:
-            self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
-            self.stop = block
-        elif self._pass == 1 and _pulls_out(block):
-            self._pass = 2
-            self._append(block)
-        elif self._pass or block.kind is Kind.THREAD or (self._new_speed and needs_speed(block)):
+        if self._ends.rests_before(block):
             self.stop = block
         else:
             self._append(block)
@@ -129,11 +114,6 @@ class ReadAhead:
     def _append(self, block: Block) -> None:
         self.pending.append(block)
         self.seconds += nominal_seconds(block)
-
-
-def _pulls_out(block: Block) -> bool:
-    """Behind a thread: its pull-out, or a rapid straight out."""
-    return block.kind is Kind.THREAD or (block.kind is Kind.RAPID and block.z == block.z0)
 
 
 def nominal_seconds(block: Block) -> float:
@@ -161,7 +141,7 @@ _TRAVEL_ROUNDING = 1e-6  # mm
 
 
 def check_block(block: Block, machine: Machine) -> None:
-    """Raises TroubleError for a move out of the travel, one fed by the turns of a spindle that stands, and
+    """Raises AlarmError for a move out of the travel, one fed by the turns of a spindle that stands, and
     one of C while the spindle that is C turns.
     """
     if not block.moves:

@@ -120,7 +120,7 @@ class SpindleControl:
         self.limit: float | None = None  # F10, until restart
         self.command = 0.0  # signed rpm as sent
         self.measured = 0.0
-        self.turns = SpindleAngle()
+        self.angle = SpindleAngle()
         self.override = 1.0
         self.auto = True
         self.guard_open = False  # at a machine whose guard stops the spindle
@@ -266,7 +266,7 @@ class SpindleControl:
 
     def look(self) -> None:
         """First thing in a tick: read the encoder."""
-        self.turns.note(self._port.angle())
+        self.angle.note(self._port.angle())
 
     def update(self, now: float, radius: float) -> None:
         """Once a tick: send what has changed, and see what the drive does.

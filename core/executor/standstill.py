@@ -10,7 +10,7 @@ from core.alarms import Code
 from core.executor import start_conditions
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import ReadAhead, needs_speed
+from core.executor.read_ahead import ReadAhead
 from core.executor.spindle_control import SpindleDemand
 from core.interpreter.actions import (
     Collet,
@@ -24,6 +24,7 @@ from core.interpreter.actions import (
     WaitInput,
 )
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.path_sections import needs_speed
 
 # --- waits and actions ----------------------------------------------------------------------------------
 
@@ -78,7 +79,7 @@ def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
     def done(_: float) -> bool:
         if spindle.why_slow:
             wait.since = context.now
-        read = spindle.turns.known or context.ports.spindle.angle() is None
+        read = spindle.angle.known or context.ports.spindle.angle() is None
         return spindle.at_speed(context.now) and (read or not thread)
 
     wait.done = done

@@ -5,6 +5,7 @@ Plans are lists of phases (seconds, acceleration); all mm and seconds, X as a ra
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,12 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from core.executor.raised_alarm import AlarmError
+from core.executor.spindle_control import SpindleControl
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments
 
 Phases = list[tuple[float, float]]
 _BRIEF = 1e-9  # s
+_RETRACTED = 1e-6  # mm
+_INCH = 25.4  # mm
 
 
 class ThreadPath(NamedTuple):
@@ -187,3 +191,58 @@ def _trapezoid(way: float, v: float, top: float, a: float) -> Phases:
     up = max(peak - v, 0.0)
     cruise = (way - (peak * peak - v * v) / (2.0 * a) - peak * peak / (2.0 * a)) / peak
     return [(up / a, a), (max(cruise, 0.0), 0.0), (peak / a, -a)]
+
+
+class ThreadRetract(NamedTuple):
+    """Out of a thread whose spindle is lost: stop along the thread, then draw X back as the pass would have.
+
+    ``x`` is the machine X to which the pass would have pulled out, ``cutting`` whether it was still in the
+    thread itself, ``why`` what became of the spindle, for the operator.
+    """
+
+    block: Block
+    x: float
+    cutting: bool
+    why: str
+
+    @classmethod
+    def of(cls, block: Block, behind: Sequence[Block], spindle: SpindleControl) -> ThreadRetract:
+        """From ``block``, which is being cut; ``behind`` are the blocks of the pass that would follow."""
+        return cls(block, [block, *behind][-1].mx, bool(behind), _why_lost(spindle))
+
+    def demand_left(self, at: Sequence[float]) -> None:
+        """Raises AlarmError("thread-lost") once the slides, at machine X, Z, C, are out of the thread."""
+        if abs(at[0] - self.x) < _RETRACTED:
+            raise AlarmError("thread-lost", self._left(at[1]), self.block.line)
+
+    def way_out(self, at: Sequence[float]) -> Block:
+        """A rapid along X alone from where the slides stand (machine X, Z, C)."""
+        block = self.block
+        return dataclasses.replace(
+            block,
+            kind=Kind.RAPID,
+            per_rev=False,
+            x0=at[0] - block.offset_x,
+            z0=at[1] - block.offset_z,
+            c0=at[2],
+            x=self.x - block.offset_x,
+            z=at[1] - block.offset_z,
+            c=at[2],
+            feed=block.modal.rapid_rate,
+        )
+
+    def _left(self, z: float) -> str:
+        """Why, and what the thread on the part is now."""
+        if not self.cutting:
+            return f"{self.why} in the pull-out: the thread is cut, its end runs out short"
+        metric = self.block.modal.metric
+        at = f"{z - self.block.offset_z:.3f}" if metric else f"{(z - self.block.offset_z) / _INCH:.4f}"
+        return f"{self.why}: the tool left the thread at Z{at}, behind it this pass is not cut"
+
+
+def _why_lost(spindle: SpindleControl) -> str:
+    if spindle.why_slow:
+        return spindle.why_slow.lower()
+    if spindle.measured * spindle.command < 0.0:
+        return f"the spindle turned the wrong way, at {abs(spindle.measured):.0f} rpm"
+    return f"the spindle fell to {abs(spindle.measured):.0f} of {abs(spindle.command):.0f} rpm"

@@ -14,6 +14,7 @@ from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleL
 from core.interpreter.dialects import Interpretation, ReadProgram, blocks_and_series
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 from core.interpreter.job_setup import Setup
+from core.interpreter.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine
@@ -123,11 +124,13 @@ _AT_ONCE = 1e12  # mm/s²: the ramps of an ideal machine are shorter than any di
 
 
 class RestState(NamedTuple):
-    """A place between two blocks at rest: time, spindle, and whether a feed has to wait for its speed."""
+    """A place between two blocks at rest: time, spindle, whether a feed has to wait for its speed, and where
+    path sections end from there on."""
 
     t: float
     spindle: SpindleForecast
     speed_wanted: bool
+    ends: SectionEnds
 
 
 class Timeline:
@@ -153,6 +156,7 @@ class Timeline:
         self._source = blocks_and_series(self.interpreter)
         self._back: Block | Series | None = None  # what ended a motion and is still to come
         self._moving = BlocksInMotion()
+        self._ends = SectionEnds()
         self._speed_wanted = False  # a speed was commanded that no feed has waited for yet
         self._refused: list[Diagnostic] = []
 
@@ -167,11 +171,12 @@ class Timeline:
     @property
     def standing(self) -> RestState:
         """What a way that leaves this one here goes on with."""
-        return RestState(self.t, copy(self.spindle), self._speed_wanted)
+        return RestState(self.t, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
     def go_on(self, standing: RestState) -> None:
         """Begin where another timeline has stood at rest, not at the start of the program."""
         self.t, self.spindle, self._speed_wanted = standing.t, copy(standing.spindle), standing.speed_wanted
+        self._ends = copy(standing.ends)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -199,8 +204,10 @@ class Timeline:
         return next(self._source, None)
 
     def _motion(self, each: Block | Series) -> Iterator[MotionSpan | RestSpan]:
-        """Everything up to the next block that does not move, as one motion from rest to rest."""
+        """One path section, from rest to rest."""
         first = _like(each)
+        if self._ends.rests_before(first):
+            self._ends.rested(first)
         if not first.rapid:
             yield from self._at_speed()
         yield self._rest(self._wait(self._machine.timing.commit))
@@ -217,23 +224,14 @@ class Timeline:
             self._refuse(str(error))
 
     def _moves(self, each: Block | Series | None) -> Iterator[Block | Series]:
-        """What moves; ends before one that must wait for the spindle, or that does not move."""
-        first = before = None
+        """The blocks of a path section that begins with ``each``."""
         while each is not None:
-            block = _like(each)
-            if not block.moves or (first and before and self._stands_before(first, before, block)):
-                break
             self._moving.append(each)
             yield each
-            first, before, each = first or block, block, self._next()
+            each = self._next()
+            if each is not None and self._ends.rests_before(_like(each)):
+                break
         self._back = each
-
-    def _stands_before(self, first: Block, before: Block, block: Block) -> bool:
-        """A new speed, and a thread pass with what pulls out of it, begin at a standstill."""
-        thread = Kind.THREAD
-        if first.kind is thread:
-            return before.kind is not thread or (block.kind is not thread and before is not first)
-        return block.kind is thread or (self._speed_wanted and not block.rapid)
 
     def _index(self, block: Block) -> RestSpan:
         """Until the slides may start, so that they are in step with an index of the spindle: see the
@@ -277,6 +275,7 @@ class Timeline:
 
     def _action(self, block: Block) -> RestSpan:
         assert block.action is not None
+        self._ends.rests_before(block)
         self._turn(block)
         return self._rest(self._seconds(block.action), block)
 
