@@ -6,7 +6,7 @@ import random
 
 from core.interpreter.omniturn.code_table import CHAPTERS
 
-SEEDS = tuple(entry.program for _, entries in CHAPTERS for entry in entries)
+SEEDS = tuple(code.program for _, codes in CHAPTERS for code in codes)
 _LETTERS = "GMXZCIKRPSFTDLUAOQN()/}.-+,~0123456789 "
 
 

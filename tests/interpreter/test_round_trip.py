@@ -28,7 +28,7 @@ SECONDARY = {n: SecondaryOffset(-NOSE, -NOSE, NOSE) for n in range(1, 5)}
 
 
 def programs() -> list[tuple[str, Source]]:
-    book = [(e.code, Source(e.code, e.program)) for _, entries in CHAPTERS for e in entries]
+    book = [(code.name, Source(code.name, code.program)) for _, codes in CHAPTERS for code in codes]
     files = [*sorted(SAMPLES.glob("*.nc")), *sorted(FOLDER.glob("*.nc"))]
     return book + [(path.stem, load_source(path)) for path in files]
 

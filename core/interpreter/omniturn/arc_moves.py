@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import dist
 
 from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
@@ -17,6 +18,11 @@ from core.language.diagnostics import ProgramError
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
+
+
+def arc_blocks(state: State, made: Statement) -> Iterator[Block]:
+    """G02 and G03."""
+    yield arc_move(state, made)
 
 
 def arc_move(state: State, made: Statement) -> Block:

@@ -9,7 +9,7 @@ from core.interpreter import units
 from core.interpreter.actions import SpindleLock
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn.dwell import mind_arrival, warn_of_short_dwell
+from core.interpreter.omniturn.dwell import expect_arrival, warn_of_short_dwell
 from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -91,7 +91,7 @@ def c_move(state: State, made: Statement) -> Iterator[Block]:
     way = hypot(state.x - x0, state.z - z0)
     if way <= _SAME:
         yield rotation(state, made.line, made.part("move"), goal)
-        mind_arrival(state, made.line, word.column, abs(goal - c0))
+        expect_arrival(state, made.line, word.column, abs(goal - c0))
         return
     state.c = goal
     if state.per_rev and state.modal.feed is not None:

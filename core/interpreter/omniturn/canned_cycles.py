@@ -1,28 +1,149 @@
-"""The cycles: one line that stands for many motions."""
+"""What all cycles share: their motions as elementary blocks, and what must hold before the first of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import hypot
+from typing import NamedTuple
 
-from core.interpreter.elementary_blocks import Block
-from core.interpreter.omniturn import code_table
-from core.interpreter.omniturn.cycle_motions import blocks_of_moves, check_ready
-from core.interpreter.omniturn.drilling_cycles import drill_moves, peck_moves
+from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
+from core.interpreter import units
+from core.interpreter.adjusted_moves import move_words
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.roughing_cycles import box_moves, contour_moves
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.interpreter.omniturn.straight_moves import on_step
+from core.language.diagnostics import ProgramError
 
-_MOVES = {74: box_moves, 81: drill_moves, 83: peck_moves}
+LIFT = 0.02 * units.MM_PER_INCH
+"""How far a tool is drawn off the cut before it goes back, mm."""
+
+MOST_PASSES = 10_000
+_SAME = 1e-9  # mm
 
 
-def cycle_blocks(state: State, made: Statement, contour: Sequence[Statement] = ()) -> Iterator[Block]:
-    """The blocks of a cycle, which ends where it starts. Raises ProgramError before the first of them.
+class Move(NamedTuple):
+    """One motion of a cycle to a point in the program's frame, mm; ``rapid`` (mm/s) or at the feed."""
 
-    ``contour``: the lines that describe it to G75 and G78.
+    x: float
+    z: float
+    rapid: float | None = None
+    centre: Point | None = None
+    clockwise: bool = False
+
+
+def refused(made: Statement, letter: str, code: str, text: str, hint: str) -> ProgramError:
+    """An error at a word of the cycle's line, at its code where the word is missing."""
+    column = made.column(letter) or (made.code.column if made.code else 0)
+    return ProgramError(refusal(made.line, column, code, text, hint))
+
+
+def name(made: Statement) -> str:
+    """The cycle's code as messages call it."""
+    return f"G{made.one_shot}"
+
+
+def check_ready(state: State, made: Statement) -> None:
+    """Refuse a cycle where its start point or its feed is not known, or nose compensation is active."""
+    if state.modal.nose_comp != 40:
+        text = f"{name(made)} cannot run while nose compensation is active."
+        raise refused(made, "G", "cycle-nose-comp", text, "Put G40 and a departure before it.")
+    tool_line = state.tool_line
+    if tool_line:
+        state.tool_line = 0
+        text = (
+            f"{name(made)} is the first move after the T on line {tool_line}: its start point is not known."
+        )
+        raise refused(made, "G", "tool-first-move", text, "Move to X and Z of the start point before it.")
+    if "F" not in made.words and (not state.cut or state.modal.feed is None):
+        text = f"{name(made)} has no feed: none for cutting is in force."
+        raise refused(made, "G", "feed-missing", text, f"Write F on the {name(made)} line.")
+
+
+def positive(state: State, made: Statement, letter: str, meaning: str) -> float:
+    """A length word over 0, mm. Raises ProgramError where it is missing, 0 or negative."""
+    value = on_step(state, made, letter)
+    if value is None:
+        text = f"{name(made)} needs {letter}, {meaning}."
+        raise refused(made, letter, "word-missing", text, f"Add {letter}.")
+    if value <= 0:
+        text = f"{made.words[letter].text}: {letter}, {meaning}, must be over 0."
+        raise refused(made, letter, "cycle-length", text, f"Correct {letter}.")
+    return value
+
+
+def left_over(state: State, made: Statement) -> float:
+    """U, what is left on the part per side, mm; 0 without the word."""
+    value = on_step(state, made, "U") or 0.0
+    if value < 0:
+        text = f"{made.words['U'].text}: U is what the cycle leaves on a side, which is never negative."
+        raise refused(made, "U", "cycle-length", text, "Take the sign out.")
+    return value
+
+
+def check_count(made: Statement, letter: str, count: int, what: str) -> None:
+    """Refuse a cycle of more passes than anyone means."""
+    if count > MOST_PASSES:
+        text = f"{name(made)} would make {count:,} {what}; {MOST_PASSES:,} are the most."
+        raise refused(made, letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
+
+
+def blocks_of_moves(state: State, made: Statement, moves: Sequence[Move]) -> Iterator[Block]:
+    """The motions as blocks. All are checked before the first comes; none of them has a length of 0.
+
+    Raises ProgramError where the feed cannot be: none, or per revolution of a spindle that stands.
     """
-    check_ready(state, made)
-    if made.one_shot in code_table.CONTOUR_CYCLES:
-        moves = contour_moves(state, made, contour)
-    else:
-        moves = _MOVES[made.one_shot or 0](state, made)
-    yield from blocks_of_moves(state, made, moves)
+    moves = _without_stops((state.x, state.z), moves)
+    at = state.x, state.z
+    for move in moves:
+        if move.rapid is None:
+            check_move(state, made.line, at[0], move.x, _length(at, move))
+        at = move.x, move.z
+    for move in moves:
+        yield _block(state, made, move)
+
+
+def _without_stops(start: Point, moves: Sequence[Move]) -> list[Move]:
+    kept: list[Move] = []
+    at = start
+    for move in moves:
+        if move.centre is not None or hypot(move.x - at[0], move.z - at[1]) > _SAME:
+            kept.append(move)
+            at = move.x, move.z
+    return kept
+
+
+def _length(start: Point, move: Move) -> float:
+    if move.centre is None:
+        return hypot(move.x - start[0], move.z - start[1])
+    return arc_length(start, (move.x, move.z), move.centre, clockwise=move.clockwise)
+
+
+def _block(state: State, made: Statement, move: Move) -> Block:
+    modal, feeds = state.modal, move.rapid is None
+    kind = Kind.RAPID if not feeds else Kind.FEED if move.centre is None else Kind.ARC
+    x0, z0 = state.x, state.z
+    text = move_text(state, (x0, z0), move)
+    state.x, state.z = move.x, move.z
+    state.px, state.pz = state.x - state.dx, state.z - state.dz
+    state.blocks += 1
+    cx, cz = move.centre or (0.0, 0.0)
+    return Block(
+        n=state.blocks, line=made.line, kind=kind, text=text,
+        x0=x0, z0=z0, c0=state.c, x=move.x, z=move.z, c=state.c,
+        offset_x=state.offset_x, offset_z=state.offset_z, modal=modal,
+        feed=state.feed if move.rapid is None else move.rapid, per_rev=feeds and state.per_rev,
+        rpm=rpm_at(state, move.x), css=modal.surface_speed if modal.css else None,
+        cx=cx, cz=cz, clockwise=move.clockwise,
+    )  # fmt: skip
+
+
+def move_text(state: State, start: Point, move: Move) -> str:
+    """The motion as a line of the program would say it, in the mode and unit in force."""
+    end = move.x, move.z
+    if move.centre is not None:
+        return move_words(state.modal, Arc(start, end, move.centre, move.clockwise))
+    return ("" if move.rapid is None else "G00") + move_words(state.modal, Line(start, end))

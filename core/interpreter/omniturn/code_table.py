@@ -1,94 +1,19 @@
-"""The codes of the OmniTurn control: which there are, which exclude each other, which words they take."""
+"""The codes of the OmniTurn control, each in one entry: form, words, what F means, group, bounds, refusals.
+
+A code without an entry does not exist. ``handler`` names the function, by file and name in this room, that
+carries it out; what a line does before and behind it is told by ``acts``. Where the entry is wrong or lacks
+something, making it raises, or ``tests/interpreter/test_code_table.py`` fails. ``docs/language.md`` is the
+page of this table (``language_page``), and its examples are proved.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-MODAL_GROUPS: dict[int, str] = {
-    90: "distance",
-    91: "distance",
-    94: "feed mode",
-    95: "feed mode",
-    0: "rapid",
-    1: "rapid",
-    70: "units",
-    71: "units",
-    72: "X words",
-    73: "X words",
-    96: "spindle mode",
-    97: "spindle mode",
-    40: "nose compensation",
-    41: "nose compensation",
-    42: "nose compensation",
-    35: "coarse feed",
-    36: "coarse feed",
-    76: "speed limits",
-    77: "speed limits",
-}
-"""Modal G codes and the group in which one line may hold one of them."""
-
-ONE_SHOT = frozenset({2, 3, 4, 10, 33, 34, 74, 75, 78, 81, 83, 89, 92})
-"""G codes that act on their own line alone; a line may hold one."""
-
-ARCS = frozenset({2, 3})
-THREADS = frozenset({33, 34})
-FRAME = frozenset({10, 92})
-"""One-shot codes whose X and Z are no motion."""
-
-CONTOUR_CYCLES = frozenset({75, 78})
-CYCLES = CONTOUR_CYCLES | {74, 81, 83}
-
-WORDS: dict[int | None, frozenset[str]] = {
-    None: frozenset({"X", "Z", "C", "CA", "CI", "R", "F", "S", "T", "D"}),
-    2: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
-    3: frozenset({"X", "Z", "I", "K", "R", "F", "S", "T", "D"}),
-    4: frozenset({"F", "S", "T", "D"}),
-    10: frozenset({"X", "Z", "F", "S", "T", "D"}),
-    89: frozenset({"S"}),
-    92: frozenset({"X", "Z", "F", "S", "T", "D"}),
-    33: frozenset({"X", "Z", "I", "K", "A", "C", "P", "O", "F", "S", "T", "D"}),
-    34: frozenset({"Z", "I", "K", "A", "P", "F", "S", "T", "D"}),
-    74: frozenset({"X", "Z", "I", "U", "F", "S"}),
-    75: frozenset({"I", "U", "P", "F", "S"}),
-    78: frozenset({"U", "P", "F", "S"}),
-    81: frozenset({"X", "Z", "F", "S"}),
-    83: frozenset({"X", "Z", "K", "R", "L", "C", "F", "S"}),
-}
-"""Words besides G and M that a line may hold, by its one-shot code."""
-
-FLOW_WORDS: dict[str, frozenset[str]] = {
-    "LS": frozenset({"LS"}),
-    "LF": frozenset({"LF"}),
-    "}": frozenset({"}"}),
-    "RF": frozenset({"RF"}),
-    "P": frozenset({"P"}),
-    "M95": frozenset({"M"}),
-    "M97": frozenset({"M", "I", "C", "P"}),
-    "M98": frozenset({"M", "P"}),
-    "M99": frozenset({"M"}),
-}
-"""Lines that steer the order of execution, and exactly what stands on them."""
-
-ASKS = frozenset({"M95", "M97"})
-"""Calls that depend on an input."""
-
-CALLS = ASKS | {"P", "M98"}
-ENDS = frozenset({2, 30})
-"""M codes that end the program."""
-
-M_BEFORE = frozenset({3, 4, 8, 12, 13, 91, 92, 93, 94})
-"""M codes that act before the motion of their line."""
-
-M_AFTER = frozenset({0, 1, 2, 5, 9, 30, 31})
-"""M codes that act after the motion of their line."""
-
-M_FLOW = frozenset({95, 97, 98, 99})
-M_POSITIONING = frozenset({19, 89})
-M_KNOWN = M_BEFORE | M_AFTER | M_FLOW | M_POSITIONING
-"""M codes of the control itself; all others are the machine file's."""
-
-# --- What every code of the language does, with an example of our own that the tests prove.
-
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum, auto
+from functools import cache
+from importlib import import_module
+from typing import Any
 
 HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
 """Before every example: radius mode, the tool at X.6 Z.1, .004 in/rev at 1000 rpm."""
@@ -96,14 +21,79 @@ HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
 TAIL = "G94F300X.6Z1\nM30\n"
 
 
-class Entry(NamedTuple):
-    """One code: how it is written, what it does, and lines that use it between ``HEAD`` and ``TAIL``."""
+class Acts(Enum):
+    """What a code does on its line, and so when: see ``block_execution``."""
 
-    code: str
+    PLAIN = auto()  # no code of its own: a straight move, or none
+    WORD = auto()  # a letter
+    MODE = auto()  # in force until another of its group
+    FRAME = auto()  # its X and Z are no motion
+    LOCK = auto()  # the spindle becomes the axis C; before the motion
+    SPINDLE = auto()  # starts the spindle; before the motion
+    START = auto()  # an M function before the motion
+    ARC = auto()
+    MOTION = auto()  # motion or rest of a kind of its own
+    CYCLE = auto()  # a line that stands for many motions
+    CONTOUR = auto()  # a cycle along the lines that follow it, or along a subroutine
+    STOP = auto()  # an M function after the motion
+    FLOW = auto()  # steers the order of execution
+
+
+class FWord(Enum):
+    """What F means on the line of a code."""
+
+    NONE = auto()  # no F may stand there
+    FEED = auto()  # the feed from here on
+    SECONDS = auto()
+    LEADS = auto()  # how coarse leads may be
+
+
+class SWord(Enum):
+    """What S means on the line of a code."""
+
+    SPEED = auto()  # of the spindle, from here on
+    LIMIT = auto()  # of constant surface speed, rpm
+    C_SPEED = auto()  # rpm at which C turns
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """One code. ``example``: lines that use it between ``HEAD`` and ``TAIL``; ``subroutine`` follows the end.
+
+    ``words`` may stand beside it, G and M apart; ``bounds`` are least and greatest number of those of them
+    that the control itself bounds, in their unit; ``refusals`` the diagnostic codes by which it is refused or
+    warned of. Raises ValueError where words and the meaning of F contradict each other.
+    """
+
+    name: str
     form: str
     what: str
     example: str
-    subroutine: str = ""  # lines that follow the end of the program
+    subroutine: str = ""
+    acts: Acts = field(kw_only=True)
+    handler: str = field(kw_only=True)
+    f: FWord = field(kw_only=True)
+    s: SWord = SWord.SPEED
+    words: frozenset[str] = frozenset()
+    group: str = ""  # one line may hold one mode of a group
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    terminal: tuple[str, bool] = ("", False)  # the input that it waits for or asks, and its wanted state
+    least_blocks: int = 0  # elementary blocks that it makes at least
+    ends_program: bool = False
+    calls: bool = False  # a subroutine
+    asks: bool = False  # calls only as an input says
+    deletable: bool = True  # "/" may stand before it
+    under_nose: bool = False  # may stand under G41 and G42 where it moves
+    before_corner: bool = False  # may stand between a move with C or R and the next
+    in_contour: bool = False  # may stand in the contour of G75 and G78
+    not_in_mdi: str = ""  # why it means nothing on a line of its own
+    refusals: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        if ("F" in self.words) is not (self.f is not FWord.NONE):
+            raise ValueError(f"{self.name}: its words and what F means there contradict each other")
+        if self.acts is Acts.MODE and not self.group:
+            raise ValueError(f"{self.name}: a mode needs its group")
 
     @property
     def program(self) -> str:
@@ -111,158 +101,333 @@ class Entry(NamedTuple):
         return f"{HEAD}{self.example}\n{TAIL}{self.subroutine}"
 
 
+def names(text: str) -> frozenset[str]:
+    """Names with blanks between them, as a set."""
+    return frozenset(text.split())
+
+
+PLAIN_WORDS = names("X Z C CA CI R F S T D")
+"""Words of a line without a code of its own, and beside modes and M codes."""
+
+PLAIN = Code(
+    "", "", "", "", acts=Acts.PLAIN, handler="straight_moves.statement_move", words=PLAIN_WORDS, f=FWord.FEED
+)  # fmt: skip
+
 _CONTOUR = "X.2Z0\nX.3Z-.1\nZ-.3\nX.55Z-.5"
 _COMPENSATED = "G00X0Z.2\nG41\nG01Z0D1\nX.4\nZ-.5\nX.55\nG00Z.5\nG40"
 _COARSE = "S500\nG35\nG92X.6Z.1\nG33X.57Z-.5I.01K.4\nG36\nG92X.6Z.1"
 _SLOWLY = "M05\nG94F30"  # before the spindle is made an axis
 
-MOVES = (
-    Entry("G00", "G00 XnZn", "Rapid from here on, at the first line's F.", "G00X.7\nZ.5"),
-    Entry("G01", "G01 XnZn", "Back to the feed before the rapid.", "Z0\nG00Z.05\nG01Z-.2"),
-    Entry("G02", "G02XnZnRn or InKn", "Arc, clockwise seen from above.", "X.3Z0\nG02X.45Z-.15R.15"),
-    Entry("G03", "G03XnZnRn or InKn", "Arc, counter-clockwise.", "X.3Z-.2\nG03X.4Z-.3I.4K-.2"),
-    Entry("G04", "G04Fn", "Dwell n seconds, .1 at least.", "G04F.5"),
-    Entry("F", "Fn", "Feed: in/min under G94, in/rev under G95.", "Z0F.002"),
-    Entry("C", "XnZnCn", "Chamfer to the next straight line, set back n on both.", "X.3Z0\nX.5C.03\nZ-.3"),
-    Entry("R", "XnZnRn", "Radius n tangent to this and the next straight line.", "X.3Z0\nX.5R.05\nZ-.3"),
+_CORNER = names("corner-both corner-next corner-size corner-straight corner-too-large")
+_ARC = names(
+    "arc-both arc-centre-missing arc-coordinate-missing arc-mode arc-no-chord arc-no-radius "
+    "arc-r-sign arc-radius"
 )
+_NOSE = names(
+    "comp-approach comp-gouge comp-no-radius comp-on comp-open comp-radius comp-subroutine comp-with "
+    "not-alone"
+)
+_C_AXIS = names("c-too-little c-unlocked feed-over-speed finer-than-step number-missing word-twice")
+_START = names("collet-open speed-missing spindle-locked")
+_CYCLE = names("cycle-nose-comp feed-missing tool-first-move word-missing")
+_CONTOUR_CYCLE = names(
+    "contour-open corner-both corner-size cycle-contour-empty cycle-contour-line cycle-contour-long "
+    "cycle-ignored cycle-length cycle-modes cycle-no-way cycle-nothing cycle-quadrant "
+    "cycle-start-near cycle-undercut"
+)
+_THREAD = names(
+    "feed-over-speed spindle-stopped thread-depth thread-lead-missing thread-lead-range thread-length "
+    "thread-run-up thread-under-comp thread-under-css thread-word word-missing"
+)
+_PLANE = names(
+    "arc-radius c-unlocked feed-missing feed-range plane-feed-mode plane-nose-comp plane-open "
+    "plane-side plane-sign plane-word tool-first-move"
+)
+# fmt: off
+CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
+    ("Moves and corners", (
+        Code("G00", "G00 XnZn", "Rapid from here on, at the first line's F.", "G00X.7\nZ.5",
+            acts=Acts.MODE, handler="feeds.feed_words", group="rapid", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=names("rapid-and-feed title-rapid")),
+        Code("G01", "G01 XnZn", "Back to the feed before the rapid.", "Z0\nG00Z.05\nG01Z-.2",
+            acts=Acts.MODE, handler="feeds.feed_words", group="rapid", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=names("no-cut-feed")),
+        Code("G02", "G02XnZnRn or InKn", "Arc, clockwise seen from above.", "X.3Z0\nG02X.45Z-.15R.15",
+            acts=Acts.ARC, handler="arc_moves.arc_blocks", words=names("X Z I K R F S T D"), f=FWord.FEED,
+            least_blocks=1, under_nose=True, before_corner=True, in_contour=True, refusals=_ARC),
+        Code("G03", "G03XnZnRn or InKn", "Arc, counter-clockwise.", "X.3Z-.2\nG03X.4Z-.3I.4K-.2",
+            acts=Acts.ARC, handler="arc_moves.arc_blocks", words=names("X Z I K R F S T D"), f=FWord.FEED,
+            least_blocks=1, under_nose=True, before_corner=True, in_contour=True, refusals=_ARC),
+        Code("G04", "G04Fn", "Dwell n seconds, .1 at least.", "G04F.5",
+            acts=Acts.MOTION, handler="dwell.dwell", words=names("F S T D"), f=FWord.SECONDS,
+            bounds={"F": (0.1, 3600.0)}, least_blocks=1, under_nose=True, before_corner=True,
+            in_contour=True, refusals=names("dwell-range dwell-too-short word-missing")),
+        Code("F", "Fn", "Feed: in/min under G94, in/rev under G95.", "Z0F.002",
+            acts=Acts.WORD, handler="feeds.feed_words", words=names("F"), f=FWord.FEED,
+            refusals=names("feed-high feed-low feed-missing feed-range")),
+        Code(
+            "C", "XnZnCn", "Chamfer to the next straight line, set back n on both.", "X.3Z0\nX.5C.03\nZ-.3",
+            acts=Acts.WORD, handler="corners.read_corner", f=FWord.NONE, refusals=_CORNER),
+        Code(
+            "R", "XnZnRn", "Radius n tangent to this and the next straight line.", "X.3Z0\nX.5R.05\nZ-.3",
+            acts=Acts.WORD, handler="corners.read_corner", f=FWord.NONE,
+            refusals=_CORNER | names("corner-without-move")),
+    )),
+    ("Modes", (
+        Code("G70", "G70", "Inch.", "G70\nX.5",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="units", words=PLAIN_WORDS,
+            f=FWord.FEED, refusals=names("finer-than-step")),
+        Code("G71", "G71", "Metric; stays until G70 or a restart.", "G71\nX12.5Z2.5\nG70",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="units", words=PLAIN_WORDS,
+            f=FWord.FEED, refusals=names("finer-than-step")),
+        Code("G72", "G72", "X words are diameters.", "G72\nX1.\nG73",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="X words", words=PLAIN_WORDS,
+            f=FWord.FEED),
+        Code("G73", "G73", "X words are radii; so at the start.", "G73\nX.5",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="X words", words=PLAIN_WORDS,
+            f=FWord.FEED),
+        Code("G90", "G90", "Absolute; G90 or G91 must stand on the first line.", "G90\nX.5Z0",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="distance", words=PLAIN_WORDS,
+            f=FWord.FEED, refusals=names("first-line")),
+        Code("G91", "G91", "Incremental.", "G91\nX-.1\nG90",
+            acts=Acts.MODE, handler="straight_moves.geometry_modes", group="distance", words=PLAIN_WORDS,
+            f=FWord.FEED, refusals=names("first-line")),
+        Code("G92", "G92XnZn", "The current point gets these coordinates; nothing moves.", "G92X.6Z.2",
+            acts=Acts.FRAME, handler="tools_and_offsets.preset", words=names("X Z F S T D"), f=FWord.FEED,
+            least_blocks=1, before_corner=True, in_contour=True, refusals=names("word-missing")),
+        Code("G94", "G94Fn", "Feed in inches a minute.", "G94F5\nZ0",
+            acts=Acts.MODE, handler="feeds.feed_words", group="feed mode", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=names("feed-over-speed")),
+        Code("G95", "G95Fn", "Feed in inches a revolution; the spindle must turn.", "G95F.003\nZ0",
+            acts=Acts.MODE, handler="feeds.feed_words", group="feed mode", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=names("feed-over-speed spindle-stopped")),
+    )),
+    ("Tools, offsets, nose compensation", (
+        Code("T", "Tn", "Offset n, 1 to 32; the next move says X and Z. T0 takes tool and shift away.",
+            "T2\nX.6Z.1",
+            acts=Acts.WORD, handler="tools_and_offsets.tool_change", f=FWord.NONE,
+            refusals=names("coarse-tool tool-first-move tool-offset-missing tool-under-css")),
+        Code("D", "Dn", "Secondary offset n on this and later end points; D0 ends it.",
+            "X.5Z0\nZ-.4D2\nX.55D0",
+            acts=Acts.WORD, handler="tools_and_offsets.secondary", f=FWord.NONE, refusals=names("comp-d")),
+        Code("G10", "G10XnZn", "Adds to the work shift; acts at the next T.", "G10X0Z-.5\nT1\nX.6Z.1",
+            acts=Acts.FRAME, handler="tools_and_offsets.work_shift", words=names("X Z F S T D"),
+            f=FWord.FEED, least_blocks=1, under_nose=True, before_corner=True, in_contour=True,
+            refusals=names("shift-without-tool word-missing")),
+        Code("G40", "G40", "Nose compensation off; the move before it departs.", _COMPENSATED,
+            acts=Acts.MODE, handler="nose_compensation.switch", group="nose compensation", f=FWord.NONE,
+            not_in_mdi="ends nose compensation, which looks at the lines around it",
+            refusals=names("comp-empty not-alone")),
+        Code(
+            "G41", "G41", "Nose centre left of the path; the next line approaches, with D.", _COMPENSATED,
+            acts=Acts.MODE, handler="nose_compensation.switch", group="nose compensation", f=FWord.NONE,
+            not_in_mdi="begins nose compensation, which looks at the lines that follow", refusals=_NOSE),
+        Code("G42", "G42", "Nose centre right of the path.",
+            "G00X.6Z-.5\nG42\nG01X.5D3\nX.4\nZ0\nX0\nG00Z.3\nG40",
+            acts=Acts.MODE, handler="nose_compensation.switch", group="nose compensation", f=FWord.NONE,
+            not_in_mdi="begins nose compensation, which looks at the lines that follow", refusals=_NOSE),
+    )),
+    ("Spindle and C axis", (
+        Code("S", "Sn", "Speed: rpm under G97, ft/min under G96.", "S1500",
+            acts=Acts.WORD, handler="spindle_speed.speed_word", words=names("S"), f=FWord.NONE,
+            s=SWord.SPEED, refusals=names("speed-missing speed-range speed-sign")),
+        Code("M03", "M03Sn", "Spindle forward.", "M03S1200",
+            acts=Acts.SPINDLE, handler="spindle_speed.run_block", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=_START),
+        Code("M04", "M04Sn", "Spindle backward.", "M04S800\nG04F2",
+            acts=Acts.SPINDLE, handler="spindle_speed.run_block", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=_START),
+        Code("M05", "M05", "Spindle off; S is kept.", "M05",
+            acts=Acts.STOP, handler="spindle_speed.stop_block", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("G96", "G96Sn", "Constant surface speed, ft/min: rpm follows the radius.",
+            "G96S200\nX.3\nG97S1000",
+            acts=Acts.MODE, handler="spindle_speed.spindle_modes", group="spindle mode", words=PLAIN_WORDS,
+            f=FWord.FEED, refusals=names("speed-range surface-speed-missing")),
+        Code("G97", "G97Sn", "S is rpm again.", "G97S900",
+            acts=Acts.MODE, handler="spindle_speed.spindle_modes", group="spindle mode", words=PLAIN_WORDS,
+            f=FWord.FEED),
+        Code("G76", "G76Sn", "Least rpm under G96.", "G96S200\nG76S300\nX.3\nG97S1000",
+            acts=Acts.MODE, handler="spindle_speed.spindle_modes", group="speed limits", words=PLAIN_WORDS,
+            f=FWord.FEED, s=SWord.LIMIT, refusals=names("speed-limits word-missing")),
+        Code("G77", "G77Sn", "Greatest rpm under G96.", "G96S200\nG77S2000\nX.1\nG97S1000",
+            acts=Acts.MODE, handler="spindle_speed.spindle_modes", group="speed limits", words=PLAIN_WORDS,
+            f=FWord.FEED, s=SWord.LIMIT, refusals=names("speed-limits word-missing")),
+        Code("G89", "G89", "Stop the spindle and lock it where it is, as M89.",
+            f"{_SLOWLY}\nG89\nCI90S60\nG04F2\nM05",
+            acts=Acts.LOCK, handler="c_axis.lock", words=names("S"), f=FWord.NONE, s=SWord.C_SPEED,
+            before_corner=True, refusals=names("c-disabled not-alone speed-range")),
+        Code("M19", "M19Sn", "Spindle to angle 0, locked, until M05.", f"{_SLOWLY}\nM19S60\nG04F3\nM05",
+            acts=Acts.LOCK, handler="c_axis.lock", words=PLAIN_WORDS, f=FWord.FEED, s=SWord.C_SPEED,
+            refusals=names("c-disabled speed-range")),
+        Code("M89", "M89", "Stop the spindle and lock it where it is.",
+            f"{_SLOWLY}\nM89\nCI45S60\nG04F2\nM05",
+            acts=Acts.LOCK, handler="c_axis.lock", words=PLAIN_WORDS, f=FWord.FEED, s=SWord.C_SPEED,
+            refusals=names("c-disabled speed-range")),
+        Code("CA", "CAn", "Spindle to angle n.", f"{_SLOWLY}\nM19S60\nG04F3\nCA90S60\nG04F2\nM05",
+            acts=Acts.WORD, handler="c_axis.c_move", f=FWord.NONE, under_nose=False, refusals=_C_AXIS),
+        Code("CI", "CIn", "Spindle on by n degrees; the sign is the direction.",
+            f"{_SLOWLY}\nM89\nCI-30S60\nG04F2\nM05",
+            acts=Acts.WORD, handler="c_axis.c_move", f=FWord.NONE, under_nose=False, refusals=_C_AXIS),
+    )),
+    ("Cycles", (
+        Code("G81", "G81ZnFn", "Drill to Z, rapid back.", "X0Z.1\nG81Z-.3F.004",
+            acts=Acts.CYCLE, handler="drilling_cycles.drill_moves", words=names("X Z F S"), f=FWord.FEED,
+            least_blocks=2, refusals=_CYCLE | names("cycle-depth")),
+        Code("G83", "G83ZnKnFnRnLnCn", "Drill in pecks of K, clearing to R.", "X0Z.1\nG83Z-.65K.2F.004",
+            acts=Acts.CYCLE, handler="drilling_cycles.peck_moves", words=names("X Z C K R L F S"),
+            f=FWord.FEED, least_blocks=2,
+            refusals=_CYCLE | names("cycle-depth cycle-length cycle-passes cycle-rate cycle-retract")),
+        Code("G74", "G74XnZnInUnFn", "Rough a box in passes of I at most, leaving U in X.",
+            "G74X.3Z-.5I.05U.01F.006",
+            acts=Acts.CYCLE, handler="roughing_cycles.box_moves", words=names("X Z I U F S"), f=FWord.FEED,
+            least_blocks=4, refusals=_CYCLE | names("cycle-length cycle-nothing cycle-passes")),
+        Code("G75", "G75InUnFnPn", "Rough to the contour that follows, up to RF.",
+            f"G75I.05U.01F.006\n{_CONTOUR}\nRF",
+            acts=Acts.CONTOUR, handler="roughing_cycles.contour_moves", words=names("I U P F S"),
+            f=FWord.FEED, least_blocks=4, not_in_mdi="cuts a contour, and its lines would have to follow",
+            refusals=_CYCLE | _CONTOUR_CYCLE | names("cycle-passes cycle-plunge")),
+        Code("G78", "G78UnFnPn", "One pass along the contour, U away.", f"G78U.01F.004\n{_CONTOUR}\nRF",
+            acts=Acts.CONTOUR, handler="roughing_cycles.contour_moves", words=names("U P F S"),
+            f=FWord.FEED, least_blocks=3, not_in_mdi="cuts a contour, and its lines would have to follow",
+            refusals=_CYCLE | _CONTOUR_CYCLE),
+        Code("RF", "RF", "Ends the contour of G75 and G78.", f"G78U.02F.004\n{_CONTOUR}\nRF",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.contour", words=names("RF"), f=FWord.NONE,
+            deletable=False, not_in_mdi="ends a contour, and there is none", refusals=names("rf-alone")),
+    )),
+    ("Threads", (
+        Code(
+            "G33", "G33XnZnInKnAnCnPO", "Thread in passes to X, lead K.", "X.24Z.2\nG33X.21Z-.5I.01K.05C",
+            acts=Acts.MOTION, handler="threading_cycles.thread_blocks",
+            words=names("X Z C I K A P O F S T D"), f=FWord.FEED, bounds={"C": (0.0, 30.0)}, least_blocks=4,
+            refusals=_THREAD | names("thread-angle thread-passes thread-side")),
+        Code("G34", "G34ZnInKnAnPn", "One thread pass at this X.", "X.24Z.2\nG34Z-.5I.01K.05",
+            acts=Acts.MOTION, handler="threading_cycles.thread_blocks", words=names("Z I K A P F S T D"),
+            f=FWord.FEED, least_blocks=4, refusals=_THREAD),
+        Code("G35", "G35, G35F2", "Leads to 1 in, or 2; alone, then G92 of this point.", _COARSE,
+            acts=Acts.MODE, handler="coarse_feeds.coarse_line", group="coarse feed", words=names("F"),
+            f=FWord.LEADS, bounds={"F": (2, 2)}, not_in_mdi="needs a G92 on the next line",
+            refusals=names("coarse-order coarse-preset coarse-range not-alone")),
+        Code("G36", "G36", "Ends G35, where it was begun; alone, then G92.", _COARSE,
+            acts=Acts.MODE, handler="coarse_feeds.coarse_line", group="coarse feed", f=FWord.NONE,
+            not_in_mdi="needs a G92 on the next line",
+            refusals=names("coarse-order coarse-place coarse-preset not-alone")),
+    )),
+    ("Flow", (
+        Code("LS", "LSn", "The lines up to LF n times.", "LS3\nG91\nZ-.1\nG90\nLF",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.steer", words=names("LS"), f=FWord.NONE,
+            deletable=False, not_in_mdi="begins a loop, and its lines and LF would have to follow",
+            refusals=names("loop-open word-missing")),
+        Code("LF", "LF", "Ends a loop.", "LS2\nX.55\nX.6\nLF",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.steer", words=names("LF"), f=FWord.NONE,
+            deletable=False, not_in_mdi="ends a loop, and there is none", refusals=names("loop-unopened")),
+        Code("P", "Pn", "Runs subroutine n.", "P4", "}4\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.call", words=names("P"), f=FWord.NONE,
+            calls=True, not_in_mdi="calls a subroutine, and those stand in programs",
+            refusals=names("recursion subroutine-missing")),
+        Code("}", "}n", "Begins subroutine n, after the end of the program.", "M98P5", "}5\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.steer", words=names("}"), f=FWord.NONE,
+            deletable=False, not_in_mdi="begins a subroutine, and those stand in programs",
+            refusals=names("subroutine-open subroutine-twice word-missing")),
+        Code("M98", "M98Pn", "Runs subroutine n.", "M98P2", "}2\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.call", words=names("P M"), f=FWord.NONE,
+            calls=True, not_in_mdi="calls a subroutine, and those stand in programs",
+            refusals=names("recursion subroutine-missing")),
+        Code("M99", "M99", "Ends a subroutine.", "M98P3", "}3\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.steer", words=names("M"), f=FWord.NONE,
+            deletable=False, not_in_mdi="ends a subroutine, and there is none",
+            refusals=names("m99-outside")),
+        Code("M95", "M95", "Subroutine 1 if TB2-9 is closed.", "M95", "}1\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.call", words=names("M"), f=FWord.NONE,
+            terminal=("TB2-9", True), calls=True, asks=True,
+            not_in_mdi="calls a subroutine, and those stand in programs",
+            refusals=names("recursion subroutine-missing")),
+        Code("M97", "M97InCnPn", "Subroutine P if input I is on (C1) or off (C0).", "M97I10C1P6",
+            "}6\nX.55\nM99\n",
+            acts=Acts.FLOW, handler="loops_and_subroutines.Flow.call", words=names("C I P M"), f=FWord.NONE,
+            bounds={"C": (0, 1)}, calls=True, asks=True,
+            not_in_mdi="calls a subroutine, and those stand in programs",
+            refusals=names("condition input-number recursion subroutine-missing")),
+        Code("M91", "M91", "Waits until TB2-5 is open.", "M91",
+            acts=Acts.START, handler="m_codes.wait_for_input", words=PLAIN_WORDS, f=FWord.FEED,
+            terminal=("TB2-5", False)),
+        Code("M92", "M92", "Waits until TB2-5 is closed.", "M92",
+            acts=Acts.START, handler="m_codes.wait_for_input", words=PLAIN_WORDS, f=FWord.FEED,
+            terminal=("TB2-5", True)),
+        Code("M93", "M93", "Waits until TB2-7 is open.", "M93",
+            acts=Acts.START, handler="m_codes.wait_for_input", words=PLAIN_WORDS, f=FWord.FEED,
+            terminal=("TB2-7", False)),
+        Code("M94", "M94", "Waits until TB2-7 is closed.", "M94",
+            acts=Acts.START, handler="m_codes.wait_for_input", words=PLAIN_WORDS, f=FWord.FEED,
+            terminal=("TB2-7", True)),
+        Code(
+            "M00", "M00", "Stops; the comment says what the operator must do.", "M00(TURN THE PART ROUND)",
+            acts=Acts.STOP, handler="m_codes.program_stop", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("M01", "M01", "Stops when Optional Stop is on.", "M01(LOOK AT THE TOOL)",
+            acts=Acts.STOP, handler="m_codes.program_stop", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("M02", "M02", "Ends; M functions stay as they are.", "/M02",
+            acts=Acts.STOP, handler="m_codes.program_end", words=PLAIN_WORDS, f=FWord.FEED,
+            ends_program=True, refusals=names("after-end no-end")),
+        Code("M30", "M30", "Ends; M functions off. Repeats under Cycle Repeat.", "/M30",
+            acts=Acts.STOP, handler="m_codes.program_end", words=PLAIN_WORDS, f=FWord.FEED,
+            ends_program=True, refusals=names("after-end no-end")),
+        Code("M31", "M31", "Cancels Cycle Repeat.", "M31",
+            acts=Acts.STOP, handler="m_codes.repeat_off", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("/", "/", "First on a line: skipped while Block Delete is on.", "/X.55",
+            acts=Acts.WORD, handler="omniturn_statement.statement", f=FWord.NONE),
+        Code("()", "(text)", "Comment, shown to the operator from its line on.", "X.55(WATCH THE CHUCK)",
+            acts=Acts.WORD, handler="omniturn_statement.statement", f=FWord.NONE),
+    )),
+    ("The machine", (
+        Code("M08", "M08", "Coolant on.", "M08",
+            acts=Acts.START, handler="m_codes.coolant", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("M09", "M09", "Coolant off.", "M09",
+            acts=Acts.STOP, handler="m_codes.coolant", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("M12", "M12", "Clamps the collet.", "M12",
+            acts=Acts.START, handler="m_codes.collet", words=PLAIN_WORDS, f=FWord.FEED),
+        Code("M13", "M13", "Unclamps the collet.", "M13\nG04F.5\nM12",
+            acts=Acts.START, handler="m_codes.collet", words=PLAIN_WORDS, f=FWord.FEED,
+            refusals=names("unclamp-turning")),
+    )),
+    ("Plane switching", (
+        Code("~PLXC", "(~PLXC) … (END)", "A mill on the face: X and Y across it, by X and C.",
+            "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLXC)\n(X.25Y0)\n(X.25Y.2)\n(END)\nM28\nM05",
+            acts=Acts.FLOW, handler="plane_switching.plane_line", f=FWord.NONE,
+            not_in_mdi="belongs to plane switching, whose lines would have to follow",
+            refusals=_PLANE | names("plane-centre plane-h-late plane-reach")),
+        Code("~PLZC", "(~PLZC) … (END)", "A mill on the side: X along, Y around it, by Z and C.",
+            "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLZC)\n(D1.)\n(X.25Y.2)\n(X.5Y0)\n(END)\nM28\nM05",
+            acts=Acts.FLOW, handler="plane_switching.plane_line", f=FWord.NONE,
+            not_in_mdi="belongs to plane switching, whose lines would have to follow",
+            refusals=_PLANE | names("plane-d-late plane-diameter")),
+    )),)
+"""All codes in the order of the page: the title of each chapter, and its codes."""
+# fmt: on
 
-MODES = (
-    Entry("G70", "G70", "Inch.", "G70\nX.5"),
-    Entry("G71", "G71", "Metric; stays until G70 or a restart.", "G71\nX12.5Z2.5\nG70"),
-    Entry("G72", "G72", "X words are diameters.", "G72\nX1.\nG73"),
-    Entry("G73", "G73", "X words are radii; so at the start.", "G73\nX.5"),
-    Entry("G90", "G90", "Absolute; G90 or G91 must stand on the first line.", "G90\nX.5Z0"),
-    Entry("G91", "G91", "Incremental.", "G91\nX-.1\nG90"),
-    Entry("G92", "G92XnZn", "The current point gets these coordinates; nothing moves.", "G92X.6Z.2"),
-    Entry("G94", "G94Fn", "Feed in inches a minute.", "G94F5\nZ0"),
-    Entry("G95", "G95Fn", "Feed in inches a revolution; the spindle must turn.", "G95F.003\nZ0"),
-)
+G_CODES = {int(code.name[1:]): code for _, codes in CHAPTERS for code in codes if code.name[0] == "G"}
+"""By number. Modes and one-shot codes: the latter act on their own line alone, and a line may hold one."""
 
-TOOLS = (
-    Entry(
-        "T",
-        "Tn",
-        "Offset n, 1 to 32; the next move says X and Z. T0 takes tool and shift away.",
-        "T2\nX.6Z.1",
-    ),
-    Entry("D", "Dn", "Secondary offset n on this and later end points; D0 ends it.", "X.5Z0\nZ-.4D2\nX.55D0"),
-    Entry("G10", "G10XnZn", "Adds to the work shift; acts at the next T.", "G10X0Z-.5\nT1\nX.6Z.1"),
-    Entry("G40", "G40", "Nose compensation off; the move before it departs.", _COMPENSATED),
-    Entry("G41", "G41", "Nose centre left of the path; the next line approaches, with D.", _COMPENSATED),
-    Entry(
-        "G42", "G42", "Nose centre right of the path.", "G00X.6Z-.5\nG42\nG01X.5D3\nX.4\nZ0\nX0\nG00Z.3\nG40"
-    ),
-)
+M_CODES = {
+    int(code.name[1:]): code
+    for _, codes in CHAPTERS
+    for code in codes
+    if code.name[0] == "M" and code.acts is not Acts.FLOW
+}
+"""M codes of the control itself, by number; all others are the machine file's."""
 
-SPINDLE = (
-    Entry("S", "Sn", "Speed: rpm under G97, ft/min under G96.", "S1500"),
-    Entry("M03", "M03Sn", "Spindle forward.", "M03S1200"),
-    Entry("M04", "M04Sn", "Spindle backward.", "M04S800\nG04F2"),
-    Entry("M05", "M05", "Spindle off; S is kept.", "M05"),
-    Entry(
-        "G96", "G96Sn", "Constant surface speed, ft/min: rpm follows the radius.", "G96S200\nX.3\nG97S1000"
-    ),
-    Entry("G97", "G97Sn", "S is rpm again.", "G97S900"),
-    Entry("G76", "G76Sn", "Least rpm under G96.", "G96S200\nG76S300\nX.3\nG97S1000"),
-    Entry("G77", "G77Sn", "Greatest rpm under G96.", "G96S200\nG77S2000\nX.1\nG97S1000"),
-    Entry(
-        "G89",
-        "G89",
-        "Stop the spindle and lock it where it is, as M89.",
-        f"{_SLOWLY}\nG89\nCI90S60\nG04F2\nM05",
-    ),
-    Entry("M19", "M19Sn", "Spindle to angle 0, locked, until M05.", f"{_SLOWLY}\nM19S60\nG04F3\nM05"),
-    Entry("M89", "M89", "Stop the spindle and lock it where it is.", f"{_SLOWLY}\nM89\nCI45S60\nG04F2\nM05"),
-    Entry("CA", "CAn", "Spindle to angle n.", f"{_SLOWLY}\nM19S60\nG04F3\nCA90S60\nG04F2\nM05"),
-    Entry(
-        "CI",
-        "CIn",
-        "Spindle on by n degrees; the sign is the direction.",
-        f"{_SLOWLY}\nM89\nCI-30S60\nG04F2\nM05",
-    ),
-)
+FLOW_CODES = {code.name: code for _, codes in CHAPTERS for code in codes if code.acts is Acts.FLOW}
+"""What steers the order of execution; ``words`` is exactly what stands on such a line."""
 
-CYCLE_ENTRIES = (
-    Entry("G81", "G81ZnFn", "Drill to Z, rapid back.", "X0Z.1\nG81Z-.3F.004"),
-    Entry("G83", "G83ZnKnFnRnLnCn", "Drill in pecks of K, clearing to R.", "X0Z.1\nG83Z-.65K.2F.004"),
-    Entry(
-        "G74",
-        "G74XnZnInUnFn",
-        "Rough a box in passes of I at most, leaving U in X.",
-        "G74X.3Z-.5I.05U.01F.006",
-    ),
-    Entry(
-        "G75",
-        "G75InUnFnPn",
-        "Rough to the contour that follows, up to RF.",
-        f"G75I.05U.01F.006\n{_CONTOUR}\nRF",
-    ),
-    Entry("G78", "G78UnFnPn", "One pass along the contour, U away.", f"G78U.01F.004\n{_CONTOUR}\nRF"),
-    Entry("RF", "RF", "Ends the contour of G75 and G78.", f"G78U.02F.004\n{_CONTOUR}\nRF"),
-)
 
-THREAD_ENTRIES = (
-    Entry("G33", "G33XnZnInKnAnCnPO", "Thread in passes to X, lead K.", "X.24Z.2\nG33X.21Z-.5I.01K.05C"),
-    Entry("G34", "G34ZnInKnAnPn", "One thread pass at this X.", "X.24Z.2\nG34Z-.5I.01K.05"),
-    Entry("G35", "G35, G35F2", "Leads to 1 in, or 2; alone, then G92 of this point.", _COARSE),
-    Entry("G36", "G36", "Ends G35, where it was begun; alone, then G92.", _COARSE),
-)
+def carry_out(code: Code) -> Callable[..., Any]:
+    """The function that carries a code out; its file is loaded when the first program needs it."""
+    return _function(code.handler)
 
-FLOW = (
-    Entry("LS", "LSn", "The lines up to LF n times.", "LS3\nG91\nZ-.1\nG90\nLF"),
-    Entry("LF", "LF", "Ends a loop.", "LS2\nX.55\nX.6\nLF"),
-    Entry("P", "Pn", "Runs subroutine n.", "P4", "}4\nX.55\nM99\n"),
-    Entry("}", "}n", "Begins subroutine n, after the end of the program.", "M98P5", "}5\nX.55\nM99\n"),
-    Entry("M98", "M98Pn", "Runs subroutine n.", "M98P2", "}2\nX.55\nM99\n"),
-    Entry("M99", "M99", "Ends a subroutine.", "M98P3", "}3\nX.55\nM99\n"),
-    Entry("M95", "M95", "Subroutine 1 if TB2-9 is closed.", "M95", "}1\nX.55\nM99\n"),
-    Entry(
-        "M97", "M97InCnPn", "Subroutine P if input I is on (C1) or off (C0).", "M97I10C1P6", "}6\nX.55\nM99\n"
-    ),
-    Entry("M91", "M91", "Waits until TB2-5 is open.", "M91"),
-    Entry("M92", "M92", "Waits until TB2-5 is closed.", "M92"),
-    Entry("M93", "M93", "Waits until TB2-7 is open.", "M93"),
-    Entry("M94", "M94", "Waits until TB2-7 is closed.", "M94"),
-    Entry("M00", "M00", "Stops; the comment says what the operator must do.", "M00(TURN THE PART ROUND)"),
-    Entry("M01", "M01", "Stops when Optional Stop is on.", "M01(LOOK AT THE TOOL)"),
-    Entry("M02", "M02", "Ends; M functions stay as they are.", "/M02"),
-    Entry("M30", "M30", "Ends; M functions off. Repeats under Cycle Repeat.", "/M30"),
-    Entry("M31", "M31", "Cancels Cycle Repeat.", "M31"),
-    Entry("/", "/", "First on a line: skipped while Block Delete is on.", "/X.55"),
-    Entry("()", "(text)", "Comment, shown to the operator from its line on.", "X.55(WATCH THE CHUCK)"),
-)
 
-MACHINE = (
-    Entry("M08", "M08", "Coolant on.", "M08"),
-    Entry("M09", "M09", "Coolant off.", "M09"),
-    Entry("M12", "M12", "Clamps the collet.", "M12"),
-    Entry("M13", "M13", "Unclamps the collet.", "M13\nG04F.5\nM12"),
-)
-
-PLANES = (
-    Entry(
-        "~PLXC",
-        "(~PLXC) … (END)",
-        "A mill on the face: X and Y across it, by X and C.",
-        "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLXC)\n(X.25Y0)\n(X.25Y.2)\n(END)\nM28\nM05",
-    ),
-    Entry(
-        "~PLZC",
-        "(~PLZC) … (END)",
-        "A mill on the side: X along, Y around it, by Z and C.",
-        "T2\nX-.5Z.1\nM05\nG94F20\nM19S60\nG04F3\nM27\n(~PLZC)\n(D1.)\n(X.25Y.2)\n(X.5Y0)\n(END)\nM28\nM05",
-    ),
-)
-
-CHAPTERS = (
-    ("Moves and corners", MOVES),
-    ("Modes", MODES),
-    ("Tools, offsets, nose compensation", TOOLS),
-    ("Spindle and C axis", SPINDLE),
-    ("Cycles", CYCLE_ENTRIES),
-    ("Threads", THREAD_ENTRIES),
-    ("Flow", FLOW),
-    ("The machine", MACHINE),
-    ("Plane switching", PLANES),
-)
+@cache
+def _function(handler: str) -> Callable[..., Any]:
+    file, *path = handler.split(".")
+    found: Any = import_module(f"{__package__}.{file}")
+    for name in path:
+        found = getattr(found, name)
+    function: Callable[..., Any] = found
+    return function

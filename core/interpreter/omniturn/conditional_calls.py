@@ -9,7 +9,6 @@ from typing import Protocol
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import Program
@@ -104,7 +103,7 @@ class Branching(Interpreter):
                 self.merged = True
                 self._flow.stop()
                 return
-            elif made.flow in code_table.ASKS and not self._left_out(made):
+            elif made.asks and not self._left_out(made):
                 self._choose(made)
             self._flow.at = made.line
         yield from super()._statement(made)

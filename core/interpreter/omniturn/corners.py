@@ -19,7 +19,6 @@ from core.interpreter.actions import AskInput, Preset, ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log, refusal
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Corner, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
@@ -27,7 +26,6 @@ from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word
 
 STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})
-_OTHER_MOTION = code_table.CYCLES | code_table.THREADS
 _PARTS = ProgramEnd | ToolChange | Preset | AskInput
 """Actions across which no corner reaches: the program ends, its numbers mean another
 point, or all motion before it must have ended."""
@@ -114,7 +112,7 @@ class Corners:
     def check(self, made: Statement) -> None:
         """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
         held = self._held
-        if held is not None and made.one_shot in _OTHER_MOTION:
+        if held is not None and made.one_shot is not None and not made.entry.before_corner:
             what = made.code.text if made.code is not None else "another motion"
             raise _refused(held, "corner-next", f"{what} on line {made.line} is no straight move")
 

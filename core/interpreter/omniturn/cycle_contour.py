@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import copy
+from collections import deque
 from collections.abc import Sequence
 
 from core.geometry.lines_and_arcs import Element, Line, Point, arc_between
 from core.interpreter.diagnostic_log import refusal
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.arc_moves import arc_move
+from core.interpreter.omniturn.code_table import Acts
 from core.interpreter.omniturn.corners import ContourPiece, cut_corners
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
-from core.interpreter.omniturn.tools_and_offsets import frame
+from core.interpreter.omniturn.tools_and_offsets import preset
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
 
@@ -63,7 +64,7 @@ class _Reader:
         if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
             what = f"{line.text} cannot stand in a contour"
             raise _refused(line, 1, what, "A contour holds moves, arcs and corners written out.")
-        if line.one_shot not in {None, 4, 10, 92, *code_table.ARCS}:
+        if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1
             raise _refused(line, column, f"G{line.one_shot} cannot stand in a contour", "Take it out.")
         if not _NOSE.isdisjoint(line.modal):
@@ -72,7 +73,7 @@ class _Reader:
         self._tell_ignored(line)
         geometry_modes(self._own, line)
         if line.one_shot == 92:
-            frame(self._own, line)
+            deque(preset(self._own, line), maxlen=0)
         elif line.moves:
             self._move(line)
 
@@ -96,11 +97,11 @@ class _Reader:
             self._state.log.add(found)
 
     def _move(self, line: Statement) -> None:
-        corner = None if line.one_shot in code_table.ARCS else line.words.get("C") or line.words.get("R")
+        corner = None if line.entry.acts is Acts.ARC else line.words.get("C") or line.words.get("R")
         if not self._begun:
             self._begin(line, corner)
             return
-        element = self._arc(line) if line.one_shot in code_table.ARCS else self._line(line)
+        element = self._arc(line) if line.entry.acts is Acts.ARC else self._line(line)
         size = 0.0 if corner is None else self._size(line, corner)
         if corner is not None or element.length > _SAME:
             metric = self._own.modal.metric
@@ -119,7 +120,7 @@ class _Reader:
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
         """The first line is the way from the start point to the first point of the contour."""
-        if line.one_shot in code_table.ARCS or corner is not None:
+        if line.entry.acts is Acts.ARC or corner is not None:
             column = corner.column if corner else 1
             what = "The first line of a contour is its first point, which takes no arc and no corner"
             raise _refused(line, column, what, "Write X and Z of the point alone.")

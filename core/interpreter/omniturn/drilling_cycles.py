@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 from core.interpreter import units
-from core.interpreter.omniturn.cycle_motions import LIFT, Move, check_count, name, positive, refused
+from core.interpreter.omniturn.canned_cycles import LIFT, Move, check_count, name, positive, refused
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step

@@ -1,17 +1,39 @@
-"""Where the drive of C does not tell that it has arrived: is there a dwell that gives it the time?"""
+"""G04, and whether a dwell gives C the time to arrive where its drive does not tell of its arrival."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import ceil, sqrt
 
+from core.interpreter.actions import Dwell
+from core.interpreter.diagnostic_log import refusal
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.interpreter.omniturn.spindle_speed import rpm_at
+from core.language.diagnostics import ProgramError
 
-_SHORTEST_DWELL = 0.1  # s
+_SHORTEST, _LONGEST = G_CODES[4].bounds["F"]  # s
 _DONE = 1e-9  # s, degrees
 
 
-def mind_arrival(state: State, line: int, column: int, turn: float) -> None:
-    """Keep in mind how long C takes, where its drive does not tell of its arrival."""
+def dwell(state: State, made: Statement) -> Iterator[Block]:
+    """The block of G04. Raises ProgramError where F is missing or out of range."""
+    seconds = made.value("F")
+    if seconds is None:
+        column = made.code.column if made.code else 0
+        text = "G04 does not say how long."
+        raise ProgramError(refusal(made.line, column, "word-missing", text, "Write G04Fn, n in seconds."))
+    if not _SHORTEST <= seconds <= _LONGEST:
+        text = f"A dwell of {seconds:g} s is out of range: 0.1 s to an hour."
+        raise ProgramError(refusal(made.line, made.column("F"), "dwell-range", text, "Correct F."))
+    _shorten_arrival(state, seconds)
+    yield state.action(made.line, made.part("move"), Dwell(seconds), rpm_at(state, state.x))
+
+
+def expect_arrival(state: State, line: int, column: int, turn: float) -> None:
+    """Note in the state how long a turn of C by ``turn`` degrees takes, where its drive does not tell."""
     limits = state.setup.limits
     if limits.c_feedback or turn <= _DONE:
         return
@@ -22,17 +44,17 @@ def mind_arrival(state: State, line: int, column: int, turn: float) -> None:
 
 
 def warn_of_short_dwell(state: State) -> None:
-    """Something moves or ends: what is left of the time that C needed is told."""
+    """Something moves or ends: warn where C would still be on its way."""
     if state.turning is None:
         return
     (line, column, left), state.turning = state.turning, None
     if left > _DONE:
-        needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST_DWELL)
+        needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
         text = f"The drive of C does not tell of its arrival, which takes {needed:.2f} s from here."
         state.log.warn(line, column, "dwell-too-short", text, f"Write G04F{needed:.2f} after it, or longer.")
 
 
-def note_dwell(state: State, seconds: float) -> None:
+def _shorten_arrival(state: State, seconds: float) -> None:
     """A dwell gives C time to arrive."""
     if state.turning is not None:
         line, column, left = state.turning

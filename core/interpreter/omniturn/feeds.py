@@ -22,7 +22,7 @@ _ROUNDING = 1 + 1e-9
 def feed_words(state: State, made: Statement, *, first: bool) -> None:
     """G94, G95, G00, G01 and F of a line. ``first``: it is the program's first line."""
     modes = {0, 1, 94, 95}.intersection(made.modal)
-    word = None if made.one_shot == 4 else made.words.get("F")
+    word = made.words.get("F") if made.f_is_feed else None
     if not modes and word is None:
         return
     if 0 in modes and not first and (word is not None or modes - {0}):
@@ -98,7 +98,7 @@ def _feed(state: State, made: Statement, value: float, column: int, *, first: bo
 def warn_of_crash_feed(state: State, made: Statement, ahead: Sequence[ReadyLine]) -> None:
     """F003 for F.003: warn of a G95 feed over .05 in/rev, unless the spindle turns back soon (tapping)."""
     modal, word = state.modal, made.words.get("F")
-    if word is None or made.one_shot == 4 or not modal.per_rev or modal.coarse or modal.feed is None:
+    if word is None or not made.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
         return
     if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from core.interpreter.omniturn.code_table import CHAPTERS, HEAD, TAIL, Entry
+from core.interpreter.omniturn.code_table import CHAPTERS, HEAD, TAIL, Code
 
 _TOP = """\
 # The language, code by code
@@ -27,11 +27,11 @@ code and what to do.
 
 def page() -> str:
     """The whole page."""
-    chapters = "".join(f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in CHAPTERS)
+    chapters = "".join(f"\n## {title}\n\n" + "".join(map(_entry, codes)) for title, codes in CHAPTERS)
     return _TOP.format(head=HEAD, tail=TAIL) + chapters
 
 
-def _entry(entry: Entry) -> str:
+def _entry(entry: Code) -> str:
     lines = [
         *entry.example.splitlines(),
         *(["…", *entry.subroutine.splitlines()] if entry.subroutine else []),

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from core.interpreter.checkpoint import FlowLevel, FlowPlace
 from core.interpreter.diagnostic_log import DEEPEST_CALL, refusal
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
@@ -73,10 +72,10 @@ class _Finder:
             return True
         if made.flow == UNREADABLE and _CONTOUR_CYCLE.search(made.text):
             self._contour_lost = True  # told already; its RF is no second mistake
-        if made.flow in {"}", "M99"} or made.m in code_table.ENDS:
+        if made.flow in {"}", "M99"} or made.ends_program:
             self._open_contour()
         inside = self._contour is not None
-        if not inside and made.one_shot in code_table.CONTOUR_CYCLES and "P" not in made.words:
+        if not inside and made.contour_cycle and "P" not in made.words:
             self._contour = made
         return inside
 
@@ -141,7 +140,7 @@ class _Finder:
         self._loops.clear()
 
     def _unreachable(self, made: Statement) -> None:
-        late_end = made.m in code_table.ENDS and any(each.code == "no-end" for each in self.problems)
+        late_end = made.ends_program and any(each.code == "no-end" for each in self.problems)
         if not self._stray and not late_end:
             self._stray = True
             text = "This line stands after the end of the program and is in no subroutine."
@@ -173,7 +172,7 @@ class _Finder:
 
 def _ends(made: Statement) -> bool:
     """Whether the line ends the job, or was meant to."""
-    return made.m in code_table.ENDS or _unread(made, "M30") or _unread(made, "M02")
+    return made.ends_program or _unread(made, "M30") or _unread(made, "M02")
 
 
 def _unread(made: Statement, word: str) -> bool:
@@ -190,7 +189,7 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     calls: list[Statement] = []
     for made in statements:
         finder.take(made)
-        if made.flow in code_table.CALLS or (made.one_shot in code_table.CONTOUR_CYCLES and made.value("P")):
+        if made.calls or (made.contour_cycle and made.value("P")):
             calls.append(made)
     finder.finish(length)
     for made in calls:

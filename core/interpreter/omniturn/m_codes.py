@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from core.interpreter.actions import (
     Action,
     Collet,
@@ -14,57 +16,73 @@ from core.interpreter.actions import (
 )
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.carry_over import after_end
+from core.interpreter.omniturn.code_table import Acts, carry_out
 from core.interpreter.omniturn.dwell import warn_of_short_dwell
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.spindle_speed import rpm_at, stop_block
+from core.interpreter.omniturn.spindle_speed import rpm_at
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.omniturn import other_controls
 
-_WAITS = {91: ("TB2-5", False), 92: ("TB2-5", True), 93: ("TB2-7", False), 94: ("TB2-7", True)}
 
-
-def before_motion(state: State, made: Statement) -> Block | None:
+def before_motion(state: State, made: Statement) -> Iterator[Block]:
     """The block of an M code that acts before the motion; M03 and M04 are the spindle's."""
-    m = made.m
-    if m is None or m in {3, 4} or m in code_table.M_AFTER:
-        return None
-    if m in {8, 12, 13}:
-        return _done(state, made, _switch(state, made, m))
-    if m in _WAITS:
-        return _done(state, made, WaitInput(*_WAITS[m]))
-    output = state.setup.limits.m_outputs.get(m)
-    if output is None:
-        raise ProgramError(_unknown(state, made))
-    return _output(state, made, *output) if output[1] else None
+    code = made.m_code
+    if code is None:
+        yield from _machine_output(state, made, on=True)
+    elif code.acts is Acts.START:
+        yield from carry_out(code)(state, made)
 
 
-def after_motion(state: State, made: Statement) -> Block | None:
+def after_motion(state: State, made: Statement) -> Iterator[Block]:
     """The block of an M code that acts after the motion."""
-    m = made.m
-    if m is None:
-        return None
-    if m == 5:
-        return stop_block(state, made)
-    if m in code_table.ENDS:
-        return _end(state, made, reset=m == 30)
-    action = _stops(state, made, m)
-    if action is not None:
-        return _done(state, made, action)
-    output = state.setup.limits.m_outputs.get(m)
-    if m in code_table.M_BEFORE or output is None or output[1]:
-        return None
-    return _output(state, made, *output)
+    code = made.m_code
+    if code is None:
+        yield from _machine_output(state, made, on=False)
+    elif code.acts is Acts.STOP:
+        yield from carry_out(code)(state, made)
 
 
-def _stops(state: State, made: Statement, m: int) -> Action | None:
-    if m == 9:
-        return _switch(state, made, m)
-    if m in {0, 1}:
-        return ProgramStop(optional=m == 1, message=(made.comment or "").strip())
-    return RepeatOff() if m == 31 else None
+def coolant(state: State, made: Statement) -> Iterator[Block]:
+    """M08 and M09."""
+    state.adopt(state.modal._replace(coolant=made.m == 8))
+    yield _done(state, made, Coolant(on=made.m == 8))
+
+
+def collet(state: State, made: Statement) -> Iterator[Block]:
+    """M12 and M13. Raises ProgramError where it may not be opened while the spindle turns."""
+    opens = made.m == 13
+    if opens and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
+        column = made.m_word.column if made.m_word else 0
+        text = "M13 opens the collet while the spindle turns."
+        raise ProgramError(refusal(made.line, column, "unclamp-turning", text, "Stop it with M05 first."))
+    state.adopt(state.modal._replace(collet_closed=not opens))
+    yield _done(state, made, Collet(closed=not opens))
+
+
+def wait_for_input(state: State, made: Statement) -> Iterator[Block]:
+    """M91 to M94."""
+    assert made.m_code is not None
+    yield _done(state, made, WaitInput(*made.m_code.terminal))
+
+
+def program_stop(state: State, made: Statement) -> Iterator[Block]:
+    """M00 and M01."""
+    yield _done(state, made, ProgramStop(optional=made.m == 1, message=(made.comment or "").strip()))
+
+
+def repeat_off(state: State, made: Statement) -> Iterator[Block]:
+    """M31."""
+    yield _done(state, made, RepeatOff())
+
+
+def program_end(state: State, made: Statement) -> Iterator[Block]:
+    """M30 resets the M functions, M02 leaves them."""
+    reset = made.m == 30
+    warn_of_short_dwell(state)
+    state.stay(after_end(state.modal, abs(rpm_at(state, state.x)), reset=reset))
+    yield _done(state, made, ProgramEnd(reset=reset))
 
 
 def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
@@ -89,25 +107,13 @@ def _done(state: State, made: Statement, action: Action) -> Block:
     return state.action(made.line, made.part("m"), action, rpm_at(state, state.x))
 
 
-def _switch(state: State, made: Statement, m: int) -> Action:
-    if m in {8, 9}:
-        state.adopt(state.modal._replace(coolant=m == 8))
-        return Coolant(on=m == 8)
-    if m == 13 and state.modal.spindle and not state.setup.limits.unclamp_while_turning:
-        column = made.m_word.column if made.m_word else 0
-        text = "M13 opens the collet while the spindle turns."
-        raise ProgramError(refusal(made.line, column, "unclamp-turning", text, "Stop it with M05 first."))
-    state.adopt(state.modal._replace(collet_closed=m == 12))
-    return Collet(closed=m == 12)
-
-
-def _output(state: State, made: Statement, name: str, on: bool) -> Block:
-    outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
-    state.adopt(state.modal._replace(outputs=outputs))
-    return _done(state, made, Output(name, on))
-
-
-def _end(state: State, made: Statement, *, reset: bool) -> Block:
-    warn_of_short_dwell(state)
-    state.stay(after_end(state.modal, abs(rpm_at(state, state.x)), reset=reset))
-    return _done(state, made, ProgramEnd(reset=reset))
+def _machine_output(state: State, made: Statement, *, on: bool) -> Iterator[Block]:
+    """An M code of the machine file: an output switched on before the motion, or off after it."""
+    output = state.setup.limits.m_outputs.get(made.m or 0)
+    if output is None:
+        raise ProgramError(_unknown(state, made))
+    name, wanted = output
+    if wanted is on:
+        outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
+        state.adopt(state.modal._replace(outputs=outputs))
+        yield _done(state, made, Output(name, on))

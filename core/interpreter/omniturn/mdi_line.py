@@ -3,32 +3,13 @@
 from __future__ import annotations
 
 from core.interpreter.diagnostic_log import refusal
-from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.loops_and_subroutines import Structure
-from core.interpreter.omniturn.omniturn_program import Program, read_statement
+from core.interpreter.omniturn.omniturn_program import Program, of_machine_file, read_statement
 from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.source import Source
 
-_WHY = {
-    "LS": "begins a loop, and its lines and LF would have to follow",
-    "LF": "ends a loop, and there is none",
-    "}": "begins a subroutine, and those stand in programs",
-    "RF": "ends a contour, and there is none",
-    "P": "calls a subroutine, and those stand in programs",
-    "M95": "calls a subroutine, and those stand in programs",
-    "M97": "calls a subroutine, and those stand in programs",
-    "M98": "calls a subroutine, and those stand in programs",
-    "M99": "ends a subroutine, and there is none",
-    PLANE: "belongs to plane switching, whose lines would have to follow",
-}
-_MODAL = {
-    35: "needs a G92 on the next line",
-    36: "needs a G92 on the next line",
-    40: "ends nose compensation, which looks at the lines around it",
-    41: "begins nose compensation, which looks at the lines that follow",
-    42: "begins nose compensation, which looks at the lines that follow",
-}
 _HINT = "Write it in a program."
 
 
@@ -46,7 +27,7 @@ def read_single(source: Source) -> Program:
         refused = _alone(made)
         problems = [refused] if refused is not None else []
     executable = made is not None and made.executable
-    unknown = (made,) if made is not None and made.m not in {None, *code_table.M_KNOWN} else ()
+    unknown = (made,) if made is not None and of_machine_file(made) else ()
     return Program(
         source=source,
         steps=[made],
@@ -61,21 +42,25 @@ def read_single(source: Source) -> Program:
 def _alone(made: Statement) -> Diagnostic | None:
     """Why this line means nothing on its own, None where it does."""
     if made.flow and made.flow != UNREADABLE:
-        word = made.m_word.text if made.flow in {"M95", "M97", "M98", "M99"} and made.m_word else made.flow
-        name = made.text if made.flow == PLANE else word
-        return _refuse(made, 1, f"{name} {_WHY[made.flow]}")
+        return _refuse(made, 1, _steers(made))
     if made.block_delete:
         return _refuse(made, 1, "/ leaves a line of a program out, and there is nothing to leave out")
     for code in made.modal:
-        if code in _MODAL:
-            return _refuse(made, 1, f"G{code} {_MODAL[code]}")
-    if made.one_shot in code_table.CONTOUR_CYCLES and made.code is not None:
-        what = f"{made.code.text} cuts a contour, and its lines would have to follow"
-        return _refuse(made, made.code.column, what)
+        if G_CODES[code].not_in_mdi:
+            return _refuse(made, 1, f"G{code} {G_CODES[code].not_in_mdi}")
+    if made.code is not None and made.entry.not_in_mdi:
+        return _refuse(made, made.code.column, f"{made.code.text} {made.entry.not_in_mdi}")
     radius = made.words.get("R")
     if radius is not None and made.moves and made.one_shot is None:
         return _refuse(made, radius.column, f"{radius.text} rounds the corner with the next move")
     return None
+
+
+def _steers(made: Statement) -> str:
+    if made.flow == PLANE:
+        return f"{made.text} {FLOW_CODES['~PLXC'].not_in_mdi}"
+    word = made.m_word.text if made.m_word else made.flow
+    return f"{word} {FLOW_CODES[made.flow].not_in_mdi}"
 
 
 def _refuse(made: Statement, column: int, what: str) -> Diagnostic:

@@ -16,7 +16,7 @@ from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
 from core.interpreter.diagnostic_log import Log, refusal
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.corners import STRAIGHT
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -274,7 +274,6 @@ def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
 
 
 NOSE = frozenset({40, 41, 42})
-_NOT_UNDER_NOSE = code_table.THREADS | code_table.CYCLES | {89, 92}
 _TURNS_C = frozenset({"CA", "CI"})
 
 
@@ -313,19 +312,20 @@ def check_under_nose(state: State, made: Statement) -> None:
     on = state.modal.nose_comp
     if on == 40:
         return
-    if made.m in code_table.ENDS:
+    if made.ends_program:
         text = f"The program ends while G{on} is on."
         raise _refused_nose(made, "comp-open", text, "Move off the part and write G40 before it.")
-    if made.flow and made.flow not in code_table.FLOW_WORDS:
+    if made.flow and made.flow not in FLOW_CODES:
         raise _refused_nose(
             made, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
         )
-    if made.flow in code_table.CALLS:
+    if made.calls:
         text = f"A subroutine is called while G{on} is on."
         raise _refused_nose(
             made, "comp-subroutine", text, "Write the compensated contour in the main program."
         )
-    if made.one_shot in _NOT_UNDER_NOSE or made.m in code_table.M_POSITIONING or _TURNS_C & made.words.keys():
+    refused = made.one_shot is not None and not made.entry.under_nose
+    if refused or made.locks or _TURNS_C & made.words.keys():
         word = made.code or made.m_word
         what = word.text if word is not None else "C"
         raise _refused_nose(made, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")

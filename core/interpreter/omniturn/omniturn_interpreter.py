@@ -11,7 +11,6 @@ from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.diagnostic_log import MOST_BLOCKS, MOST_LINES, Log, PassReport, refusal
 from core.interpreter.elementary_blocks import Block, Series
 from core.interpreter.job_setup import Setup
-from core.interpreter.omniturn import code_table
 from core.interpreter.omniturn.block_execution import execute
 from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore, way_blocks
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
@@ -183,14 +182,14 @@ class Interpreter(PassReport):
                 self._recover(problem, step)
 
     def _statement(self, made: Statement) -> Iterator[Block]:
-        contour = self._contour(made) if made.one_shot in code_table.CONTOUR_CYCLES else ()
+        contour = self._contour(made) if made.contour_cycle else ()
         if made.block_delete and self._state.setup.block_delete:
             return
         if made.flow == UNREADABLE:
             self._stopped = True
             self._shaper.drop()  # what is held back lacks this line
             self._arrive(made)
-        elif made.flow in code_table.CALLS:
+        elif made.calls:
             self._shaper.check(made)
             yield from self._call(made)
         elif made.flow == PLANE:
@@ -249,7 +248,7 @@ class Interpreter(PassReport):
 
     def _call(self, made: Statement) -> Iterator[Block]:
         state = self._state
-        if made.flow in code_table.ASKS:
+        if made.asks:
             asked = AskInput(terminal(made))
             yield from self._shaped(state.action(made.line, made.text, asked, rpm_at(state, state.x)))
             if not self._takes(made):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 from core.interpreter.diagnostic_log import without_repeats
-from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.loops_and_subroutines import Structure, call_target, find_structure
 from core.interpreter.omniturn.omniturn_statement import (
     PLANE,
@@ -226,18 +226,23 @@ def read_program(source: Source, strict: bool = False) -> Program:
         diagnostics=(*_capped(problems), *_capped(reader.style.found)),
         blocks=_executable(reader),
         names_units=any({70, 71}.intersection(made.modal) for made in reader.statements),
-        m_codes=tuple(made for made in reader.statements if made.m not in {None, *code_table.M_KNOWN}),
-        asks=tuple(made for made in reader.statements if made.flow in code_table.ASKS),
+        m_codes=tuple(made for made in reader.statements if of_machine_file(made)),
+        asks=tuple(made for made in reader.statements if made.asks),
         deletes=any(made.block_delete for made in reader.statements),
         calls=tuple(_calls(reader.statements)),
     )
 
 
+def of_machine_file(made: Statement) -> bool:
+    """Whether the line holds an M code that is none of the control itself."""
+    return made.m is not None and made.m_code is None and f"M{made.m}" not in FLOW_CODES
+
+
 def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
     for made in statements:
-        if made.flow in code_table.CALLS:
+        if made.calls:
             yield made.line, call_target(made)
-        elif made.one_shot in code_table.CONTOUR_CYCLES and "P" in made.words:
+        elif made.contour_cycle and "P" in made.words:
             yield made.line, int(made.value("P") or 0)
 
 

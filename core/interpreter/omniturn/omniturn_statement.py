@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN, Acts, Code, FWord, SWord
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
@@ -30,19 +30,22 @@ class Statement:
     modal: tuple[int, ...] = ()
     one_shot: int | None = None
     m: int | None = None
+    entry: Code = PLAIN  # of the one-shot code in the table
     code: Word | None = None  # the one-shot word
     m_word: Word | None = None
-    flow: str = ""  # a key of FLOW_WORDS, UNREADABLE, or PLANE
+    flow: str = ""  # a key of FLOW_CODES, UNREADABLE, or PLANE
     comment: str | None = None
     block_delete: bool = False
     parts: dict[str, str] | None = None
     simple: bool = False  # nothing but a move, its feed and G00…G03
     plane: PlaneLine | None = None  # a line of plane switching
+    f_is_feed: bool = True  # no code on it gives F another meaning
+    s_is_limit: bool = False  # S belongs to G76 or G77
 
     @property
     def moves(self) -> bool:
         """Whether the line asks the slides to move."""
-        return self.one_shot in code_table.ARCS or (
+        return self.entry.acts is Acts.ARC or (
             self.one_shot is None and ("X" in self.words or "Z" in self.words)
         )
 
@@ -54,7 +57,34 @@ class Statement:
     @property
     def locks(self) -> bool:
         """Whether the line makes the spindle the axis C."""
-        return self.one_shot == 89 or self.m in code_table.M_POSITIONING
+        m_code = self.m_code
+        return self.entry.acts is Acts.LOCK or (m_code is not None and m_code.acts is Acts.LOCK)
+
+    @property
+    def m_code(self) -> Code | None:
+        """The entry of its M code; None without one, or where only the machine file can know it."""
+        return None if self.m is None else M_CODES.get(self.m)
+
+    @property
+    def ends_program(self) -> bool:
+        """Whether the line holds M30 or M02."""
+        m_code = self.m_code
+        return m_code is not None and m_code.ends_program
+
+    @property
+    def calls(self) -> bool:
+        """Whether the line calls a subroutine, on condition or not."""
+        return self.flow in FLOW_CODES and FLOW_CODES[self.flow].calls
+
+    @property
+    def asks(self) -> bool:
+        """Whether the line asks an input whether to call."""
+        return self.flow in FLOW_CODES and FLOW_CODES[self.flow].asks
+
+    @property
+    def contour_cycle(self) -> bool:
+        """Whether the line runs along a contour that other lines describe."""
+        return self.entry.acts is Acts.CONTOUR
 
     @property
     def executable(self) -> bool:
@@ -84,6 +114,7 @@ ReadyLine = PlainMove | CodedMove | Statement | None
 
 _SIMPLE = frozenset({"X", "Z", "I", "K", "R", "F"})
 _SIMPLE_MODAL = frozenset({0, 1})
+_MOTIONS = frozenset({Acts.MOTION, Acts.CYCLE, Acts.CONTOUR})
 
 
 def statement(line: Line) -> Statement:
@@ -141,16 +172,20 @@ def _sort(made: Statement, line: Line) -> None:
 def _check_groups(made: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, made.modal, strict=True):
-        if groups.setdefault(code_table.MODAL_GROUPS[code], code) != code:
-            what = f"holds two codes of one group ({code_table.MODAL_GROUPS[code]})"
+        if groups.setdefault(G_CODES[code].group, code) != code:
+            what = f"holds two codes of one group ({G_CODES[code].group})"
             raise _refused(line, word, "modal-conflict", what, "Keep one of them.")
 
 
 def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
     code = int(word.value or 0)
-    if code in code_table.MODAL_GROUPS:
+    entry = G_CODES.get(code)
+    if entry is not None:
+        made.f_is_feed = made.f_is_feed and entry.f is FWord.FEED
+        made.s_is_limit = made.s_is_limit or entry.s is SWord.LIMIT
+    if entry is not None and entry.acts is Acts.MODE:
         modal.append(word)
-    elif code not in code_table.ONE_SHOT:
+    elif entry is None:
         habit, hint = other_controls.here(word.text.upper()) or ("", "Look it up.")
         message = f"{word.text} is no code of this control. {habit}".rstrip()
         raise ProgramError(Diagnostic(made.line, word.column, Severity.ERROR, "g-unknown", message, hint))
@@ -160,14 +195,14 @@ def _sort_g(made: Statement, word: Word, modal: list[Word]) -> None:
             Diagnostic(made.line, word.column, Severity.ERROR, "two-one-shots", message, "Split the line.")
         )
     else:
-        made.one_shot, made.code = code, word
+        made.one_shot, made.code, made.entry = code, word, entry
 
 
 def _flow(made: Statement) -> str:
     for letter in ("LS", "LF", "}", "RF"):
         if letter in made.words:
             return letter
-    if made.m in code_table.M_FLOW:
+    if made.m is not None and f"M{made.m}" in FLOW_CODES:
         return f"M{made.m}"
     return "P" if "P" in made.words and made.code is None else ""
 
@@ -176,7 +211,7 @@ def _check_words(made: Statement, line: Line) -> None:
     if made.flow:
         _check_flow(made, line)
         return
-    allowed = code_table.WORDS.get(made.one_shot, code_table.WORDS[None])
+    allowed = made.entry.words
     if allowed.issuperset(made.words):
         return
     for letter, word in made.words.items():
@@ -191,12 +226,12 @@ def _check_words(made: Statement, line: Line) -> None:
 
 
 def _check_flow(made: Statement, line: Line) -> None:
-    allowed = code_table.FLOW_WORDS[made.flow]
+    allowed = FLOW_CODES[made.flow].words
     for word in line.words:
         if word.letter not in allowed:
             what = f"holds {word.text} besides {made.flow}, which stands alone"
             raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
-    if made.flow in {"LS", "LF", "}", "M99", "RF"} and line.block_delete:
+    if line.block_delete and not FLOW_CODES[made.flow].deletable:
         what = f"deletes {made.flow}, without which the rest has no meaning"
         raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
     for letter in allowed - {"M", "LF", "RF"}:
@@ -224,12 +259,7 @@ def _name_parts(made: Statement, line: Line) -> None:
         name = _group(made, word)
         groups[name] = groups.get(name, "") + word.text
     own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
-    if (
-        made.moves
-        or made.turns
-        or made.one_shot == 4
-        or made.one_shot in code_table.CYCLES | code_table.THREADS
-    ):
+    if made.moves or made.turns or made.entry.acts in _MOTIONS:
         own.append("move")
     if len(own) > 1:
         if "move" not in own and "move" in groups:
@@ -241,11 +271,12 @@ def _group(made: Statement, word: Word) -> str:
     letter = word.letter
     if letter == "T" or (letter == "D" and "T" in made.words):
         return "tool"
-    if made.one_shot in code_table.FRAME and (letter in {"X", "Z"} or word is made.code):
+    if made.entry.acts is Acts.FRAME and (letter in {"X", "Z"} or word is made.code):
         return "frame"
     if letter == "M":
-        return "spindle" if made.m in {3, 4} else "m"
-    if letter == "S" and not {76, 77}.intersection(made.modal) and not made.turns:
+        m_code = made.m_code
+        return "spindle" if m_code is not None and m_code.acts is Acts.SPINDLE else "m"
+    if letter == "S" and not made.s_is_limit and not made.turns:
         return "m" if made.locks else "spindle"
     return "move"
 

@@ -7,15 +7,12 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from core.interpreter.diagnostic_log import DEEPEST_CALL, MOST_BLOCKS, MOST_LINES, refusal
-from core.interpreter.omniturn import code_table
+from core.interpreter.omniturn.code_table import FLOW_CODES, Acts
 from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.plain_moves import LongProgram, ReadyLines
 from core.language.diagnostics import Diagnostic
-
-# Blocks of the shortest cycle of each code; what there is more of them is counted while running.
-_LEAST_OF_CYCLE = {33: 4, 34: 4, 74: 4, 75: 4, 78: 3, 81: 2, 83: 2}
 
 
 class Count(NamedTuple):
@@ -93,9 +90,9 @@ class _Counter:
         return _sum(before, Count(blocks, lines, worst))
 
     def _line(self, made: Statement, depth: int) -> Count:
-        if made.flow not in code_table.CALLS:
+        if not made.calls:
             return Count(blocks_of(made), 1)
-        asks = made.flow in code_table.ASKS
+        asks = made.asks
         if depth >= DEEPEST_CALL or (asks and not takes_call(made, self._inputs)):
             return Count(int(asks), 1)
         return _sum(Count(int(asks), 1), self._subroutine(call_target(made), depth + 1))
@@ -129,15 +126,11 @@ def blocks_of(made: Statement) -> int:
     """Elementary blocks that a line makes at most; of a cycle, at least."""
     if made.flow:
         return 1 if made.plane is not None and {"X", "Y", "Z", "G"}.intersection(made.plane.words) else 0
-    acts = ("T" in made.words) + (made.one_shot in code_table.FRAME) + (made.m is not None)
-    speaks = "S" in made.words and made.m not in {3, 4} and not {76, 77}.intersection(made.modal)
-    return (
-        acts
-        + speaks
-        + corner_words(made)
-        + (made.moves or made.one_shot == 4)
-        + _LEAST_OF_CYCLE.get(made.one_shot or 0, 0)
-    )
+    m_code = made.m_code
+    starts = m_code is not None and m_code.acts is Acts.SPINDLE
+    speed = "S" in made.words and not starts and not made.s_is_limit
+    moves = made.moves if made.one_shot is None else made.entry.least_blocks
+    return ("T" in made.words) + (made.m is not None) + speed + corner_words(made) + moves
 
 
 def corner_words(made: Statement) -> int:
@@ -147,7 +140,7 @@ def corner_words(made: Statement) -> int:
 
 def terminal(made: Statement) -> str:
     """The input that a conditional call asks."""
-    return "TB2-9" if made.flow == "M95" else f"{made.value('I'):.0f}"
+    return FLOW_CODES[made.flow].terminal[0] or f"{made.value('I'):.0f}"
 
 
 def takes_call(made: Statement, inputs: Callable[[str], bool]) -> bool:

@@ -11,8 +11,7 @@ from core.geometry.contour_offset import TrimError
 from core.geometry.intersections import clearance, intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from core.geometry.roughing_area import Area, Span
-from core.interpreter.omniturn.cycle_contour import read_contour
-from core.interpreter.omniturn.cycle_motions import (
+from core.interpreter.omniturn.canned_cycles import (
     LIFT,
     Move,
     check_count,
@@ -21,6 +20,7 @@ from core.interpreter.omniturn.cycle_motions import (
     positive,
     refused,
 )
+from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import SpindleRun, SpindleStop
 from core.interpreter.diagnostic_log import refusal
@@ -62,7 +64,7 @@ def _limit(made: Statement, code: int) -> float:
 def speed_word(state: State, made: Statement) -> None:
     """S of a line: rpm under G97, surface speed under G96."""
     word = made.words.get("S")
-    if word is None or word.value is None or {76, 77}.intersection(made.modal):
+    if word is None or word.value is None or made.s_is_limit:
         return
     modal, column = state.modal, word.column
     if word.value < 0:
@@ -85,19 +87,19 @@ def speed_word(state: State, made: Statement) -> None:
     state.adopt(state.modal._replace(rpm=word.value))
 
 
-def run_block(state: State, made: Statement) -> Block | None:
-    """The spindle block of a line with M03, M04 or S; None where the spindle stands and shall stand."""
+def run_block(state: State, made: Statement) -> Iterator[Block]:
+    """The spindle block of a line with M03, M04 or S; none where the spindle stands and shall stand."""
     direction = {3: 1, 4: -1}.get(made.m or 0, 0)
     if direction:
         _check_start(state, made)
         state.told.discard("spindle-stopped")
         state.adopt(state.modal._replace(spindle=direction))
-    elif "S" not in made.words or made.m == 5 or not state.modal.spindle or {76, 77}.intersection(made.modal):
-        return None
+    elif "S" not in made.words or made.m == 5 or not state.modal.spindle or made.s_is_limit:
+        return
     state.told.discard("spindle-stopped")
     rpm = rpm_at(state, state.x)
     surface = state.modal.surface_speed if state.modal.css else None
-    return state.action(made.line, made.part("spindle"), SpindleRun(rpm, surface), rpm)
+    yield state.action(made.line, made.part("spindle"), SpindleRun(rpm, surface), rpm)
 
 
 def _check_start(state: State, made: Statement) -> None:
@@ -115,7 +117,7 @@ def _check_start(state: State, made: Statement) -> None:
         raise ProgramError(refusal(made.line, column, "collet-open", message, "Close it with M12 first."))
 
 
-def stop_block(state: State, made: Statement) -> Block:
+def stop_block(state: State, made: Statement) -> Iterator[Block]:
     """M05."""
     state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
-    return state.action(made.line, made.part("m"), SpindleStop(), 0.0)
+    yield state.action(made.line, made.part("m"), SpindleStop(), 0.0)

@@ -12,6 +12,7 @@ from math import ceil, copysign, radians, tan
 from core.interpreter import units
 from core.interpreter.diagnostic_log import refusal
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.spindle_speed import rpm_at
@@ -22,7 +23,7 @@ from core.language.diagnostics import Diagnostic, ProgramError
 
 
 MOST_LEAD = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))  # by G36, G35, G35F2
-MOST_ANGLE = 30.0  # degrees
+MOST_ANGLE = G_CODES[33].bounds["C"][1]  # degrees
 _BARE_C = 29.0
 _MOST_PASSES = 10_000
 _ROUNDING = 1 + 1e-9

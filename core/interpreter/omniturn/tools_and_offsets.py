@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import Preset, ToolChange, WorkShift
 from core.interpreter.diagnostic_log import refusal
@@ -96,26 +96,28 @@ def secondary(state: State, made: Statement) -> None:
     state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
 
 
-def frame(state: State, made: Statement) -> Block:
-    """G10 and G92."""
+def _demand_place(made: Statement) -> None:
     if "X" not in made.words and "Z" not in made.words:
         column = made.code.column if made.code else 0
         text = f"G{made.one_shot} needs X or Z."
         raise ProgramError(refusal(made.line, column, "word-missing", text, "Write the coordinates."))
-    return _work_shift(state, made) if made.one_shot == 10 else _preset(state, made)
 
 
-def _work_shift(state: State, made: Statement) -> Block:
+def work_shift(state: State, made: Statement) -> Iterator[Block]:
+    """G10: X and Z add to the shift that the next T takes. Raises ProgramError without either."""
+    _demand_place(made)
     x, z = on_step(state, made, "X") or 0.0, on_step(state, made, "Z") or 0.0
     modal = state.modal
     state.adopt(
         modal._replace(pending_shift_x=modal.pending_shift_x + x, pending_shift_z=modal.pending_shift_z + z)
     )
     state.pending_shift.setdefault(made.line, False)
-    return state.action(made.line, made.part("frame"), WorkShift(x, z), rpm_at(state, state.x))
+    yield state.action(made.line, made.part("frame"), WorkShift(x, z), rpm_at(state, state.x))
 
 
-def _preset(state: State, made: Statement) -> Block:
+def preset(state: State, made: Statement) -> Iterator[Block]:
+    """G92: the current point gets these coordinates. Raises ProgramError without any."""
+    _demand_place(made)
     x, z = on_step(state, made, "X"), on_step(state, made, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal
@@ -126,7 +128,7 @@ def _preset(state: State, made: Statement) -> Block:
         )
     )
     state.tool_line = 0
-    return state.action(made.line, made.part("frame"), Preset(x, z), rpm_at(state, state.x))
+    yield state.action(made.line, made.part("frame"), Preset(x, z), rpm_at(state, state.x))
 
 
 def warn_of_idle_shifts(state: State) -> None:

@@ -1,0 +1,147 @@
+"""One entry is all there is of a code: whole, proved by its example, and enough to add one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.machine_setup import setup_for
+from core.interpreter.actions import Dwell
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.interpreter.omniturn import dwell
+from core.interpreter.omniturn.code_table import (
+    CHAPTERS,
+    FLOW_CODES,
+    G_CODES,
+    HEAD,
+    M_CODES,
+    Acts,
+    Code,
+    FWord,
+    carry_out,
+    names,
+)
+from core.interpreter.omniturn.language_page import page
+from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.omniturn_statement import Statement
+from core.language.diagnostics import Severity
+from core.language.source import Source
+from core.machine.machine_file import load_machine
+from core.proving.prove_program import prove
+from tests.interpreter.programs import passed
+
+CODES = [code for _, codes in CHAPTERS for code in codes]
+PAGE = Path(__file__).parents[2] / "docs" / "language.md"
+ROOM = Path(__file__).parents[2] / "core" / "interpreter" / "omniturn"
+REFUSAL = re.compile(r'"([a-z0-9]+(?:-[a-z0-9]+)+)"')
+NOSE = 0.015 * 25.4
+
+OF_NO_CODE = names("m-disabled m-unknown")  # of codes that only the machine file could know
+FAMILIES = sorted({code.handler.split(".")[0] for code in CODES} - {"omniturn_statement"})
+
+
+def test_no_code_has_two_entries() -> None:
+    written = [code.name for code in CODES]
+    assert sorted(written) == sorted(set(written))
+    of_control = len(G_CODES) + len(M_CODES) + len(FLOW_CODES)
+    assert of_control + sum(code.acts is Acts.WORD for code in CODES) == len(CODES)
+
+
+@pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
+def test_an_entry_is_whole(code: Code) -> None:
+    assert code.form
+    assert code.what.endswith(".")
+    assert code.name.strip("()") in code.example + code.subroutine
+    assert callable(carry_out(code))
+    assert not code.bounds.keys() - code.words
+    # Either it may stand alone, or something says why not: nothing falls through in MDI.
+    assert bool(code.not_in_mdi) or code.acts not in {Acts.FLOW, Acts.CONTOUR}
+
+
+@pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
+def test_the_example_proves(code: Code) -> None:
+    machine = load_machine(None)
+    secondary = {
+        1: SecondaryOffset(-NOSE, -NOSE, NOSE),
+        2: SecondaryOffset(x=-0.0127),
+        3: SecondaryOffset(-NOSE, -NOSE, NOSE),
+    }
+    setup = setup_for(machine, tools={n: ToolOffset() for n in range(1, 9)}, secondary=secondary)
+    report = prove(Source(code.name, code.program), setup, machine)
+    assert [d.shown("") for d in report.diagnostics if d.severity is Severity.ERROR] == []
+    assert report.elementary > 0
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
+    told = set(REFUSAL.findall((ROOM / f"{family}.py").read_text(encoding="utf-8")))
+    assert told - OF_NO_CODE - frozenset().union(*(code.refusals for code in CODES)) == set()
+
+
+def test_no_entry_names_a_refusal_that_is_none() -> None:
+    files = [file for file in ROOM.glob("*.py") if file.name != "code_table.py"]
+    text = "".join(file.read_text(encoding="utf-8") for file in files)
+    refusals = frozenset().union(*(code.refusals for code in CODES))
+    assert [code for code in sorted(refusals) if f'"{code}"' not in text] == []
+
+
+def test_the_page_is_written_from_the_table() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page(), (
+        "python -m core.interpreter.omniturn.language_page > docs/language.md"
+    )
+
+
+# --- a trial code, added by one entry and the function that it names
+
+
+def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
+    """G05F2: waits for two turns of the spindle."""
+    seconds = (made.value("F") or 0.0) * 60.0 / state.modal.rpm
+    yield state.action(made.line, made.part("move"), Dwell(seconds), state.rpm)
+
+
+TRIAL = Code(
+    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="dwell.wait_in_turns",
+    words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="is a trial",
+)  # fmt: skip
+
+
+def program(*lines: str) -> str:
+    return HEAD + "\n".join(lines) + "\nM30\n"
+
+
+def test_a_code_without_an_entry_does_not_exist() -> None:
+    assert [code for _, _, code in passed(program("G05F2")).errors] == ["g-unknown"]
+
+
+def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(G_CODES, 5, TRIAL)
+    monkeypatch.setattr(dwell, "wait_in_turns", wait_in_turns, raising=False)
+    result = passed(program("Z0", "G05F2", "Z-.1"))
+    assert result.errors == []
+    waits, cut = result.blocks[-3], result.blocks[-2]
+    assert waits.action == Dwell(0.12)
+    assert (cut.feed, cut.per_rev) == (pytest.approx(0.004 * 25.4), True)  # its F is no feed
+    for refused in ("G05F2X1", "G05F2M03G04", "X.7C.02\nG05F2\nZ-.5"):
+        assert passed(program(refused)).errors != []
+
+
+def test_a_code_whose_f_means_nothing_is_none() -> None:
+    with pytest.raises(ValueError, match="F means"):
+        replace(TRIAL, f=FWord.NONE)
+    with pytest.raises(ValueError, match="F means"):
+        replace(TRIAL, words=names("S T D"))
+    with pytest.raises(TypeError):
+        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="dwell.dwell")  # type: ignore[call-arg]
+    with pytest.raises(ValueError, match="group"):
+        replace(TRIAL, acts=Acts.MODE)
+
+
+def test_a_handler_that_is_nowhere_is_an_error() -> None:
+    with pytest.raises(AttributeError):
+        carry_out(replace(TRIAL, handler="dwell.nowhere"))
