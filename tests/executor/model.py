@@ -72,6 +72,8 @@ SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind 
 LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
 RUNS_OUT = 12.0  # s; the spindle's own ramp from full speed, bogged or not
 POWER_SEEN = 0.2  # s until drives that are off are told
+BOUNCE = 0.31  # s in which a second start is the same press
+CREEP = 0.4  # mm/s of a servo whose encoder stood within its window; seen when the control looks again
 STILL = 0.02  # mm in a tick; servo noise and the last of a lag are less
 ON_PATH = 0.005  # mm
 FINE = 0.002  # s between two looks at the setpoints
@@ -146,6 +148,7 @@ class Machine(Rig):
         self.blind = False  # an encoder may tell what is not so
         self.jog_asked = 0.0
         self.left = -1e9  # when the last state in which slides move was left
+        self.last_press = -1e9  # when a start was last asked for, by palms or from the screen
         self.fed_badly = self.stopped = self.powerless = 0.0
         self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
         self.before = self.shot
@@ -242,8 +245,9 @@ class Machine(Rig):
             assert self.homed
         way = math.dist(self.sim.machine.true_position()[:2], place[:2])
         if new.state not in MOVES and new.t - self.left > SETTLES + dt:
-            # Behind an encoder that stood, the servo takes back what nobody could see: the window, at most.
-            most = self.machine.axes[0].still_window if self.blind else STILL
+            # Behind an encoder that stood, the servo takes back what nobody could see: the window, and what
+            # the slide went until the window was seen to be left.
+            most = 1.5 * self.machine.axes[0].still_window + CREEP * dt if self.blind else STILL
             assert way < most, f"{way} mm in {new.state}"
 
     def _the_spindle_waits(self, old: Snapshot, new: Snapshot) -> None:
@@ -382,6 +386,7 @@ class ExecutorModel(RuleBasedStateMachine):
         else:
             self.hands.press_start()
         machine.tick(round(late, 3))
+        machine.last_press = machine.clock.now()
 
     @rule()
     def presses_palms(self) -> None:
@@ -643,8 +648,9 @@ class ExecutorModel(RuleBasedStateMachine):
             machine.homed = True
             machine.post(Home())
             machine.until(State.IDLE, limit=120.0)
-        machine.post(SpindleStop(), ForceOutput("collet", True))
+        machine.post(Prepare(Starts.PROGRAM), SpindleStop(), ForceOutput("collet", True))
         machine.run(3.0)
+        self._back_into_the_travel()
         machine.load(SAFE)
         if machine.shot.interrupted is not None:
             machine.confirm()
@@ -660,6 +666,17 @@ class ExecutorModel(RuleBasedStateMachine):
         assert machine.shot.parts == parts + 1, machine.shot
         SEEN.parts += 1
 
+    def _back_into_the_travel(self) -> None:
+        """Where a blind slide ran over its soft limit: the jog that leads back is allowed."""
+        machine = self.machine
+        for axis, at in zip(machine.machine.axes, machine.shot.actual, strict=True):
+            low, high = axis.travel or (at, at)
+            if low <= at <= high:
+                continue
+            machine.jogged = True
+            machine.post(JogStep(axis.name, (low + 1.0 if at < low else high - 1.0) - at, 10.0))
+            machine.until(State.IDLE, limit=60.0)
+
     # --- helpers ------------------------------------------------------------------------------------------
 
     def _count(self, name: str) -> None:
@@ -672,19 +689,26 @@ class ExecutorModel(RuleBasedStateMachine):
         machine = self.machine
         old = machine.state
         refused = len(machine.said("refused"))
-        starts = len(machine.said("start"))
-        recent = [e for e in machine.events if e.kind == "start" and machine.clock.now() - e.t < 0.31]
+        starts = self._acted()
+        recent = machine.clock.now() - machine.last_press < BOUNCE
+        machine.last_press = machine.clock.now()
         machine.pressed = True
         press()
         machine.tick()
         if old not in ACTIVE and machine.state is old and old in CYCLE | {State.IDLE, State.DISABLED}:
-            said = len(machine.said("refused")) > refused or len(machine.said("start")) > starts
+            said = len(machine.said("refused")) > refused or self._acted() > starts
             assert said or recent or machine.shot.start_refused, f"{old}: a start says nothing"
+
+    def _acted(self) -> int:
+        """How often something was begun or gone on with, as the log has it."""
+        return sum(event.kind in {"start", "mdi", "state"} for event in self.machine.events)
 
     def _post(self, command: Command, *, moves: bool = False) -> None:
         self._count(type(command).__name__)
         machine = self.machine
         machine.pressed = isinstance(command, CycleStart)
+        if machine.pressed:
+            machine.last_press = machine.clock.now()
         old, told = machine.shot, len(machine.events)
         machine.post(command)
         if moves and machine.state is old.state and machine.state is not State.JOG:
