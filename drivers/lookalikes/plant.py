@@ -37,12 +37,17 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
             raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued", "drive-limits")
         if axis.travel is None or not servo.homed:
             continue
-        low, high = axis.travel
+        low, high = _reach(axis.travel, servo)
         if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
             raise DriverError(
                 f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued",
                 "drive-limits",
             )
+
+
+def _reach(travel: tuple[float, float], servo: Servo) -> tuple[float, float]:
+    """The travel, and for a slide that stands beyond it the way back: as drives have it, and no further."""
+    return min(travel[0], servo.reading), max(travel[1], servo.reading)
 
 
 def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:

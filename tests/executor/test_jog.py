@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, JogStop, Reset
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, JogStep, JogStop, Reset
 from core.executor.snapshot import State
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 
@@ -227,3 +227,21 @@ def test_hold_ends_homing() -> None:
     rig.run(0.5)
     assert not rig.shot.homed[1]
     assert not rig.sim.ports.axes.sample().moving
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_slide_beyond_its_travel_is_jogged_back_and_no_further_out(side: float) -> None:
+    rig = Rig()
+    edge = next(axis.travel[side > 0] for axis in rig.machine.axes if axis.name == "X" and axis.travel)
+    rig.sim.machine.push("X", edge + side * 5.0)  # by hand, the drives off
+    rig.run(0.1)
+    rig.ready()
+    rig.post(Jog("X", side * 20.0, 0.3))
+    rig.run(1.0)
+    assert rig.sim.machine.true_position()[0] == pytest.approx(edge + side * 5.0, abs=0.01)
+    assert not rig.shot.alarms
+    rig.post(JogStep("X", -side * 8.0, 20.0))
+    rig.until(State.IDLE)
+    rig.run(1.0)
+    assert not rig.shot.alarms
+    assert rig.sim.machine.true_position()[0] == pytest.approx(edge - side * 3.0, abs=0.01)
