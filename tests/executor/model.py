@@ -666,14 +666,18 @@ class ExecutorModel(RuleBasedStateMachine):
     def _back_into_the_travel(self) -> None:
         """Where a blind slide ran over its soft limit: the jog that leads back is allowed."""
         machine = self.machine
-        for axis, at in zip(machine.machine.axes, machine.shot.actual, strict=True):
+        for index, (axis, at) in enumerate(zip(machine.machine.axes, machine.shot.actual, strict=True)):
             low, high = axis.travel or (at, at)
             if low <= at <= high:
                 continue
-            machine.jogged = True
-            machine.post(JogStep(axis.name, (low + 1.0 if at < low else high - 1.0) - at, 10.0))
-            machine.until(State.JOG)
-            machine.until(State.IDLE, limit=60.0)
+            inward = 20.0 if at < low else -20.0
+            for _ in range(200):
+                machine.jogged = True
+                machine.post(Jog(axis.name, inward, 0.3))
+                machine.run(0.2)
+                if low + 1.0 < machine.shot.actual[index] < high - 1.0:
+                    break
+            machine.until(State.IDLE)
 
     # --- helpers ------------------------------------------------------------------------------------------
 
