@@ -1,7 +1,33 @@
-"""The catalogue of alarms: every alarm, hold and stop, with number, what happened, causes and remedy."""
+"""The catalogue of alarms: every alarm, hold and stop, with number, what happened, causes and remedy.
+
+An alarm is one entry in the file of its subject, and its code; none exists outside the catalogue.
+"""
+
+from __future__ import annotations
 
 from core.alarms.alarm_entry import Code as Code
+from core.alarms.alarm_entry import Entries
 from core.alarms.alarm_entry import Entry as Entry
 from core.alarms.alarm_entry import Reaction as Reaction
-from core.alarms.catalogue import CATALOGUE as CATALOGUE
-from core.alarms.catalogue import by_number as by_number
+from core.alarms.axis_alarms import AXES
+from core.alarms.bus_alarms import WIRES
+from core.alarms.control_alarms import CONTROL, PROGRAM
+from core.alarms.spindle_alarms import CHUCK, SPINDLE
+from core.alarms.station_alarms import STATION
+
+SUBJECTS: tuple[tuple[str, Entries], ...] = (
+    ("Slides and axis drives", AXES),
+    ("Spindle, C axis and threads", SPINDLE),
+    ("Collet", CHUCK),
+    ("Program", PROGRAM),
+    ("Bus, feeder and controller", WIRES),
+    ("Operator station and stops", STATION),
+    ("The control", CONTROL),
+)
+CATALOGUE: dict[Code, Entry] = {code: entry for _, entries in SUBJECTS for code, entry in entries.items()}
+_BY_NUMBER = {entry.number: entry for entry in CATALOGUE.values()}
+
+
+def by_number(number: int) -> Entry | None:
+    """The entry of a number; None for one that is not in this catalogue."""
+    return _BY_NUMBER.get(number)

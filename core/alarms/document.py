@@ -6,8 +6,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from core.alarms import SUBJECTS
 from core.alarms.alarm_entry import Entry, Reaction
-from core.alarms.catalogue import SUBJECTS
 
 _HEAD = """\
 # Alarms, holds and stops

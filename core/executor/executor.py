@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from core.executor.attempt import Attempt, ReportedAttempt
-from core.executor.command_handler import Orders
+from core.executor.command_handler import CommandHandler
 from core.executor.commanded_outputs import CommandedOutputs
 from core.executor.commands import Command, CycleStart, EnableDrives, Home, Jog, JogStep, Reset, Wheel
 from core.executor.interrupted_job import InterruptedJob
@@ -73,7 +73,7 @@ class Executor:
         )
         self._station = StationWatch()
         self._control = MachineControl(self._context, passes, note, left)
-        self._orders = Orders(self._context, self._control, self._station)
+        self._handler = CommandHandler(self._context, self._control, self._station)
         self._publisher = Publisher()
         self._told = 1.0
         self.ticks = 0  # so many have ended: what the watchdog looks at
@@ -177,7 +177,7 @@ class Executor:
         control.mirror_estop(signals.estop)
         for command in self._posted():
             self.patient = self.patient or isinstance(command, _WAITED_FOR)
-            self._guarded(partial(self._orders.obey, command))
+            self._guarded(partial(self._handler.obey, command))
         if signals.hold:
             control.feed_hold("", "the button at the station")
         elif signals.trouble:

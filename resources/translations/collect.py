@@ -13,7 +13,7 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from core.alarms.catalogue import CATALOGUE
+from core.alarms import CATALOGUE
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent

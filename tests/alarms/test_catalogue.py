@@ -11,9 +11,8 @@ from typing import Literal, get_args, get_origin
 
 import pytest
 
-from core.alarms import CATALOGUE, Entry, Reaction, by_number
+from core.alarms import CATALOGUE, SUBJECTS, Entry, Reaction, by_number
 from core.alarms.alarm_entry import Code, OwnCode
-from core.alarms.catalogue import SUBJECTS
 from core.faults import FaultCode
 
 HOUSE = Path(__file__).parents[2]

@@ -19,7 +19,7 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.page_base import Page
 from app.screen.theme import DARK
-from core.alarms.catalogue import CATALOGUE, Entry
+from core.alarms import CATALOGUE, Entry
 from core.executor.snapshot import Alarm
 from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
