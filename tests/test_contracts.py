@@ -6,6 +6,11 @@ import sys
 
 import pytest
 
+OURS = ("app", "core", "drivers", "resources")
+QT = {"PySide6", "shiboken6"}
+SCREEN = "app.screen"
+COMMANDS = {"app.cli.main"}  # opens the screen for who asks for it, and imports it only then
+
 
 def test_import_contracts_hold() -> None:
     pytest.importorskip("importlinter")
@@ -27,3 +32,37 @@ def test_no_command_but_the_screen_imports_qt(command: str) -> None:
         "sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
+
+
+@pytest.fixture(scope="module")
+def imports() -> dict[str, set[str]]:
+    """What each of our modules imports by itself, also within functions and for types alone."""
+    grimp = pytest.importorskip("grimp")
+    graph = grimp.build_graph(
+        *OURS, include_external_packages=True, exclude_type_checking_imports=False, cache_dir=None
+    )
+    ours = (name for name in graph.modules if name.split(".")[0] in OURS)
+    return {name: set(graph.find_modules_directly_imported_by(name)) for name in ours}
+
+
+def _is_view(module: str) -> bool:
+    """Whether a module may know Qt: the screen's own, and the views of pages."""
+    *packages, name = module.split(".")
+    return f"{module}.".startswith(f"{SCREEN}.") or (
+        packages[:1] == ["app"] and (name.endswith("_view") or "view" in {*packages, name})
+    )
+
+
+def test_only_the_screen_and_the_views_of_pages_know_qt(imports: dict[str, set[str]]) -> None:
+    assert [module for module, used in imports.items() if used & QT and not _is_view(module)] == []
+
+
+def test_no_model_knows_a_view_or_the_screen(imports: dict[str, set[str]]) -> None:
+    models = {module for module in imports if not _is_view(module)} - COMMANDS
+    assert {m: views for m in models if (views := sorted(filter(_is_view, imports[m])))} == {}
+
+
+def test_only_composing_knows_drivers(imports: dict[str, set[str]]) -> None:
+    others = (m for m in imports if not m.startswith(("app.compose", "drivers")))
+    known = {m: sorted(name for name in imports[m] if name.split(".")[0] == "drivers") for m in others}
+    assert {module: names for module, names in known.items() if names} == {}

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING, NONE_NAMED
+from app.editor.editor import Editor
 from app.path.measuring import measuring_words
 from app.path.path_aspects import tip_of
 from app.path.path_view import PathView
@@ -165,8 +166,8 @@ class AutomaticPage(Page):
         wanted = self.files.wanted if self.files.isVisible() else ""
         if self.files.isVisible() and not wanted:
             self.desk.say(NONE_NAMED)
-        elif self.desk.editor is not None:
-            self.desk.editor.wanted = wanted
+        elif (editor := self.desk.attached(Editor)) is not None:
+            editor.wanted = wanted
             self._go(page_table.EDITOR)
 
     def ask_file(self) -> None:

@@ -171,13 +171,13 @@ def desk_and_executor(
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
         lathe=machine,
-        effect=Effect(drawer(machine)),
         machine=f"{machine.name} · {_drives(machine)}",
         changes=changed,
         book=book_of(offsets, journal),
         zero=zero_book(zero, journal),
-        editor=_editor(workshop(machine, offsets, zero=zero, left=left), journal),
     )
+    desk.attach(Effect(drawer(machine)))
+    desk.attach(_editor(workshop(machine, offsets, zero=zero, left=left), journal))
     furnish(desk, machine, keep, workshop(machine, offsets, zero=zero, left=left))
     give_mdi(desk, machine, offsets, keep)
     give_searchto(desk, machine)

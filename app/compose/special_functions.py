@@ -79,8 +79,8 @@ def furnish(
     own = own or data_folder() / "programs"
     sections = [make(desk, machine, keep, worker) for make in ITEMS]
     sections.append(_transfer(desk, machine, keep, workshop, own))
-    desk.special = SpecialDesk(sections, worker)
-    desk.files = _files(desk, keep, workshop, own)
+    desk.attach(SpecialDesk(sections, worker))
+    desk.attach(_files(desk, keep, workshop, own))
 
 
 def _files(desk: Desk, keep: Persistence, workshop: LoadingSteps, own: Path) -> FilesDesk:

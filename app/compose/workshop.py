@@ -171,7 +171,9 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
     """Give the desk its MDI."""
     prove_line = line_prover(machine, offsets)
-    desk.mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))
+    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, Typing(keep))
+    desk.attach(mdi)
+    desk.own_starts.append(mdi)
 
 
 # --- SEARCHTO of a desk on this machine.
@@ -191,6 +193,6 @@ def give_searchto(desk: Desk, machine: Machine) -> None:
     """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
     rapid = machine.manual_rapid
     choices = Choices(rapid=rapid, modest=_MODEST * rapid)
-    desk.searchto = SearchtoModel(
-        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices
-    )
+    searchto = SearchtoModel(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices)
+    desk.attach(searchto)
+    desk.own_starts.append(searchto)

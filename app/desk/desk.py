@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from app.desk import interrupted_notice, prompt_line
 from app.desk.alarm_log import StopLog
@@ -44,15 +44,30 @@ from core.executor.snapshot import Event, Snapshot, Starts, State
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
-    from app.editor.editor import Editor
-    from app.mdi.mdi_model import MdiModel
-    from app.offsets.effect import Effect
-    from app.programs.program_list import FilesDesk
-    from app.searchto.searchto_model import SearchtoModel
-    from app.special.special_functions import SpecialDesk
     from core.machine.machine_model import Machine
 
-# --- What a desk is made of, and what it answers with; nothing of it computes or waits.
+SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
+SILENT = "CONTROL SILENT"
+BY_SCREEN = "key or finger at the screen"  # who holds, for the log
+
+
+class Attached(Protocol):
+    """The model of a page, or a worker of the desk: it ends with the desk."""
+
+    def close(self) -> None: ...
+
+
+class OwnStart(Protocol):
+    """A page that starts something of its own while it is open: a line of MDI, a restart."""
+
+    open: bool
+
+    def barred(self) -> str:
+        """Why the palms start nothing now; empty when they may."""
+        ...
+
+
+A = TypeVar("A", bound=Attached)
 
 
 def _nothing() -> None:
@@ -64,8 +79,8 @@ def _time_of_day() -> str:
 
 
 @dataclass(slots=True)
-class DeskParts:
-    """All parts of a desk; ``Desk`` says what keys do with them.
+class Desk:
+    """The model behind the Automatic page, and what every page shares.
 
     ``station`` is there with the simulated machine only; ``two_hand`` as the machine file says.
     """
@@ -86,16 +101,10 @@ class DeskParts:
     unkept: Callable[[], str] = str  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = _time_of_day
-    editor: Editor | None = None
-    special: SpecialDesk | None = None
-    files: FilesDesk | None = None
-    mdi: MdiModel | None = None
-    searchto: SearchtoModel | None = None
     settings: SettingsBook = field(default_factory=SettingsBook)
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunRecord = field(default_factory=RunRecord)
     restoring: bool = False  # a backup takes the place of what is kept
-    effect: Effect | None = None  # draws what a change of offsets does
     book: OffsetBook = field(default_factory=lambda: OffsetBook(locked=NONE_KEPT))
     zero: ZeroBook = field(default_factory=lambda: ZeroBook(locked=NO_ZERO))
     changes: FileChanges = field(default_factory=FileChanges)  # of the machine file, to be accepted
@@ -105,17 +114,22 @@ class DeskParts:
     log: StopLog = field(init=False)
     answers: Answers = field(init=False)
     rebuilding: Rebuilding = field(init=False)
-    _pulse: SilenceWatch = field(default_factory=SilenceWatch)
+    own_starts: list[OwnStart] = field(default_factory=list)
+    _attached: dict[type[Attached], Attached] = field(default_factory=dict)
+    _silence: SilenceWatch = field(default_factory=SilenceWatch)
 
     def __post_init__(self) -> None:
         self.log = StopLog(self.time_of_day)
-        self.answers = Answers(self.snapshot, self._trouble, self._now)
+        self.answers = Answers(self.snapshot, self._not_kept, self._now)
         self.rebuilding = Rebuilding(self.session, self.say)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
 
-    def _trouble(self) -> str:
+    def _not_kept(self) -> str:
         return self.unkept()
+
+    def _now(self) -> float:
+        return self.hands.clock()
 
     def say(self, text: str) -> None:
         """Put an answer on the prompt line; it stays until the next key or the next state."""
@@ -132,9 +146,6 @@ class DeskParts:
     def asked(self) -> str:
         """The key that means yes to the question that stands; empty while none does."""
         return self.answers.key if self.answers.asked is not None else ""
-
-    def _now(self) -> float:
-        return self.hands.clock()
 
     def clear(self) -> None:
         """Take the answer or the question back."""
@@ -180,10 +191,18 @@ class DeskParts:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
-        for part in (self.editor, self.special, self.files, self.mdi, self.searchto, self.effect):
-            if part is not None:
-                part.close()
+        for part in self._attached.values():
+            part.close()
         self.shut()
+
+    def attach(self, part: Attached) -> None:
+        """Have the model of a page with the desk: it is found by its class, and ends with the desk."""
+        self._attached[type(part)] = part
+
+    def attached(self, kind: type[A]) -> A | None:
+        """What is attached of this class; None: the desk was put together without."""
+        part = self._attached.get(kind)
+        return part if isinstance(part, kind) else None
 
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""
@@ -194,8 +213,8 @@ class DeskParts:
         """Why the palms start nothing now; empty when they may."""
         if self.stop_held() or not self.starts_here:
             return prompt_line.STOP_HELD if self.stop_held() else prompt_line.NOT_HERE
-        for page in (self.mdi, self.searchto):
-            if page is not None and page.open:
+        for page in self.own_starts:
+            if page.open:
                 return page.barred()
         if self.restoring:
             return prompt_line.RESTORING
@@ -207,16 +226,7 @@ class DeskParts:
         stale = self.rebuilding.wanted or self.book.busy or self.zero.busy or loaded.phase is Phase.READING
         return prompt_line.STALE if stale else ""
 
-
-SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
-SILENT = "CONTROL SILENT"
-BY_SCREEN = "key or finger at the screen"  # who holds, for the log
-
-
-class Desk(DeskParts):
-    """The model behind the Automatic page, and what every page shares."""
-
-    __slots__ = ()
+    # --- every frame ---------------------------------------------------------------------------------
 
     def look(self) -> tuple[Snapshot, MachineStatus, Loaded]:
         """One snapshot, and what the page shows of it; called once a frame."""
@@ -229,7 +239,7 @@ class Desk(DeskParts):
             self.counter.see(snapshot, self.post, self.say)
             self.record.see(snapshot, loaded)
         view = status_of(snapshot, self.readout, self.with_c, self.settings.units)
-        if self._pulse.silent(snapshot.t, self.hands.clock()):
+        if self._silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded
 
@@ -238,7 +248,7 @@ class Desk(DeskParts):
 
         ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
         """
-        if self._pulse.is_silent:
+        if self._silence.is_silent:
             return prompt_line.CONTROL_SILENT
         if self.answers.outlived(snapshot):
             self.clear()

@@ -18,7 +18,6 @@ from app.screen import page_table
 from app.screen.entry_panel import Asked, AskedPanel, KeyPad
 from app.screen.page_base import Doings, Host, Page
 from core.executor.snapshot import Snapshot
-from core.machine.machine_model import Machine
 
 Key = Qt.Key
 CHORDS = (
@@ -44,8 +43,11 @@ class JogPage(Page):
         "UNDO",
     )
 
-    def __init__(self, host: Host, machine: Machine, parent: QWidget) -> None:
+    def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent)
+        machine = host.desk.lathe
+        if machine is None:
+            raise RuntimeError("the desk was put together without a machine to move by hand")
         self.model = JogModel(host.desk, machine)
         self._arrows = {
             Key.__members__[f"Key_{each.key}"]: (each.axis, each.sign) for each in self.model.directions

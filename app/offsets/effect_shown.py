@@ -31,7 +31,7 @@ class ShownEffect:
     @property
     def effect(self) -> Effect | None:
         """Who draws."""
-        return self.desk.effect
+        return self.desk.attached(Effect)
 
     def turn(self) -> None:
         """F6."""

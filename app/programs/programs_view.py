@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.editor.editor import Editor
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
 from app.programs.program_list import FilesDesk
@@ -115,10 +116,11 @@ class FilesPage(ListPage):
     def _edit(self) -> None:
         """The marked program, and no other one; to look at it there does not load it."""
         here = self.model.here
-        if here is None or self.desk.editor is None:
+        editor = self.desk.attached(Editor)
+        if here is None or editor is None:
             self.desk.say(NONE)
             return
-        self.desk.editor.wanted = str(here.path)
+        editor.wanted = str(here.path)
         self.host.go(page_table.EDITOR)
 
     def _chosen(self, row: int) -> None:

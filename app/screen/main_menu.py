@@ -12,10 +12,10 @@ from PySide6.QtWidgets import QWidget
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, Look, put
 from app.screen.page_base import Doings, Host, Page
-from app.screen.page_table import ENTRIES, Entry
+from app.screen.page_table import IN_MENU, PageEntry
 from app.screen.panel import Panel
 
-_LABEL_OF = {entry.key: entry.label for entry in ENTRIES}
+_LABEL_OF = {entry.key: entry.label for entry in IN_MENU}
 COLUMNS = 2
 
 
@@ -33,7 +33,7 @@ class MenuPage(Page):
 
     def doings(self) -> Doings:
         """The function keys of the entries."""
-        return {entry.key: partial(self._open, entry.name) for entry in ENTRIES}
+        return {entry.key: partial(self._open, entry.name) for entry in IN_MENU}
 
     def _open(self, name: str) -> None:
         self.desk.clear()  # an answer to the key before has been read
@@ -64,15 +64,15 @@ class _Tiles(Panel):
 
     def draw(self, painter: QPainter) -> None:
         u, room = self.look.u, self.inside()
-        rows = -(-len(ENTRIES) // COLUMNS)
+        rows = -(-len(IN_MENU) // COLUMNS)
         wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
-        for number, entry in enumerate(ENTRIES):
+        for number, entry in enumerate(IN_MENU):
             column, row = divmod(number, rows)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, high - u)
             self._tile(painter, box, entry)
             self.place(box, partial(self._press, entry.key))
 
-    def _tile(self, painter: QPainter, box: QRectF, entry: Entry) -> None:
+    def _tile(self, painter: QPainter, box: QRectF, entry: PageEntry) -> None:
         look, u = self.look, self.look.u
         painter.setPen(look.pen("accent", 0.2))
         painter.setBrush(look.colour("key"))

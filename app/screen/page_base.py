@@ -1,9 +1,8 @@
 """What a page of the main window is, and where another one is plugged in.
 
 A page is a ``Page`` (a QWidget) that fills the room between the always visible parts: title, position, feed,
-spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug one in, add a line to
-``MAKERS`` in ``app.screen.page_table``: its name there, and what makes it of a ``Host``. It is made when
-it is first opened. What a page gives:
+spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug one in, add an entry to
+``PAGES`` in ``app.screen.page_table``. It is made when it is first opened. What a page gives:
 
 ``NAME``      its name in ``app.screen.page_table``; the title line shows it.
 ``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.

@@ -1,9 +1,10 @@
-"""The pages of the main window: names, the keys that open them, what they are for, and what makes each."""
+"""The pages of the main window, one entry a page: name, view, model; key, label and use in the main menu."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
@@ -16,119 +17,100 @@ PROGRAMS, ZERO = "PROGRAMS", "ZERO OFFSETS"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
-    """One line of the main menu: the key there, the label of that key, the page and its use."""
+class PageEntry:
+    """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
 
-    key: str
-    label: str
+    The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
+    page without a key is not in the main menu.
+    """
+
     name: str
-    use: str
+    view: str
+    model: str = ""
+    key: str = ""
+    label: str = ""
+    use: str = ""
 
 
-ENTRIES = (
-    Entry("F2", "AUTO", AUTOMATIC, "run programs"),
-    Entry("F3", "EDIT", EDITOR, "write and prove programs"),
-    Entry("F4", "MDI", MDI, "one line at a time"),
-    Entry("F5", "JOG", JOG, "move by hand, touch tools off"),
-    Entry("F6", "LIST", PROGRAMS, "list, preview, copy, import and export"),
-    Entry("F8", "TOOLS", TOOLS, "T1…T32: position and nose radius"),
-    Entry("F9", "SECCMP", SECCMP, "D1…D32: corrections of wear and size"),
-    Entry("G", "ZERO", ZERO, "G54…G59: where SINUMERIK programs have their zero"),
-    Entry("F10", "SPECIAL", SPECIAL, "speed limit, parts, inputs and outputs, log, backup"),
+PAGES = (
+    PageEntry(AUTOMATIC, "app.automatic.automatic_view.AutomaticPage", "", "F2", "AUTO", "run programs"),
+    PageEntry(
+        EDITOR,
+        "app.editor.editor_view.EditorPage",
+        "app.editor.editor.Editor",
+        "F3",
+        "EDIT",
+        "write and prove programs",
+    ),
+    PageEntry(
+        MDI, "app.mdi.mdi_view.MdiPage", "app.mdi.mdi_model.MdiModel", "F4", "MDI", "one line at a time"
+    ),
+    PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "move by hand, touch tools off"),
+    PageEntry(
+        PROGRAMS,
+        "app.programs.programs_view.FilesPage",
+        "app.programs.program_list.FilesDesk",
+        "F6",
+        "LIST",
+        "list, preview, copy, import and export",
+    ),
+    PageEntry(
+        TOOLS,
+        "app.offsets.tool_offsets_view.ToolsPage",
+        "",
+        "F8",
+        "TOOLS",
+        "T1…T32: position and nose radius",
+    ),
+    PageEntry(
+        SECCMP,
+        "app.offsets.secondary_offsets_view.SeccmpPage",
+        "",
+        "F9",
+        "SECCMP",
+        "D1…D32: corrections of wear and size",
+    ),
+    PageEntry(
+        ZERO,
+        "app.offsets.zero_offsets_view.ZeroPage",
+        "",
+        "G",
+        "ZERO",
+        "G54…G59: where SINUMERIK programs have their zero",
+    ),
+    PageEntry(
+        SPECIAL,
+        "app.special.special_view.SpecialPage",
+        "app.special.special_functions.SpecialDesk",
+        "F10",
+        "SPECIAL",
+        "speed limit, parts, inputs and outputs, log, backup",
+    ),
+    PageEntry(MENU, "app.screen.main_menu.MenuPage"),
+    PageEntry(
+        SEARCHTO, "app.searchto.searchto_view.SearchtoPage", "app.searchto.searchto_model.SearchtoModel"
+    ),
 )
-
-# --- Which pages there are: each by its name, imported and made when it is first opened.
-
-
-MakePage = Callable[[Host, QWidget], Page]
+IN_MENU = tuple(entry for entry in PAGES if entry.key)
+_ENTRY_OF = {entry.name: entry for entry in PAGES}
 
 
-def _menu(host: Host, parent: QWidget) -> Page:
-    from app.screen.main_menu import MenuPage
-
-    return MenuPage(host, parent)
-
-
-def _seccmp(host: Host, parent: QWidget) -> Page:
-    from app.offsets.secondary_offsets_view import SeccmpPage
-
-    return SeccmpPage(host, parent)
+def make_page(name: str, host: Host, parent: QWidget) -> Page:
+    """The page of this name. Raises RuntimeError where the desk was put together without its model."""
+    entry = _ENTRY_OF[name]
+    view = class_of(entry.view)
+    page: Page = view(host, _model(entry, host), parent) if entry.model else view(host, parent)
+    return page
 
 
-def _tools(host: Host, parent: QWidget) -> Page:
-    from app.offsets.tool_offsets_view import ToolsPage
-
-    return ToolsPage(host, parent)
-
-
-def _zero(host: Host, parent: QWidget) -> Page:
-    from app.offsets.zero_offsets_view import ZeroPage
-
-    return ZeroPage(host, parent)
+def class_of(dotted: str) -> Any:
+    """The class of this dotted name, imported now."""
+    module, _, name = dotted.rpartition(".")
+    return getattr(import_module(module), name)
 
 
-def _editor(host: Host, parent: QWidget) -> Page:
-    from app.editor.editor_view import EditorPage
-
-    editor = host.desk.editor
-    if editor is None:
-        raise RuntimeError("the desk was put together without an editor")
-    return EditorPage(host, editor, parent)
-
-
-def _programs(host: Host, parent: QWidget) -> Page:
-    from app.programs.programs_view import FilesPage
-
-    model = host.desk.files
+def _model(entry: PageEntry, host: Host) -> object:
+    model = host.desk.attached(class_of(entry.model))
     if model is None:
-        raise RuntimeError("the desk was put together without a list of programs")
-    return FilesPage(host, model, parent)
-
-
-def _special(host: Host, parent: QWidget) -> Page:
-    from app.special.special_view import SpecialPage
-
-    model = host.desk.special
-    if model is None:
-        raise RuntimeError("the desk was put together without special functions")
-    return SpecialPage(host, model, parent)
-
-
-def _mdi(host: Host, parent: QWidget) -> Page:
-    from app.mdi.mdi_view import MdiPage
-
-    model = host.desk.mdi
-    if model is None:
-        raise RuntimeError("the desk was put together without MDI")
-    return MdiPage(host, model, parent)
-
-
-def _jog(host: Host, parent: QWidget) -> Page:
-    from app.jog.jog_view import JogPage
-
-    if host.desk.lathe is None:
-        raise RuntimeError("the desk was put together without a machine to move by hand")
-    return JogPage(host, host.desk.lathe, parent)
-
-
-def _searchto(host: Host, parent: QWidget) -> Page:
-    from app.searchto.searchto_view import SearchtoPage
-
-    model = host.desk.searchto
-    if model is None:
-        raise RuntimeError("the desk was put together without SEARCHTO")
-    return SearchtoPage(host, model, parent)
-
-
-MAKERS: Mapping[str, MakePage] = {
-    MENU: _menu,
-    EDITOR: _editor,
-    MDI: _mdi,
-    JOG: _jog,
-    PROGRAMS: _programs,
-    SPECIAL: _special,
-    SEARCHTO: _searchto,
-    SECCMP: _seccmp,
-    TOOLS: _tools,
-    ZERO: _zero,
-}
+        raise RuntimeError(f"the desk was put together without {entry.model}")
+    return model

@@ -20,7 +20,7 @@ from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.look import Look
 from app.screen.page_base import Host, Page
-from app.screen.page_table import MAKERS
+from app.screen.page_table import make_page
 from app.screen.readout_panels import (
     FeedGauge,
     HeadLine,
@@ -191,7 +191,7 @@ class Frame(FrameParts):
         """Open a page; one that does not open now, or that does not let go, says so."""
         if name == self.page.NAME:
             return True
-        page = self._pages.get(name) or MAKERS[name](self._host, self)
+        page = self._pages.get(name) or make_page(name, self._host, self)
         self._pages[name] = page
         if not page.opens() or not self.page.leave():
             return False

@@ -16,6 +16,7 @@ from app.compose.screen_desk import desk_and_executor
 from app.desk.desk import Desk
 from app.desk.persistence import NoPersistence
 from app.special.machine_file_acceptance import MachineFileSection
+from app.special.special_functions import SpecialDesk
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.machine.machine_file import load_machine
@@ -43,8 +44,7 @@ class Room:
 
     @property
     def section(self) -> MachineFileSection:
-        assert self.desk.special is not None
-        (found,) = [s for s in self.desk.special.sections if isinstance(s, MachineFileSection)]
+        (found,) = [s for s in self.desk.attached(SpecialDesk).sections if isinstance(s, MachineFileSection)]
         return found
 
     def cells(self) -> list[tuple[str, ...]]:

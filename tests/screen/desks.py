@@ -68,11 +68,11 @@ def desk_on(
         station=machine,
         two_hand=two_hand,
         lathe=lathe,
-        effect=Effect(drawer(lathe)),
-        editor=Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)),
         machine="GT-75 SIMULATED",
         time_of_day=lambda: "09:41:07",
     )
+    desk.attach(Effect(drawer(lathe)))
+    desk.attach(Editor(Bench(work, archive, folders[0] if folders else Path("/dev/null"), SAMPLES)))
     furnish(desk, lathe, keep or NoPersistence(), work, folders[0] if folders else None)
     built.append(desk)
     machine.hear = desk.hear

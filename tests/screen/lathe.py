@@ -36,8 +36,7 @@ class Operator:
 
     @property
     def mdi(self) -> MdiModel:
-        assert self.stage.desk.mdi is not None
-        return self.stage.desk.mdi
+        return self.stage.desk.attached(MdiModel)
 
     def key(self, *keys: Key, shift: bool = False) -> None:
         modifier = Qt.KeyboardModifier.ShiftModifier if shift else Qt.KeyboardModifier.NoModifier

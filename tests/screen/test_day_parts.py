@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.mdi.mdi_model import MdiModel
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
+from app.searchto.searchto_model import SearchtoModel
 from core.executor.snapshot import State
 from tests.screen.chapters import (
     ENDS,
@@ -161,7 +163,7 @@ def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
     assert day.page == page_table.SEARCHTO
-    model = day.desk.searchto
+    model = day.desk.attached(SearchtoModel)
     assert model is not None
     if text:
         day.type(text)
@@ -227,10 +229,9 @@ def mdi(day: Day, line: str) -> None:
     """One line of MDI to its end."""
     page = day.frame.page
     assert isinstance(page, MdiPage)
-    assert day.desk.mdi is not None
     day.type(line)
     day.key(Key.Key_Return)
-    day.desk.mdi.settle(5.0)
+    day.desk.attached(MdiModel).settle(5.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.IDLE)

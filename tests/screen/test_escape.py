@@ -12,6 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.editor import messages
 from app.editor.editor_view import EditorPage
+from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.chapters import drives_on
@@ -68,8 +69,7 @@ def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
         day.type("X1")
         day.key(Key.Key_Escape)
         assert day.page == page_table.MDI
-        assert day.desk.mdi is not None
-        assert day.desk.mdi.typing.text == ""
+        assert day.desk.attached(MdiModel).typing.text == ""
     day.key(Key.Key_Escape)
     assert day.page == page_table.AUTOMATIC
 
@@ -77,10 +77,9 @@ def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
 def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F4, page_table.MDI)
-    assert day.desk.mdi is not None
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
-    day.desk.mdi.settle(5.0)
+    day.desk.attached(MdiModel).settle(5.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.RUN)

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.programs.folder_chooser import Stick, sticks
+from app.programs.program_list import FilesDesk
 from app.programs.programs_view import FilesPage
 from app.screen import page_table
 from app.screen.look import Look
@@ -72,8 +73,7 @@ def shop(
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     journal = Journal.at_home()
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    assert desk.files is not None
-    desk.files.traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    desk.attached(FilesDesk).traffic.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

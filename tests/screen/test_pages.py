@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.desk.prompt_line import NOT_HERE
 from app.screen import page_table
+from app.screen.page_table import PAGES, PageEntry, class_of
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.hands import Hands, Key
+
+
+@pytest.mark.parametrize("entry", PAGES, ids=lambda entry: entry.name)
+def test_every_page_of_the_table_is_there(entry: PageEntry) -> None:
+    assert entry.name == class_of(entry.view).NAME
+    assert not entry.model or callable(class_of(entry.model).close)
 
 
 def test_f1_leads_to_the_menu_and_f2_and_escape_back(hands: Hands) -> None:

@@ -33,8 +33,7 @@ def operator(qapp: object) -> Iterator[Operator]:
 
 
 def model_of(operator: Operator) -> SearchtoModel:
-    assert operator.stage.desk.searchto is not None
-    return operator.stage.desk.searchto
+    return operator.stage.desk.attached(SearchtoModel)
 
 
 def page_of(operator: Operator) -> SearchtoPage:

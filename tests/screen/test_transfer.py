@@ -14,6 +14,7 @@ from app.compose.journal import Journal
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
+from app.special.special_functions import SpecialDesk
 from app.special.special_view import SpecialPage
 from app.transfer.serial_line import Received
 from app.transfer.serial_transfer import TransferSection
@@ -102,11 +103,10 @@ def hands(
 ) -> Iterator[Hands]:
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
-    assert desk.special is not None
     section = TransferSection(desk, journal, lines, DEFAULT, tmp_path / "own")
-    *others, last = desk.special.sections
+    *others, last = desk.attached(SpecialDesk).sections
     last.close()
-    desk.special.sections = [*others, section]
+    desk.attached(SpecialDesk).sections = [*others, section]
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     with qtbot.waitExposed(window):

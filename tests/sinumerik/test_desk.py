@@ -14,6 +14,7 @@ from app.desk.desk import Desk
 from app.desk.machine_status import status_of
 from app.desk.program_loading import Phase
 from app.desk.readouts import Readout
+from app.editor.editor import Editor
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from drivers.clocks import StepClock
@@ -181,6 +182,5 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     loaded = bench.desk.session.settled(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    assert bench.desk.editor is not None
-    proved = bench.desk.editor.bench.workshop.make_job(loaded.job.source, False)
+    proved = bench.desk.attached(Editor).bench.workshop.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

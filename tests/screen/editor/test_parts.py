@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor, step_clock
-from app.editor.editor import Stage
+from app.editor.editor import Editor, Stage
 from app.editor.entering import enter
 from app.editor.heading_view import editor_places
 from app.editor.text_view import TextField
@@ -105,7 +105,7 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     journal = Journal.at_home()
     desk, executor = desk_and_executor(None, lambda: ({}, {}), step_clock(), journal)
     executor.tick()
-    editor = desk.editor
+    editor = desk.attached(Editor)
     assert editor is not None
     editor.wanted = "new"
     assert enter(desk, editor)

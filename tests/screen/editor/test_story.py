@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt
 from app.desk.program_loading import Phase
 from app.editor import messages
 from app.editor.editor import Stage
+from app.programs.program_list import FilesDesk
 from app.screen import page_table
 from core.executor.commands import CycleStart, FeedHold, LoadJob
 from core.executor.snapshot import State
@@ -288,7 +289,11 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
         (tmp_path / name).write_text(GOOD)
     assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    on_desk, posted, model = writer.desk.session.now, len(writer.machine.posted), writer.desk.files
+    on_desk, posted, model = (
+        writer.desk.session.now,
+        len(writer.machine.posted),
+        writer.desk.attached(FilesDesk),
+    )
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
         writer.frame.go(page_table.PROGRAMS)
@@ -331,7 +336,7 @@ def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp
     assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
     writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.files
+    model = writer.desk.attached(FilesDesk)
     assert model is not None
     writer.sees(lambda: bool(model.shown))
     writer.type("NOSUCHNAME")
