@@ -91,8 +91,8 @@ def test_a_machine_in_a_cycle() -> None:
         ({"inputs": frozenset({"guard", "end_of_bar"})}, "endbar", "YES"),
     ],
 )
-def test_one_thing_is_different(change: dict[str, object], key: str, make_alarm: Value) -> None:
-    assert values_of(replace(AT, **change))[key] == make_alarm  # type: ignore[arg-type]
+def test_one_thing_is_different(change: dict[str, object], key: str, told: Value) -> None:
+    assert values_of(replace(AT, **change))[key] == told  # type: ignore[arg-type]
 
 
 def test_without_switches_nothing_is_known_of_what_they_would_tell() -> None:
@@ -111,9 +111,9 @@ def test_without_a_c_axis_its_angle_means_nothing() -> None:
 
 
 @pytest.mark.parametrize(("rpm", "told"), [(300.0, "ACTIVE"), (-300.0, "ACTIVE"), (1.0, "INACTIVE")])
-def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, make_alarm: str) -> None:
+def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, told: str) -> None:
     strict = replace(LATHE, interlocks=replace(LATHE.interlocks, unclamp_while_turning=False))
-    assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == make_alarm
+    assert values_of(replace(AT, rpm_actual=rpm), strict)["chuckil"] == told
 
 
 # --- a control that says nothing any more ----------------------------------------------------------------
