@@ -6,16 +6,26 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app.cli.command_errors import EXIT_OK, CommandError
 from app.cli.store_command import opened_store
-from app.cli.toml_files import TABLE, out_of_range, shown, unknown
+from app.cli.toml_files import out_of_range, shown, unknown
 from app.desk.arithmetic import EntryError, value_of
 from core.store.offset_fields import FIELDS, Field, Sort
-from core.store.store_rows import MM_PER_INCH, OFFSETS, Change, Kind, Row, ToolRow, Value, inches
-from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow
+from core.store.store_rows import (
+    MM_PER_INCH,
+    OFFSETS,
+    ZERO_CODES,
+    Change,
+    Kind,
+    Row,
+    ToolRow,
+    Value,
+    ZeroRow,
+    inches,
+)
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -56,96 +66,30 @@ def run(args: argparse.Namespace) -> int:
     return OFFSET_ACTIONS[args.action](args)
 
 
-# --- What ``turndesk offsets`` does with G54 to G59: mm and degrees, X a radius, as the store keeps them.
-
-
-_CODE = re.compile(r"G0*(\d{1,4})", re.IGNORECASE)
-
-
-def code_of(name: str) -> int | None:
-    """The code that a name means; None where it names no settable offset at all.
-
-    Raises CommandError for one that does not exist.
-    """
-    match = _CODE.fullmatch(name)
-    if match is None:
-        return None
-    if int(match[1]) not in ZERO_CODES:
-        raise CommandError(f"{name} is no settable offset; name G54…G59")
-    return int(match[1])
-
-
-def set_zero(code: int, entries: list[str], why: str) -> int:
-    """Set what entries such as ``z=-120`` say; the rest stays."""
-    values = _values_zero_actions(entries)
-    with opened_store() as store:
-        row = store.set_zero(code, why, values, who="command line").result()
-    sys.stdout.write(f"{line(code, row)}\n")
-    return EXIT_OK
-
-
-def line(code: int, row: ZeroRow) -> str:
-    """One offset for a person to read."""
-    return f"G{code} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
-
-
-def as_json(rows: Mapping[int, ZeroRow]) -> dict[int, dict[str, float]]:
-    """All of them, by code."""
-    return {code: row._asdict() for code, row in rows.items()}
-
-
-def _values_zero_actions(entries: list[str]) -> dict[str, float]:
-    values: dict[str, float] = {}
-    for entry in entries:
-        key, equals, text = entry.partition("=")
-        key = key.strip().lower()
-        if not equals:
-            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as z=-120")
-        if key not in ZERO_FIELDS:
-            raise CommandError(unknown(key, ZERO_FIELDS))
-        if key in values:
-            raise CommandError(f"{key} is given twice; give it once")
-        try:
-            values[key] = value_of(text)
-        except EntryError as error:
-            raise CommandError(f"{key}: {error}") from error
-    return values
-
-
-# --- What ``turndesk offsets`` does. Inches at the door, millimetres in the store.
-
-
-_OFFSET = re.compile(r"([TD])0*(\d{1,4})", re.IGNORECASE)
-_KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY}
+_OFFSET = re.compile(r"([TDG])0*(\d{1,4})", re.IGNORECASE)
+_KIND = {"T": Kind.TOOL, "D": Kind.SECONDARY, "G": Kind.ZERO}
 _LETTER = {kind: letter for letter, kind in _KIND.items()}
-
-
 _FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
 
 
 def _show(args: argparse.Namespace) -> int:
     with opened_store(read_only=True) as store:
-        rows: dict[Kind, dict[int, Row]] = {
-            Kind.TOOL: {**store.tools()},
-            Kind.SECONDARY: {**store.secondary()},
-        }
-        zero = store.zero_offsets()
+        rows = {kind: store.offsets(kind) for kind in Kind}
     if args.json:
-        told: dict[str, object] = {
-            kind.value: {n: _in_inches(kind, row) for n, row in table.items()} for kind, table in rows.items()
+        told = {
+            kind.value: {n: _in_inches(kind, row) for n, row in table.items()}
+            for kind, table in rows.items()
+            if table or kind is not Kind.ZERO
         }
-        if zero:
-            told[TABLE] = as_json(zero)
         sys.stdout.write(json.dumps(told) + "\n")
         return EXIT_OK
     lines = [_line(f"{_LETTER[kind]}{n}", row) for kind, table in rows.items() for n, row in table.items()]
-    lines += [line(code, row) for code, row in zero.items()]
     sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
     return EXIT_OK
 
 
 def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
-    """Every field by its name, lengths in inches."""
+    """Every field by its name, as it is entered: lengths of tools in inches."""
     values: list[Value] = list(row)
     return {
         name: _typed(field, value) for (name, field), value in zip(FIELDS[kind].items(), values, strict=True)
@@ -153,6 +97,8 @@ def _in_inches(kind: Kind, row: Row) -> dict[str, Value]:
 
 
 def _line(name: str, row: Row) -> str:
+    if isinstance(row, ZeroRow):
+        return f"{name} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
     x, z, r = (inches(value) for value in row[:3])
     line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
     return line + _more(row) if isinstance(row, ToolRow) else line
@@ -168,9 +114,6 @@ def _more(row: ToolRow) -> str:
 
 
 def _set(args: argparse.Namespace) -> int:
-    code = code_of(args.offset)
-    if code is not None:
-        return set_zero(code, args.values, args.why)
     kind, number = _named(args.offset)
     values = _values(kind, args.values)
     with opened_store() as store:
@@ -181,9 +124,12 @@ def _set(args: argparse.Namespace) -> int:
 
 def _named(text: str) -> tuple[Kind, int]:
     match = _OFFSET.fullmatch(text)
-    if not match or int(match[2]) not in OFFSETS:
-        raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
-    return _KIND[match[1].upper()], int(match[2])
+    kind = _KIND[match[1].upper()] if match else Kind.TOOL
+    if match and int(match[2]) in (ZERO_CODES if kind is Kind.ZERO else OFFSETS):
+        return kind, int(match[2])
+    if match and kind is Kind.ZERO:
+        raise CommandError(f"{text} is no settable offset; name G54…G59")
+    raise CommandError(f"{text} is no offset; name T1…T32, D1…D32 or G54…G59")
 
 
 def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
@@ -193,7 +139,8 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
         key, equals, text = entry.partition("=")
         key = key.strip().lower()
         if not equals:
-            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as x=1.25")
+            such = "z=-120" if kind is Kind.ZERO else "x=1.25"
+            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}")
         if key not in FIELDS[kind]:
             raise CommandError(unknown(key, FIELDS[kind]))
         if key in values:
@@ -204,6 +151,8 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
 
 def _entered(field: Field, text: str) -> Value:
     value = _value(field, text)
+    if field.sort in {Sort.METRIC, Sort.ANGLE}:
+        return value  # of a zero offset: the store tells its range
     if mistake := out_of_range(field, value):
         raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
     return value
@@ -228,7 +177,7 @@ def _value(field: Field, text: str) -> Value:
         raise CommandError(f"{field.name}: {error}") from error
     if field.sort is Sort.WHOLE:
         return int(value) if value.is_integer() else value
-    return value * MM_PER_INCH
+    return value * MM_PER_INCH if field.sort is Sort.LENGTH else value
 
 
 def _clear(args: argparse.Namespace) -> int:

@@ -5,14 +5,21 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Collection, Iterable, Iterator
 from difflib import get_close_matches
-from math import isfinite
 from pathlib import Path
 
 from app.cli.command_errors import CommandError
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.offset_fields import FIELDS, Field, Sort
-from core.store.store_rows import MM_PER_INCH, OFFSETS, Kind, SecondaryRow, ToolRow, Value
-from core.store.zero_offset_table import ZERO_CODES, ZERO_FIELDS, ZeroRow, reach
+from core.store.store_rows import (
+    MM_PER_INCH,
+    OFFSETS,
+    ZERO_CODES,
+    Kind,
+    SecondaryRow,
+    ToolRow,
+    Value,
+    ZeroRow,
+)
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -41,6 +48,7 @@ def refuse(path: Path, mistakes: list[str]) -> None:
 
 
 # --- The inputs file: [inputs] with ``10 = true`` for PLC input 10, ``"TB2-5" = false`` for a terminal.
+# M95 asks what the control calls input 7, terminal TB2-9; ``7`` is it too where the file does not name that.
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
@@ -65,61 +73,32 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     return {"TB2-9": table["7"], **table} if also else dict(table)
 
 
-# --- Settable offsets in an offsets file: [zero.54] to [zero.59], x and z in mm (X a radius), c in degrees.
+# --- The offsets file: [tool.1], [secondary.1] in inches, [zero.54] in mm and degrees; part of an export ---
 
 
-TABLE = "zero"
-_CODES = {str(code): code for code in ZERO_CODES}
-
-
-def read_zero(path: Path) -> dict[int, ZeroRow]:
-    """Those that the file holds; a missing key is 0. Raises CommandError naming every mistake."""
-    table, mistakes = read_toml(path).get(TABLE, {}), list[str]()
-    found = dict(_rows(table, mistakes)) if isinstance(table, dict) else {}
-    if not isinstance(table, dict):
-        mistakes.append(f"{TABLE} must hold tables such as [{TABLE}.54]")
-    refuse(path, mistakes)
-    return found
-
-
-def _rows(table: dict[str, object], mistakes: list[str]) -> Iterator[tuple[int, ZeroRow]]:
-    for name, entry in table.items():
-        if name not in _CODES:
-            mistakes.append(f"[{TABLE}.{name}] does not exist; settable offsets are 54…59")
-        elif not isinstance(entry, dict):
-            mistakes.append(f"{TABLE}.{name} must be a table, [{TABLE}.{name}]")
-        else:
-            yield _CODES[name], ZeroRow(**_values_zero_file(name, entry, mistakes))
-
-
-def _values_zero_file(name: str, entry: dict[str, object], mistakes: list[str]) -> dict[str, float]:
-    values: dict[str, float] = {}
-    for key, value in entry.items():
-        where, unit = f"{TABLE}.{name}.{key}", "degrees" if key == "c" else "mm"
-        if key not in ZERO_FIELDS:
-            mistakes.append(f"[{TABLE}.{name}] {unknown(key, FIELDS)}")
-        elif isinstance(value, bool) or not isinstance(value, int | float):
-            mistakes.append(f"{where} must be a number of {unit}")
-        elif not (isfinite(value) and abs(value) <= reach(key)):
-            mistakes.append(
-                f"{where} = {value:g} is out of range; expected {-reach(key):g}…{reach(key):g} {unit}"
-            )
-        else:
-            values[key] = float(value)
-    return values
-
-
-# --- The offsets file: [tool.1] x z nose_radius …, [secondary.1] x z r, in inches; also part of an export.
-
-
-_NUMBERS = {str(number): number for number in OFFSETS}
-_KINDS = {kind.value: kind for kind in Kind}
+_KINDS = (Kind.TOOL, Kind.SECONDARY)
+_NUMBERS = {
+    Kind.TOOL: ({str(number): number for number in OFFSETS}, "offsets are 1…32"),
+    Kind.SECONDARY: ({str(number): number for number in OFFSETS}, "offsets are 1…32"),
+    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, "settable offsets are 54…59"),
+}
 _EXPECTED = {
     Sort.LENGTH: "a number of inches",
+    Sort.METRIC: "a number of mm",
+    Sort.ANGLE: "a number of degrees",
     Sort.WHOLE: "a whole number",
     Sort.TEXT: "a text",
     Sort.FLAG: "true or false",
 }
+
+
+def read_zero(path: Path) -> dict[int, ZeroRow]:
+    """The zero offsets of the file; a missing key is 0. Raises CommandError naming every mistake."""
+    mistakes: list[str] = []
+    rows = _table(read_toml(path), Kind.ZERO, mistakes)
+    found = {code: ZeroRow(**values) for code, values in rows}  # type: ignore[arg-type]
+    refuse(path, mistakes)
+    return found
 
 
 def read_offsets(path: Path) -> tuple[dict[int, ToolOffset], dict[int, SecondaryOffset]]:
@@ -140,7 +119,7 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
     Raises CommandError naming every mistake.
     """
     data = read_toml(path)
-    mistakes = [unknown(key, _KINDS) for key in data if key not in {*_KINDS, TABLE}]
+    mistakes = [unknown(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
     tools = {n: ToolRow(**values) for n, values in _table(data, Kind.TOOL, mistakes)}  # type: ignore[arg-type]
     secondary = {
         n: SecondaryRow(**values)  # type: ignore[arg-type]
@@ -156,17 +135,17 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow]]:
 def _table(
     data: dict[str, object], kind: Kind, mistakes: list[str]
 ) -> Iterator[tuple[int, dict[str, Value]]]:
-    table = data.get(kind.value, {})
+    table, (numbers, those) = data.get(kind.value, {}), _NUMBERS[kind]
     if not isinstance(table, dict):
-        mistakes.append(f"{kind} must hold tables such as [{kind}.1]")
+        mistakes.append(f"{kind} must hold tables such as [{kind}.{next(iter(numbers))}]")
         return
     for name, entry in table.items():
-        if name not in _NUMBERS:
-            mistakes.append(f"[{kind}.{name}] does not exist; offsets are 1…32")
+        if name not in numbers:
+            mistakes.append(f"[{kind}.{name}] does not exist; {those}")
         elif not isinstance(entry, dict):
             mistakes.append(f"{kind}.{name} must be a table, [{kind}.{name}]")
         else:
-            yield _NUMBERS[name], _values(entry, kind, name, mistakes)
+            yield numbers[name], _values(entry, kind, name, mistakes)
 
 
 def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[str]) -> dict[str, Value]:
@@ -192,7 +171,7 @@ def _fits(field: Field, value: object) -> bool:
         return field.sort is Sort.FLAG
     if isinstance(value, str):
         return field.sort is Sort.TEXT
-    return isinstance(value, int | float) and field.sort in {Sort.LENGTH, Sort.WHOLE}
+    return isinstance(value, int | float) and field.sort not in {Sort.FLAG, Sort.TEXT}
 
 
 def _kept(field: Field, value: object) -> Value:

@@ -11,8 +11,7 @@ from app.cli.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.offsets.offset_book import OffsetBook, ZeroBook, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset, ZeroOffset
-from core.store.store_rows import SecondaryRow, ToolRow
-from core.store.zero_offset_table import ZeroRow
+from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal

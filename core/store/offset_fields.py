@@ -8,12 +8,14 @@ from enum import StrEnum
 from math import isfinite
 
 from core.store.store_rows import (
+    ANGLE_REACH,
     MM_PER_INCH,
     RADIUS_MAX,
     REMARK_LONGEST,
     SECONDARY_REACH,
     TOOL_REACH,
     WEAR_REACH,
+    ZERO_REACH,
     Kind,
 )
 
@@ -23,10 +25,15 @@ _ROUNDING = 1e-9  # in
 class Sort(StrEnum):
     """What a value is."""
 
-    LENGTH = "length"  # mm
+    LENGTH = "length"  # mm, and inches for whoever enters it
+    METRIC = "millimetres"
+    ANGLE = "degrees"
     WHOLE = "whole number"
     TEXT = "text"
     FLAG = "yes or no"
+
+
+_UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +52,8 @@ class Field:
         """What it takes, in the unit of the door."""
         if self.sort is Sort.LENGTH:
             return f"{self.low / MM_PER_INCH:g}…{self.high / MM_PER_INCH:g} in"
+        if self.sort in _UNITS:
+            return f"{self.low:g}…{self.high:g} {_UNITS[self.sort]}"
         if self.sort is Sort.TEXT:
             return f"up to {self.high:g} characters in one line"
         return f"{self.low:g}…{self.high:g}"
@@ -56,8 +65,9 @@ class Field:
         if self.sort is Sort.TEXT or not isinstance(value, int | float):
             return False
         rounding = _ROUNDING * MM_PER_INCH if self.sort is Sort.LENGTH else 0.0
-        whole = self.sort is Sort.LENGTH or float(value).is_integer()
-        return isfinite(value) and whole and self.low - rounding <= value <= self.high + rounding
+        if not isfinite(value) or (self.sort in {Sort.WHOLE, Sort.FLAG} and not float(value).is_integer()):
+            return False
+        return self.low - rounding <= value <= self.high + rounding
 
 
 _TOOL = (
@@ -75,7 +85,13 @@ _SECONDARY = (
     Field("z", "z", "Z", -SECONDARY_REACH, SECONDARY_REACH),
     Field("r", "r", "nose radius", 0.0, RADIUS_MAX),
 )
+_ZERO = (
+    Field("x", "x", "X", -ZERO_REACH, ZERO_REACH, Sort.METRIC),
+    Field("z", "z", "Z", -ZERO_REACH, ZERO_REACH, Sort.METRIC),
+    Field("c", "c", "C", -ANGLE_REACH, ANGLE_REACH, Sort.ANGLE),
+)
 FIELDS: Mapping[Kind, Mapping[str, Field]] = {
     Kind.TOOL: {field.name: field for field in _TOOL},
     Kind.SECONDARY: {field.name: field for field in _SECONDARY},
+    Kind.ZERO: {field.name: field for field in _ZERO},
 }

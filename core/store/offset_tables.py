@@ -1,19 +1,33 @@
-"""Tool and secondary offsets: what is valid now, and every change that made it so."""
+"""Tool, secondary and zero offsets: what is valid now, and every change that made it so.
+
+One model for the three tables: each keeps rows under numbers, and a history of steps. A step is what one
+entry has changed; taking it back is a step of the history itself.
+"""
 
 from __future__ import annotations
 
 import sqlite3
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.store.offset_fields import FIELDS, Field, Sort
 from core.store.store_errors import StoreError
-from core.store.store_rows import OFFSETS, Change, Kind, Row, SecondaryRow, ToolRow, Value, inches, utc_now
+from core.store.store_rows import (
+    OFFSETS,
+    ZERO_CODES,
+    Change,
+    Kind,
+    Row,
+    SecondaryRow,
+    ToolRow,
+    Value,
+    ZeroRow,
+    inches,
+    utc_now,
+)
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
-_TABLE = {Kind.TOOL: "tool_offsets", Kind.SECONDARY: "secondary_offsets"}
-_LETTER = {Kind.TOOL: "T", Kind.SECONDARY: "D"}
-_COLUMNS = {kind: [field.column for field in fields.values()] for kind, fields in FIELDS.items()}
 
 
 class Reason(NamedTuple):
@@ -23,10 +37,54 @@ class Reason(NamedTuple):
     who: str
 
 
+@dataclass(frozen=True, slots=True)
+class _Log:
+    """A history table: the column that holds the number, and the columns of a row before and after."""
+
+    name: str
+    key: str
+    columns: tuple[str, ...]
+    kind: str  # what tells the kind of a row in SQL
+    nothing_left: str
+
+    @property
+    def sides(self) -> list[str]:
+        return [f"{side}_{column}" for side in ("old", "new") for column in self.columns]
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """A table of offsets: name, letter and numbers, what a refusal says of them, its rows and its history."""
+
+    name: str
+    letter: str
+    numbers: range
+    those: str
+    row: type[Row]
+    log: _Log
+
+
+def _columns(kind: Kind) -> tuple[str, ...]:
+    return tuple(field.column for field in FIELDS[kind].values())
+
+
+# Columns of a secondary offset are the first of those of a tool: both share one history.
+_OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "there is no offset change to undo")
+_ZEROS = _Log(
+    "zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "there is no change of G54…G59 to undo"
+)
+_TABLES = {
+    Kind.TOOL: _Table("tool_offsets", "T", OFFSETS, "offsets are T1…32", ToolRow, _OFFSETS),
+    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, "offsets are D1…32", SecondaryRow, _OFFSETS),
+    Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, "settable offsets are G54…G59", ZeroRow, _ZEROS),
+}
+
+
 def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
-    """All offsets of one table by number."""
+    """All offsets of one table that have been set, by number."""
+    table = _TABLES[kind]
     rows = connection.execute(
-        f"SELECT number, {', '.join(_COLUMNS[kind])} FROM {_TABLE[kind]} ORDER BY number"
+        f"SELECT {table.log.key}, {', '.join(_columns(kind))} FROM {table.name} ORDER BY {table.log.key}"
     )
     return {number: _row(kind, values) for number, *values in rows}
 
@@ -39,6 +97,11 @@ def tools(connection: sqlite3.Connection) -> dict[int, ToolRow]:
 def secondary(connection: sqlite3.Connection) -> dict[int, SecondaryRow]:
     """The secondary offsets that have been set."""
     return {n: row for n, row in current(connection, Kind.SECONDARY).items() if isinstance(row, SecondaryRow)}
+
+
+def zero(connection: sqlite3.Connection) -> dict[int, ZeroRow]:
+    """The settable offsets that have been set, by code."""
+    return {n: row for n, row in current(connection, Kind.ZERO).items() if isinstance(row, ZeroRow)}
 
 
 def change(
@@ -73,19 +136,23 @@ def never_set(number: int) -> str:
 
 def check_number(kind: Kind, number: int) -> None:
     """Raises StoreError for an offset that does not exist."""
-    if number not in OFFSETS:
-        raise StoreError(f"{_LETTER[kind]}{number} does not exist; offsets are {_LETTER[kind]}1…32")
+    table = _TABLES[kind]
+    if number not in table.numbers:
+        raise StoreError(f"{table.letter}{number} does not exist; {table.those}")
 
 
 def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value]) -> Row:
     """The row with the fields of ``wanted``. Raises StoreError for a value that is not kept."""
+    fields, table = FIELDS[kind], _TABLES[kind]
     for name, value in wanted.items():
-        field = FIELDS[kind][name]
+        field = fields.get(name)
+        if field is None:
+            raise StoreError(f"{table.letter}{number} {name} is out of range; enter {', '.join(fields)}")
         if not field.takes(value):
-            told = f"{_LETTER[kind]}{number} {field.word} {_told(field, value)}"
+            told = f"{table.letter}{number} {field.word} {_told(field, value)}"
             raise StoreError(f"{told} is out of range; enter {field.range}")
-    before = old or (ToolRow() if kind is Kind.TOOL else SecondaryRow())
-    return _row(kind, [wanted.get(name, getattr(before, name)) for name in FIELDS[kind]])
+    before = old or table.row()
+    return _row(kind, [wanted.get(name, getattr(before, name)) for name in fields])
 
 
 def _told(field: Field, value: Value) -> str:
@@ -97,7 +164,7 @@ def _told(field: Field, value: Value) -> str:
 def _row(kind: Kind, values: Sequence[Value | None]) -> Row:
     """A row from its columns; those that were not kept yet when it was written are as they were then."""
     whole = [_plain(field, value) for field, value in zip(FIELDS[kind].values(), values, strict=True)]
-    return ToolRow(*whole) if kind is Kind.TOOL else SecondaryRow(*whole)  # type: ignore[arg-type]
+    return _TABLES[kind].row(*whole)  # type: ignore[arg-type]  # by the sort of each field
 
 
 def _plain(field: Field, value: Value | None) -> Value:
@@ -118,30 +185,32 @@ def clear(connection: sqlite3.Connection, kind: Kind, reason: Reason) -> int:
 
 def apply(
     connection: sqlite3.Connection, kind: Kind, changes: Changes, reason: Reason, undoes: int | None = None
-) -> int:
-    """Writes offsets and their history as one step; answers the step's number."""
-    step = int(connection.execute("SELECT coalesce(max(step), 0) + 1 FROM offset_changes").fetchone()[0])
-    at, columns = utc_now(), _COLUMNS[kind]
+) -> tuple[Change, ...]:
+    """Writes offsets and their history as one step; answers what it is in the history."""
+    table, log = _TABLES[kind], _TABLES[kind].log
+    step = int(connection.execute(f"SELECT coalesce(max(step), 0) + 1 FROM {log.name}").fetchone()[0])
+    at, columns = utc_now(), _columns(kind)
     # All go before any comes: there is never more than one master.
-    connection.executemany(f"DELETE FROM {_TABLE[kind]} WHERE number = ?", [(number,) for number in changes])
+    connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
     _insert(
         connection,
-        _TABLE[kind],
-        ["number", *columns],
+        table.name,
+        [log.key, *columns],
         [(number, *new) for number, (_old, new) in changes.items() if new is not None],
     )
+    told = {"kind": kind.value} if log.kind == "kind" else {}
     sides = [f"{side}_{column}" for side in ("old", "new") for column in columns]
     nothing = (None,) * len(columns)
     _insert(
         connection,
-        "offset_changes",
-        ["step", "undoes", "at", "kind", "number", "why", "who", *sides],
+        log.name,
+        ["step", "undoes", "at", *told, log.key, "why", "who", *sides],
         [
-            (step, undoes, at, kind.value, number, *reason, *(old or nothing), *(new or nothing))
+            (step, undoes, at, *told.values(), number, *reason, *(old or nothing), *(new or nothing))
             for number, (old, new) in changes.items()
         ],
     )
-    return step
+    return _select(connection, log, "WHERE step = ? ORDER BY id", (step,))
 
 
 def _insert(
@@ -154,51 +223,63 @@ def _insert(
 def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = None) -> tuple[Change, ...]:
     """Takes the last step back that is not undone yet; answers the changes this made.
 
-    With ``kind`` the last step of that table. Undoing is itself a step of the history; asking again goes
-    further back. Raises StoreError when there is nothing left to undo.
+    With ``kind`` the last step of that table, without one that of tools and secondary offsets together.
+    Asking again goes further back. Raises StoreError when there is nothing left to undo.
     """
+    log = _log_of(kind)
     step = connection.execute(
-        "SELECT max(step) FROM offset_changes WHERE undoes IS NULL AND kind = coalesce(?, kind)"
-        " AND step NOT IN (SELECT undoes FROM offset_changes WHERE undoes IS NOT NULL)",
+        f"SELECT max(step) FROM {log.name} WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
+        f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
         (kind.value if kind else None,),
     ).fetchone()[0]
     if step is None:
-        raise StoreError("there is no offset change to undo")
-    rows = step_of(connection, step)
+        raise StoreError(log.nothing_left)
+    rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,))
     backward = {row.number: (row.new, row.old) for row in rows}
-    done = apply(connection, rows[0].kind, backward, reason, undoes=step)
-    return step_of(connection, done)
-
-
-def step_of(connection: sqlite3.Connection, step: int) -> tuple[Change, ...]:
-    """The changes of one step."""
-    return _select(connection, "WHERE step = ? ORDER BY id", (step,))
+    return apply(connection, rows[0].kind, backward, reason, undoes=step)
 
 
 def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tuple[Change, ...]:
-    """The last changes, newest first."""
+    """The last changes, newest first; without ``kind`` those of tools and secondary offsets together."""
+    log = _log_of(kind)
     if kind is None:
-        return _select(connection, "ORDER BY id DESC LIMIT ?", (limit,))
-    return _select(connection, "WHERE kind = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
+        return _select(connection, log, "ORDER BY id DESC LIMIT ?", (limit,))
+    return _select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
 
 
-def _select(connection: sqlite3.Connection, tail: str, values: tuple[int | str, ...]) -> tuple[Change, ...]:
-    columns = _COLUMNS[Kind.TOOL]
-    sides = ", ".join(f"{side}_{column}" for side in ("old", "new") for column in columns)
+def _log_of(kind: Kind | None) -> _Log:
+    return _OFFSETS if kind is None else _TABLES[kind].log
+
+
+def _select(
+    connection: sqlite3.Connection, log: _Log, tail: str, values: tuple[int | str, ...]
+) -> tuple[Change, ...]:
     rows = connection.execute(
-        f"SELECT id, step, undoes, at, kind, number, why, who, {sides} FROM offset_changes {tail}", values
+        f"SELECT id, step, undoes, at, {log.kind}, {log.key}, why, who, {', '.join(log.sides)}"
+        f" FROM {log.name} {tail}",
+        values,
     )
+    half = len(log.columns)
     return tuple(
         Change(
-            i, step, undoes, at, Kind(kind), number, _side(kind, old), _side(kind, both[len(old) :]), why, who
+            i,
+            step,
+            undoes,
+            at,
+            Kind(kind),
+            number,
+            _side(kind, both[:half]),
+            _side(kind, both[half:]),
+            why,
+            who,
         )
         for i, step, undoes, at, kind, number, why, who, *both in rows
-        for old in (both[: len(columns)],)
+        for old in (both[:half],)
     )
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:
-    """A row of the history; the columns of a secondary offset are the first of those of a tool."""
+    """A row of the history, None where the offset was not set."""
     if values[0] is None:
         return None
     return _row(Kind(kind), values[: len(FIELDS[Kind(kind)])])

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TypeVar
 
-from core.store import event_log, offset_tables, program_records, touch_off, zero_offset_table
+from core.store import event_log, offset_tables, program_records, touch_off
 from core.store.database import Opened, open_to_read, open_to_write
 from core.store.offset_tables import Reason
 from core.store.store_errors import StoreError, why
@@ -26,104 +26,19 @@ from core.store.store_rows import (
     ToolRow,
     Value,
     VersionRow,
+    ZeroRow,
     utc_now,
 )
 from core.store.store_writer import Held, Keeping, Operation, StoreWriter, Unwritten
 from core.store.touch_off import Touch
-from core.store.zero_offset_table import ZeroChange, ZeroRow
-
-# --- The reading half of the store: answers at once, from any thread, beside a writer anywhere.
-
-
-class StoreReader:
-    """Questions to a store. Every one of them raises StoreError when the file turns out to be damaged."""
-
-    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
-        self.path = path
-        self._reader = connection
-        self._reading = threading.Lock()
-
-    @contextmanager
-    def read(self) -> Iterator[sqlite3.Connection]:
-        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError."""
-        with self._reading:
-            try:
-                yield self._reader
-            except sqlite3.ProgrammingError as error:
-                raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
-            except sqlite3.Error as error:
-                raise why(self.path, error) from error
-
-    def tools(self) -> dict[int, ToolRow]:
-        """The tool offsets that have been set."""
-        with self.read() as connection:
-            return offset_tables.tools(connection)
-
-    def secondary(self) -> dict[int, SecondaryRow]:
-        """The secondary offsets that have been set."""
-        with self.read() as connection:
-            return offset_tables.secondary(connection)
-
-    def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
-        """Changes of offsets, newest first."""
-        with self.read() as connection:
-            return offset_tables.history(connection, kind, limit)
-
-    def zero_offsets(self) -> dict[int, ZeroRow]:
-        """The settable offsets G54…G59 that have been set."""
-        with self.read() as connection:
-            return zero_offset_table.current(connection)
-
-    def zero_history(self, limit: int = 100) -> tuple[ZeroChange, ...]:
-        """Changes of G54…G59, newest first."""
-        with self.read() as connection:
-            return zero_offset_table.history(connection, limit)
-
-    def programs(self) -> tuple[ProgramRow, ...]:
-        """All programs by name."""
-        with self.read() as connection:
-            return program_records.listing(connection)
-
-    def versions(self, name: str) -> tuple[VersionRow, ...]:
-        """Every version of a program, newest first."""
-        with self.read() as connection:
-            return program_records.versions(connection, name)
-
-    def load_program(self, name: str, version: int | None = None) -> bytes:
-        """The text as saved. Raises StoreError for a version that is not there or not as it was saved."""
-        with self.read() as connection:
-            return program_records.load(connection, name, version)
-
-    def events(self, search: str = "", limit: int = 100, kinds: Collection[str] = ()) -> tuple[EventRow, ...]:
-        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters.
-
-        With ``kinds`` only events of these.
-        """
-        with self.read() as connection:
-            return event_log.events(connection, search, limit, kinds)
-
-    def runs(self) -> tuple[RunRow, ...]:
-        """What each program has done."""
-        with self.read() as connection:
-            return program_records.all_of(connection)
-
-    def parts(self, program: str) -> int:
-        """Parts of this program that were counted."""
-        with self.read() as connection:
-            return program_records.parts(connection, program)
-
-    def setting(self, key: str) -> object:
-        """A setting, None: not set."""
-        with self.read() as connection:
-            return event_log.setting(connection, key)
-
+from core.store.zero_offset_table import ZeroChange, zero_change
 
 __all__ = ["Store", "StoreError"]
 
 T = TypeVar("T")
 
 
-class Store(StoreReader):
+class Store:
     """Programs, offsets, events, part counts and settings of one folder; see ``open``.
 
     A future of a write is answered when the change is on the disk, and with StoreError when it is refused or
@@ -133,7 +48,9 @@ class Store(StoreReader):
     """
 
     def __init__(self, opened: Opened) -> None:
-        super().__init__(opened.path, opened.reader)
+        self.path = opened.path
+        self._reader = opened.reader
+        self._reading = threading.Lock()
         self._opened = opened
         self._writer = StoreWriter(opened.writer, opened.path) if opened.writer else None
 
@@ -171,9 +88,86 @@ class Store(StoreReader):
         """What waits in memory for a disk that takes nothing; None while nothing has to."""
         return self._writer.held if self._writer else None
 
+    # --- reading: answers at once, from any thread; raises StoreError where the file is found damaged -----
+
+    @contextmanager
+    def read(self) -> Iterator[sqlite3.Connection]:
+        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError."""
+        with self._reading:
+            try:
+                yield self._reader
+            except sqlite3.ProgrammingError as error:
+                raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
+            except sqlite3.Error as error:
+                raise why(self.path, error) from error
+
+    def offsets(self, kind: Kind) -> dict[int, Row]:
+        """The offsets of a table that have been set, by number or code."""
+        with self.read() as connection:
+            return offset_tables.current(connection, kind)
+
+    def tools(self) -> dict[int, ToolRow]:
+        """The tool offsets that have been set."""
+        with self.read() as connection:
+            return offset_tables.tools(connection)
+
+    def secondary(self) -> dict[int, SecondaryRow]:
+        """The secondary offsets that have been set."""
+        with self.read() as connection:
+            return offset_tables.secondary(connection)
+
+    def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
+        """Changes of a table, newest first; without ``kind`` of tool and secondary offsets together."""
+        with self.read() as connection:
+            return offset_tables.history(connection, kind, limit)
+
+    def zero_offsets(self) -> dict[int, ZeroRow]:
+        """The settable offsets G54…G59 that have been set."""
+        with self.read() as connection:
+            return offset_tables.zero(connection)
+
+    def zero_history(self, limit: int = 100) -> tuple[ZeroChange, ...]:
+        """Changes of G54…G59, newest first."""
+        with self.read() as connection:
+            return tuple(map(zero_change, offset_tables.history(connection, Kind.ZERO, limit)))
+
+    def programs(self) -> tuple[ProgramRow, ...]:
+        """All programs by name."""
+        with self.read() as connection:
+            return program_records.listing(connection)
+
+    def versions(self, name: str) -> tuple[VersionRow, ...]:
+        """Every version of a program, newest first."""
+        with self.read() as connection:
+            return program_records.versions(connection, name)
+
+    def load_program(self, name: str, version: int | None = None) -> bytes:
+        """The text as saved. Raises StoreError for a version that is not there or not as it was saved."""
+        with self.read() as connection:
+            return program_records.load(connection, name, version)
+
+    def events(self, search: str = "", limit: int = 100, kinds: Collection[str] = ()) -> tuple[EventRow, ...]:
+        """The log, newest first; with ``search`` what holds it in kind or text, in any case of letters.
+
+        With ``kinds`` only events of these.
+        """
+        with self.read() as connection:
+            return event_log.events(connection, search, limit, kinds)
+
+    def runs(self) -> tuple[RunRow, ...]:
+        """What each program has done."""
+        with self.read() as connection:
+            return program_records.all_of(connection)
+
+    def setting(self, key: str) -> object:
+        """A setting, None: not set."""
+        with self.read() as connection:
+            return event_log.setting(connection, key)
+
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
-        stored, held = super().parts(program), self.held
+        with self.read() as connection:
+            stored, held = program_records.parts(connection, program), self.held
         reset, more = held.counts.get(program, (False, 0)) if held is not None else (False, 0)
         return max(0, (0 if reset else stored) + more)
 
@@ -195,7 +189,7 @@ class Store(StoreReader):
     def set_offset(
         self, kind: Kind, number: int, why: str, values: Mapping[str, Value], *, who: str = "operator"
     ) -> Future[Row]:
-        """Sets the fields of offset 1…32 that ``values`` names, mm and X a radius; the rest stays."""
+        """Sets the fields that ``values`` names of an offset, mm and X a radius; the rest stays."""
         reason, wanted = Reason(why, who), dict(values)
         return self.write(lambda c: offset_tables.change(c, kind, number, reason, wanted))
 
@@ -217,33 +211,37 @@ class Store(StoreReader):
         """The tool that the others are relative to, 0: none; no tip moves by it."""
         return self.write(lambda c: touch_off.choose_master(c, number, Reason(why, who)))
 
+    def clear_offsets(self, kind: Kind, why: str, *, who: str = "operator") -> Future[int]:
+        """All offsets of a table at once, as one step of its history; answers how many were set."""
+        return self.write(lambda c: offset_tables.clear(c, kind, Reason(why, who)))
+
     def clear_secondary(self, why: str, *, who: str = "operator") -> Future[int]:
-        """All D offsets at once, as one step of the history; answers how many were set."""
-        return self.write(lambda c: offset_tables.clear(c, Kind.SECONDARY, Reason(why, who)))
+        """All D offsets at once."""
+        return self.clear_offsets(Kind.SECONDARY, why, who=who)
 
     def undo_offset(
         self, why: str = "undo", *, kind: Kind | None = None, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
-        """Takes the last change of offsets (of one ``kind``) back; again: the one before.
+        """Takes the last change of a table back; again: the one before. StoreError when there is none.
 
-        StoreError when there is none.
+        Without ``kind`` the last of tool and secondary offsets together.
         """
         return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
 
     def set_zero(
         self, code: int, why: str, values: Mapping[str, float], *, who: str = "operator"
-    ) -> Future[ZeroRow]:
+    ) -> Future[Row]:
         """Sets what ``values`` names of G54…G59: mm, X a radius, C in degrees; the rest stays."""
-        wanted = dict(values)
-        return self.write(lambda c: zero_offset_table.change(c, code, Reason(why, who), wanted))
+        return self.set_offset(Kind.ZERO, code, why, values, who=who)
 
     def clear_zero(self, why: str, *, who: str = "operator") -> Future[int]:
         """All of G54…G59 at once, as one step of their history; answers how many were set."""
-        return self.write(lambda c: zero_offset_table.clear(c, Reason(why, who)))
+        return self.clear_offsets(Kind.ZERO, why, who=who)
 
     def undo_zero(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[ZeroChange, ...]]:
         """Takes the last change of G54…G59 back; again: the one before. StoreError when there is none."""
-        return self.write(lambda c: zero_offset_table.undo(c, Reason(why, who)))
+        reason = Reason(why, who)
+        return self.write(lambda c: tuple(map(zero_change, offset_tables.undo(c, reason, Kind.ZERO))))
 
     def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
@@ -343,6 +341,6 @@ class Store(StoreReader):
             for number, row in secondary.items():
                 offset_tables.change(connection, Kind.SECONDARY, number, reason, row._asdict())
             for code, offset in (zero_rows or {}).items():
-                zero_offset_table.change(connection, code, reason, offset._asdict())
+                offset_tables.change(connection, Kind.ZERO, code, reason, offset._asdict())
 
         return self.write(operation)

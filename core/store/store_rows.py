@@ -8,19 +8,23 @@ from typing import NamedTuple
 
 MM_PER_INCH = 25.4
 OFFSETS = range(1, 33)
+ZERO_CODES = range(54, 60)
 TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
 SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
 RADIUS_MAX = 50.8  # mm: 2 in
 WEAR_REACH = 2.54  # mm: .1 in; a tool that is off by more has to be touched off
 REMARK_LONGEST = 40  # characters
+ZERO_REACH = 5000.0  # mm, more than any such lathe travels
+ANGLE_REACH = 360.0  # degrees: further is the same place
 Value = float | int | str | bool
 
 
 class Kind(StrEnum):
-    """The two tables of offsets."""
+    """The tables of offsets: T, D, and the settable zero offsets G54 to G59."""
 
     TOOL = "tool"
     SECONDARY = "secondary"
+    ZERO = "zero"
 
 
 class ToolRow(NamedTuple):
@@ -52,7 +56,15 @@ class SecondaryRow(NamedTuple):
     r: float = 0.0
 
 
-Row = ToolRow | SecondaryRow
+class ZeroRow(NamedTuple):
+    """Zero offset: machine position of the program's zero, X a radius, C in degrees."""
+
+    x: float = 0.0
+    z: float = 0.0
+    c: float = 0.0
+
+
+Row = ToolRow | SecondaryRow | ZeroRow
 
 
 class Change(NamedTuple):

@@ -48,7 +48,7 @@ def touch_off(
     changes = {n: pair for n, pair in changes.items() if pair[0] != pair[1]}
     if not changes:
         return ()
-    return offset_tables.step_of(connection, offset_tables.apply(connection, Kind.TOOL, changes, reason))
+    return offset_tables.apply(connection, Kind.TOOL, changes, reason)
 
 
 def _tool(number: int, old: ToolRow | None, wanted: dict[str, float]) -> ToolRow:
@@ -78,4 +78,4 @@ def choose_master(connection: sqlite3.Connection, number: int, reason: Reason) -
     }
     if not changes:
         return ()
-    return offset_tables.step_of(connection, offset_tables.apply(connection, Kind.TOOL, changes, reason))
+    return offset_tables.apply(connection, Kind.TOOL, changes, reason)

@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.command_errors import CommandError
 from app.cli.toml_files import read_offsets, read_zero
-from core.store.zero_offset_table import ZeroRow
+from core.store.store_rows import ZeroRow
 from tests.cli.conftest import Turndesk
 
 PROGRAM = "G54\nTRANS C30\nATRANS C10\nG0 X20 Z1 C=DC(0)\nM30\n"

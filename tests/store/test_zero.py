@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.store.store import Store, StoreError
-from core.store.zero_offset_table import ZeroRow
+from core.store.store_rows import ZeroRow
 
 
 def test_what_is_set_is_there_again(tmp_path: Path) -> None:
